@@ -1,0 +1,101 @@
+"""Every error that a user of rosetta_jit can meet.
+
+RosettaError
+    ReportError         what is wrong in a text that somebody wrote: diagnostics with places
+        SchemaError         in an IDL file or a wire schema
+        MappingError        in a mapping
+    MessageError        what is wrong with one message: kind and field path
+        DecodeError         bytes that are not what the schema promises; with byte offset
+        EncodeError         a holder whose values the wire cannot carry
+
+Errors of the caller (an object of the wrong type, a read-only output) are Python's own TypeError and BufferError.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+
+Kind = Literal[
+    "truncated",  # the message ends before the value does
+    "trailing",  # bytes are left over
+    "tag",  # a type tag or wire type that the schema does not have there
+    "constant",  # a field whose value the schema fixes has another one
+    "count",  # a negative or impossible number of elements
+    "length",  # a negative or impossible number of bytes
+    "nesting",  # deeper than the limit
+    "text",  # bytes that are not valid UTF-8 where text is promised
+    "varint",  # a variable-length integer of more than ten bytes
+    "range",  # a value that its target cannot hold
+    "index",  # a mapping reads or writes an element that is not there
+    "missing",  # a required field did not come
+    "rejected",  # the mapping refuses the message
+]
+
+
+class RosettaError(Exception):
+    """Base of all errors that rosetta_jit raises by itself."""
+
+
+class ReportError(RosettaError):
+    """Something is wrong in a text; `diagnostics` says what, where, and what to do."""
+
+    def __init__(self, diagnostics: tuple[Diagnostic, ...]) -> None:
+        from rosetta_jit.diagnostics import render
+
+        self.diagnostics = diagnostics
+        super().__init__("\n\n".join(render(diagnostic) for diagnostic in diagnostics))
+
+
+class SchemaError(ReportError):
+    """An IDL file or a wire schema that cannot be used."""
+
+
+class MappingError(ReportError):
+    """A mapping that cannot be used."""
+
+
+class MessageError(RosettaError, ValueError):
+    """One message that cannot be decoded or encoded.
+
+    Attributes
+    ----------
+    kind : str
+        What is wrong, one word of `Kind`.
+    path : str
+        The field, as written in the IDL, with indices: ``.joints[3].name``; empty for the message itself.
+    detail : str
+        One sentence for a person.
+    """
+
+    def __init__(self, kind: Kind, path: str, detail: str) -> None:
+        self.kind = kind
+        self.path = path
+        self.detail = detail
+        super().__init__(self.describe())
+
+    def describe(self) -> str:
+        return f"{self.kind}: {self.detail} - at `{self.path or '.'}`"
+
+
+class DecodeError(MessageError):
+    """Bytes that are not what the schema promises.
+
+    Attributes
+    ----------
+    offset : int
+        Where in the message, in bytes from its start.
+    """
+
+    def __init__(self, kind: Kind, path: str, detail: str, offset: int) -> None:
+        self.offset = offset
+        super().__init__(kind, path, detail)
+
+    def describe(self) -> str:
+        return f"{super().describe()}, byte {self.offset}"
+
+
+class EncodeError(MessageError):
+    """A holder whose values the wire cannot carry."""

@@ -1,0 +1,18 @@
+"""What a front end is: a function from a source to declarations.
+
+Each framework offers one for every suffix of its IDL. It resolves imports through the `Load` that it is given, makes every
+`Ref` absolute, checks everything that it can check without knowing a wire, and raises one `SchemaError` with all it found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rosetta_jit.model.types import Schema
+from rosetta_jit.source import Source
+
+Load = Callable[[str], Source | None]
+"""Finds a file by the path that an import writes, on the search path; None where there is none."""
+
+FrontEnd = Callable[[Source, Load], Schema]
+"""All declarations of a source and of what it imports."""

@@ -1,0 +1,104 @@
+"""One expression language: mapping rules, counts, and constants that are computed.
+
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call
+    Path = Root, Step*         Step = Member(name) | Index(Expr)
+
+A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
+constant) the side is always ``wire``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+from typing import Literal as OneOf
+
+if TYPE_CHECKING:
+    from rosetta_jit.source import Span
+
+Side = OneOf["holder", "wire"]
+Operator = OneOf["+", "-", "*", "/", "%"]
+"""`/` and `%` of two integers truncate toward zero, as in C; of anything else they are floating."""
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A number, a string, or a boolean written in the text."""
+
+    value: bool | int | float | str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A loop variable (``i``), an enum constant by qualified name, or a constant of the language (``pi``)."""
+
+    name: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """``.name``"""
+
+    name: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """``[index]``, counted from 0."""
+
+    index: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Step = Member | Index
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A place on one side: ``.joints[i].name``."""
+
+    side: Side
+    steps: tuple[Step, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Len:
+    """``len(.path)``: number of elements, or of bytes of a string or blob."""
+
+    path: Path
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """``-operand``"""
+
+    operator: OneOf["-"]
+    operand: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """``left operator right``"""
+
+    operator: Operator
+    left: Expr
+    right: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``function(argument, ...)``: a conversion (``float32(x)``) or a function of the language (``radians(x)``)."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Literal | Name | Path | Len | Unary | Binary | Call

@@ -1,0 +1,70 @@
+"""A mapping: two types and the rules between their fields, one block for each direction.
+
+    Mapping = Import*, holder type, wire type, Rule* to unpack, Rule* to pack
+    Rule    = Assign(place, Expr) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
+
+In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Expr, Path
+    from rosetta_jit.source import Source, Span
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """``import "path"``: a file on the search path."""
+
+    path: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """``.place = value``"""
+
+    place: Path
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SetLength:
+    """``len(.place) = value``"""
+
+    place: Path
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """``for variable from start to stop ... end``; ``stop`` is exclusive and not below ``start``."""
+
+    variable: str
+    start: Expr
+    stop: Expr
+    body: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """What a mapping file says. None as rules means that the block is missing, ``()`` that it is empty."""
+
+    source: Source
+    imports: tuple[Import, ...]
+    holder_type: str
+    wire_type: str
+    unpack_rules: tuple[Rule, ...] | None
+    pack_rules: tuple[Rule, ...] | None
+    holder_span: Span | None = field(default=None, compare=False, repr=False)
+    wire_span: Span | None = field(default=None, compare=False, repr=False)

@@ -1,0 +1,180 @@
+r"""The meta-model: what data of every framework looks like, without a word about bytes.
+
+    Type   = Bool | Int | Float | String | Bytes | Enum | Array | Struct | Union | Optional | Map | Ref
+    Struct = name, Field*          Field = name, Type, number, unit, constant, default, ...
+    Union  = name, Field*          one of the fields is set, or none (a protobuf oneof)
+
+Scalars carry the word that their IDL uses (`spelling`): two IDL types with the same values but other bytes (`int32` and
+`sint32`, `:int` and `:vocab`) are the same model type, and the encoding tells them apart by that word alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.source import Span
+
+Constant = bool | int | float | str | bytes
+"""A value that an IDL can write down."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bool:
+    """True or false; one byte in a holder."""
+
+    spelling: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Int:
+    """A two's complement or unsigned integer."""
+
+    bits: Literal[8, 16, 32, 64]
+    signed: bool = True
+    spelling: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Float:
+    """An IEEE 754 number."""
+
+    bits: Literal[32, 64]
+    spelling: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class String:
+    """Text. ``octets`` promises nothing about its bytes (YARP); ``utf-8`` is checked when it is read."""
+
+    encoding: Literal["utf-8", "octets"] = "utf-8"
+    spelling: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Bytes:
+    """Bytes without a meaning of their own."""
+
+    spelling: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Enum:
+    """Named integers. A closed one (proto2) holds no other number than those."""
+
+    name: str
+    values: tuple[tuple[str, int], ...]
+    closed: bool = True
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Array:
+    """A sequence of one element type; ``length`` where the type fixes it."""
+
+    element: Type
+    length: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Optional:
+    """A value that may be absent, and knows whether it is."""
+
+    value: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Map:
+    """Pairs of key and value; the last of equal keys counts."""
+
+    key: Type
+    value: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Ref:
+    """A named type, looked up in the schema. Recursion goes through here and nowhere else."""
+
+    name: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A member of a struct or a case of a union.
+
+    Parameters
+    ----------
+    number
+        The tag by which the IDL knows the field on the wire, where it has one.
+    unit
+        Unit of the values as the IDL names it (``degree``), where it says so.
+    constant
+        The one value that the field can have; the wire must carry it and packing writes it. An expression may read
+        fields of the same message.
+    default
+        What reading an absent value gives.
+    required
+        The IDL demands that the field be set (proto2 ``required``).
+    options
+        What else the IDL says that an encoding must know (``packed``, ``group``), as sorted pairs.
+    """
+
+    name: str
+    type: Type
+    number: int | None = None
+    unit: str | None = None
+    constant: Expr | None = None
+    default: Constant | None = None
+    required: bool = False
+    options: tuple[tuple[str, Constant], ...] = ()
+    doc: str = field(default="", compare=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    def option(self, name: str) -> Constant | None:
+        """The value of an option, or None where the IDL does not give it."""
+        return dict(self.options).get(name)
+
+
+@dataclass(frozen=True, slots=True)
+class Struct:
+    """Named fields in order. ``name`` is qualified: ``rst.vision.Image``."""
+
+    name: str
+    fields: tuple[Field, ...]
+    doc: str = field(default="", compare=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Union:
+    """At most one of several fields."""
+
+    name: str
+    cases: tuple[Field, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Scalar = Bool | Int | Float | Enum
+Type = Bool | Int | Float | String | Bytes | Enum | Array | Struct | Union | Optional | Map | Ref
+
+Declaration = Struct | Enum
+
+
+@dataclass(frozen=True, slots=True)
+class Schema:
+    """Declared types by qualified name, and the sources that they were read from.
+
+    A `Ref` names a key of ``types``; the front end has made all names absolute.
+    """
+
+    types: Mapping[str, Declaration]
+    sources: tuple[str, ...] = ()
+
+    def resolve(self, type_: Type) -> Type:
+        """The declared type behind a reference; every other type is itself."""
+        return self.types[type_.name] if isinstance(type_, Ref) else type_
