@@ -1,0 +1,422 @@
+r"""The kernel: one small typed function from a message to a holder, or back. This page is its grammar and its meaning.
+
+    Kernel = name, direction, strides of the lanes, Body+, Site*
+    Body   = Stmt*                                        an attempt; the first that succeeds is the result
+    Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
+           | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
+           | Copy(target, source, size) | Fill(target, size, byte)
+           | For(variable, count, Stmt*) | While(condition, Stmt*, invariant, measure) | If(condition, Stmt*, Stmt*)
+           | Switch(value, {int: Stmt*}, Stmt*) | Return(position)
+    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Unary | Binary | Compare | Fits | Convert | Select
+           | IsText(address, size)
+    Place  = lane, row, offset                            a typed field of a row of a lane
+    Address = Wire(at) | Place
+
+**Memory.** A kernel sees the message (bytes `begin` to `end` of a buffer, by int64 offset from the buffer's start) and the lanes of one holder,
+each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be addressed, nothing is allocated.
+Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte order that the access names, and no alignment.
+
+**Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <= end), and the row
+of lane 0 that stands for the message (0 <= row). To encode, `begin` is where to write and `end` the end of the space.
+
+**Locals.** Every name is bound once in a kernel's text, by Let (immutable), Var (changed by Assign) or For. A local is visible until the end of the
+block that binds it.
+
+**Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the width: these are
+obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an i64 operation stays in range.
+`div` and `rem` truncate toward zero. Float arithmetic is IEEE 754, round to nearest. `and or xor` of integers are bitwise, of bools logical and
+strict. Convert between integers keeps the low bits; from float to integer it truncates and saturates (NaN gives 0); everything else rounds to nearest.
+
+**Failing.** Require, Expect and Reserve are the only statements that can fail. A failing Require or Expect ends the body: the next body starts
+afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that failure, among those of all bodies, whose
+offset is greatest (the earliest of equals), and leaves its offset and indices in the holder's state. A failing Reserve returns -1 at once, having left lane
+and missing rows there: the runtime grows the lane and calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Scalar = Literal["bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"]
+Order = Literal["<", ">"]
+Direction = Literal["decode", "encode", "size"]
+Arithmetic = Literal["add", "sub", "mul", "div", "rem", "and", "or", "xor", "shl", "shr", "min", "max"]
+Comparison = Literal["eq", "ne", "lt", "le", "gt", "ge"]
+Function = Literal["neg", "not", "abs", "sqrt", "floor", "ceil", "trunc", "rint"]
+
+WIDTH: dict[str, int] = {
+    "bool": 1,
+    "i8": 1,
+    "u8": 1,
+    "i16": 2,
+    "u16": 2,
+    "i32": 4,
+    "u32": 4,
+    "i64": 8,
+    "u64": 8,
+    "f32": 4,
+    "f64": 8,
+}
+"""Bytes of a scalar, on the wire and in a lane."""
+
+GROW = -1
+"""What a kernel returns when a lane is too small."""
+
+# --- expressions -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    type: Scalar
+    value: int | float | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    type: Scalar
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """The scalar at byte ``at`` of the message."""
+
+    type: Scalar
+    at: Expr
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """The field at byte ``offset`` of row ``row`` of a lane."""
+
+    lane: int
+    row: Expr
+    offset: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Get:
+    """The scalar at a place of the holder."""
+
+    type: Scalar
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Used:
+    """How many rows of a lane are in use (i64)."""
+
+    lane: int
+
+
+@dataclass(frozen=True, slots=True)
+class Capacity:
+    """How many rows a lane has room for (i64)."""
+
+    lane: int
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    function: Function
+    operand: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Both operands have the type of the result."""
+
+    op: Arithmetic
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    op: Comparison
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Fits:
+    """Whether ``left op right`` of two i64 is an i64."""
+
+    op: Literal["add", "sub", "mul"]
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Convert:
+    type: Scalar
+    operand: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Select:
+    """Both values are computed."""
+
+    condition: Expr
+    then: Expr
+    otherwise: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """Byte ``at`` of the message."""
+
+    at: Expr
+
+
+Address = Wire | Place
+
+
+@dataclass(frozen=True, slots=True)
+class IsText:
+    """Whether ``size`` bytes are valid UTF-8 (Unicode 15, table 3-7)."""
+
+    address: Address
+    size: Expr
+
+
+Expr = Const | Local | Load | Get | Used | Capacity | Unary | Binary | Compare | Fits | Convert | Select | IsText
+
+# --- statements --------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """What a failing statement reports: its site, the byte offset, and the values of the enclosing indices in the site's path."""
+
+    site: int
+    at: Expr
+    indices: tuple[Expr, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Require:
+    """``size >= 0`` bytes of the message lie at ``at >= 0``, before `end`."""
+
+    at: Expr
+    size: Expr
+    failure: Failure
+
+
+@dataclass(frozen=True, slots=True)
+class Expect:
+    condition: Expr
+    failure: Failure
+
+
+@dataclass(frozen=True, slots=True)
+class Let:
+    name: str
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Var:
+    name: str
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    name: str
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """Write a scalar to byte ``at`` of the message."""
+
+    at: Expr
+    value: Expr
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class SetField:
+    place: Place
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Reserve:
+    """``count >= 0`` more rows fit in the lane. Changes nothing."""
+
+    lane: int
+    count: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Advance:
+    """``count >= 0`` rows, reserved before, are now in use."""
+
+    lane: int
+    count: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Copy:
+    """``size >= 0`` bytes between the message and a lane, which never overlap, or between two parts of a lane that do not."""
+
+    target: Address
+    source: Address
+    size: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Fill:
+    """``size >= 0`` bytes of one value."""
+
+    target: Address
+    size: Expr
+    byte: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """``variable`` from 0 to ``count`` (exclusive; a count below 1 runs nothing)."""
+
+    variable: str
+    count: Expr
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """``invariant`` holds before and after each round; ``measure`` grows in each round, and ``condition`` bounds it from above."""
+
+    condition: Expr
+    body: Block
+    invariant: tuple[Expr, ...]
+    measure: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    condition: Expr
+    then: Block
+    otherwise: Block = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """Distinct integer cases of an integer."""
+
+    value: Expr
+    cases: tuple[tuple[int, Block], ...]
+    default: Block
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    position: Expr
+
+
+Stmt = Require | Expect | Let | Var | Assign | Store | SetField | Reserve | Advance | Copy | Fill | For | While | If | Switch | Return
+Block = tuple[Stmt, ...]
+
+# --- the whole ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A stretch of a merged `Require`: bytes ``offset`` to ``offset + size`` after its `at` belong to ``path``.
+
+    With a ``step`` the stretch stands for one element of a loop, again every ``step`` bytes, and the last ``{}`` of the path is the element's index.
+    """
+
+    offset: int
+    size: int
+    path: str
+    step: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """One place where a message can fail: what the static table turns ``-(1 + number)`` into.
+
+    ``path`` has a ``{}`` for each index. ``line`` is the rule of the mapping (``file:line:column``) where one is to blame.
+    """
+
+    kind: str
+    path: str
+    detail: str
+    line: str = ""
+    parts: tuple[Part, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Kernel:
+    """``sites[0]`` stands for a lane that must grow, so that real sites count from 1."""
+
+    name: str
+    direction: Direction
+    strides: tuple[int, ...]
+    bodies: tuple[Block, ...]
+    sites: tuple[Site, ...]
+
+
+# --- small constructors ------------------------------------------------------------------------------------------------
+
+BEGIN, END, ROW = Local("i64", "begin"), Local("i64", "end"), Local("i64", "row")
+
+
+def index(value: int) -> Const:
+    """An int64 constant."""
+    return Const("i64", value)
+
+
+def add(left: Expr, right: Expr | int) -> Expr:
+    """``left + right`` in i64, with constants folded to the right: the normal form of a position."""
+    if isinstance(right, Const) and right.type == "i64":
+        right = int(right.value)
+    if not isinstance(right, int):
+        return right if left == index(0) else Binary("add", left, right)
+    match left:
+        case Const("i64", value):
+            return index(int(value) + right)
+        case Binary("add", base, Const("i64", value)):
+            total = int(value) + right
+            return Binary("add", base, index(total)) if total else base
+        case _:
+            return Binary("add", left, index(right)) if right else left
+
+
+def mul(left: Expr, right: Expr | int) -> Expr:
+    """``left * right`` in i64, with constants folded."""
+    if isinstance(right, int):
+        right = index(right)
+    match left, right:
+        case Const("i64", a), Const("i64", b):
+            return index(int(a) * int(b))
+        case _, Const("i64", 1):
+            return left
+        case Const("i64", 1), _:
+            return right
+        case Const(), _:
+            return Binary("mul", right, left)
+        case _:
+            return Binary("mul", left, right)
+
+
+def type_of(expr: Expr) -> Scalar:
+    """The type of an expression."""
+    match expr:
+        case Const(type_, _) | Local(type_, _) | Load(type_, _, _) | Get(type_, _) | Convert(type_, _):
+            return type_
+        case Used() | Capacity():
+            return "i64"
+        case Unary(_, operand):
+            return type_of(operand)
+        case Binary(_, left, _):
+            return type_of(left)
+        case Compare() | Fits() | IsText():
+            return "bool"
+        case Select(_, then, _):
+            return type_of(then)

@@ -1,0 +1,24 @@
+"""The words through which a kernel and the runtime talk: one int64 array a holder.
+
+    0 valid    1 error offset    2 error site    3 lane to grow    4 missing rows    5 … 8 indices of the error's path
+    16 + 4 k   address, capacity, used length, stride of lane k
+
+Addresses and lengths are written by the runtime; a kernel writes words 0 to 8 and the used lengths.
+"""
+
+from __future__ import annotations
+
+VALID, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, ERROR_INDICES = 0, 1, 2, 3, 4, 5
+MAX_INDICES = 4
+LANES, LANE_WORDS = 16, 4
+ADDRESS, CAPACITY, USED, STRIDE = 0, 1, 2, 3
+
+
+def lane_word(lane: int, word: int) -> int:
+    """Index of one word of a lane."""
+    return LANES + LANE_WORDS * lane + word
+
+
+def state_words(lanes: int) -> int:
+    """Length of the state of a holder with that many lanes."""
+    return LANES + LANE_WORDS * lanes

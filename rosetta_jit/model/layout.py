@@ -1,0 +1,292 @@
+"""Where the values of a type lie in a holder: lanes of rows. A pure function of the type.
+
+    Layout = Lane+                          lane 0 has one row a message
+    Lane   = name, stride, Slot             an array of elements
+    Slot   = Number | Span | Row | Variant  at an offset in its row
+    Row    = presence words, Member*        a struct, in place; Member = name, Slot, presence bit
+    Variant = case, Member*                 a union: 0 for none, else 1 + the index of the case
+
+Everything of variable length (string, bytes, array, map) is a `Span`: the start and the count, two int64, of its elements in a lane of their own. There is a lane for
+each such field *path*, so that the elements of one array lie together however the wire orders fields. A recursive struct has one lane for
+all depths; a field that refers to it is a Span of at most one row there. All rows of such a lane end with hidden words (`LINK_WORDS`) in
+which kernels keep their work list instead of a stack.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Enum,
+    Float,
+    Int,
+    Map,
+    Optional,
+    Ref,
+    Schema,
+    String,
+    Struct,
+    Union,
+)
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Field, Type
+
+SPAN_BYTES = 16
+LINK_WORDS = 6
+MAX_ROW_BYTES = 1 << 20
+"""A struct whose row would be larger is refused: no schema of people comes near it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A scalar; ``scalar`` is a name of `kernel.ir.Scalar`."""
+
+    offset: int
+    scalar: str
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Start and count of elements of a lane."""
+
+    offset: int
+    lane: int
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A field of a row; ``presence`` is the number of its bit in the row's presence words, None where it is always there."""
+
+    name: str
+    slot: Slot
+    presence: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A struct. Its presence words (64 bits each) lie at its start. Offsets of members count from the start of the lane's row."""
+
+    offset: int
+    struct: str
+    presence_words: int
+    members: tuple[Member, ...]
+
+    def member(self, name: str) -> Member:
+        """The member of that name."""
+        return next(member for member in self.members if member.name == name)
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A union: its case (i64) at the offset, then room for every case."""
+
+    offset: int
+    members: tuple[Member, ...]
+
+
+Slot = Number | Span | Row | Variant
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """Elements of one array, or bytes of one string field. ``links`` is the offset of a recursive row's hidden words."""
+
+    name: str
+    stride: int
+    element: Slot
+    links: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The lanes of a type; ``recursive`` gives the lane of each recursive struct by its name."""
+
+    lanes: tuple[Lane, ...]
+    recursive: tuple[tuple[str, int], ...] = ()
+
+    @property
+    def root(self) -> Slot:
+        """The slot of lane 0: the message."""
+        return self.lanes[0].element
+
+
+def layout(type_: Type, schema: Schema) -> Layout:
+    """The layout of a type.
+
+    Raises
+    ------
+    ValueError
+        If a row would be larger than `MAX_ROW_BYTES`.
+    """
+    building = _Building(schema, recursive_structs(type_, schema))
+    building.lane(type_, "")
+    return Layout(tuple(lane for lane in building.lanes if lane is not None), tuple(building.of_struct.items()))
+
+
+def scalar_of(type_: Bool | Int | Float | Enum) -> str:
+    """The scalar that holds a value of the type."""
+    match type_:
+        case Bool():
+            return "bool"
+        case Int(bits, signed, _):
+            return f"{'i' if signed else 'u'}{bits}"
+        case Float(bits, _):
+            return f"f{bits}"
+        case Enum():
+            return "i32"
+
+
+def recursive_structs(type_: Type, schema: Schema) -> frozenset[str]:
+    """Names of the structs that contain themselves, through whatever fields."""
+    reached: dict[str, frozenset[str]] = {}
+    pending = sorted(_references(type_, schema))
+    while pending:
+        name = pending.pop()
+        if name not in reached:
+            reached[name] = _references(schema.types[name], schema)
+            pending += sorted(reached[name])
+    return frozenset(name for name in reached if name in _closure(reached[name], reached))
+
+
+def _closure(start: frozenset[str], edges: dict[str, frozenset[str]]) -> set[str]:
+    seen: set[str] = set()
+    pending = list(start)
+    while pending:
+        name = pending.pop()
+        if name not in seen:
+            seen.add(name)
+            pending += edges[name]
+    return seen
+
+
+def _references(type_: Type, schema: Schema) -> frozenset[str]:
+    """Names of the structs that a type refers to directly; the fields of an unnamed reference count as its own."""
+    match type_:
+        case Ref(name):
+            return frozenset([name]) if isinstance(schema.types[name], Struct) else frozenset()
+        case Array(element, _) | Optional(element):
+            return _references(element, schema)
+        case Map(key, value):
+            return _references(key, schema) | _references(value, schema)
+        case Struct(_, fields) | Union(_, fields):
+            return frozenset().union(*(_references(each.type, schema) for each in fields))
+        case Bool() | Int() | Float() | String() | Bytes() | Enum():
+            return frozenset()
+        case _:
+            assert_never(type_)
+
+
+@dataclass(slots=True)
+class _Building:
+    """Lanes in the order in which their fields come; None while a lane's element is being laid out."""
+
+    schema: Schema
+    recursive: frozenset[str]
+    lanes: list[Lane | None] = field(default_factory=list[Lane | None])
+    of_struct: dict[str, int] = field(default_factory=dict[str, int])
+
+    def lane(self, element: Type, name: str) -> int:
+        """The lane for elements of a type: a new one, or the one of a recursive struct."""
+        struct = element.name if isinstance(element, Ref | Struct) and element.name in self.recursive else None
+        if struct is not None and struct in self.of_struct:
+            return self.of_struct[struct]
+        index = len(self.lanes)
+        self.lanes.append(None)
+        if struct is not None:
+            self.of_struct[struct] = index
+        slot, size = self.element(element, name)
+        links = None
+        if struct is not None:
+            links = _align(size, 8)
+            size = links + 8 * LINK_WORDS
+        stride = _align(size, _alignment(slot))
+        if stride > MAX_ROW_BYTES:
+            raise ValueError(f"a row of {name or 'the message'} would take {stride} bytes")
+        self.lanes[index] = Lane(name, max(stride, 1), slot, links)
+        return index
+
+    def element(self, type_: Type, name: str) -> tuple[Slot, int]:
+        """The slot of a lane's element, and its size."""
+        resolved = self.schema.resolve(type_)
+        if isinstance(resolved, Struct):
+            return self.row(resolved, 0, name)
+        return self.slot(resolved, 0, name)
+
+    def slot(self, type_: Type, offset: int, name: str) -> tuple[Slot, int]:
+        """The slot of a type at the next suitable offset, and the offset behind it."""
+        match type_:
+            case Bool() | Int() | Float() | Enum():
+                scalar = scalar_of(type_)
+                at = _align(offset, _SIZE[scalar])
+                return Number(at, scalar), at + _SIZE[scalar]
+            case String() | Bytes():
+                return self.span(Int(8, signed=False), offset, name)
+            case Array(element, _):
+                return self.span(element, offset, name)
+            case Map(key, value):
+                return self.span(map_entry(key, value), offset, name)
+            case Struct():
+                return self.row(type_, offset, name)
+            case Union(_, cases):
+                return self.variant(cases, offset, name)
+            case Optional(value):
+                return self.slot(value, offset, name)
+            case Ref(target):
+                if target in self.recursive:
+                    return self.span(type_, offset, name)
+                return self.slot(self.schema.types[target], offset, name)
+            case _:
+                assert_never(type_)
+
+    def span(self, element: Type, offset: int, name: str) -> tuple[Span, int]:
+        at = _align(offset, 8)
+        return Span(at, self.lane(element, name)), at + SPAN_BYTES
+
+    def row(self, struct: Struct, offset: int, name: str) -> tuple[Row, int]:
+        bits = sum(isinstance(each.type, Optional) for each in struct.fields)
+        words = (bits + 63) // 64
+        start = _align(offset, 8) if struct.fields else offset
+        behind = start + 8 * words
+        members: list[Member] = []
+        presence = 0
+        for each in struct.fields:
+            slot, behind = self.slot(each.type, behind, _join(name, each.name))
+            members.append(Member(each.name, slot, presence if isinstance(each.type, Optional) else None))
+            presence += isinstance(each.type, Optional)
+        return Row(start, struct.name, words, tuple(members)), behind
+
+    def variant(self, cases: tuple[Field, ...], offset: int, name: str) -> tuple[Variant, int]:
+        start = _align(offset, 8)
+        behind = start + 8
+        members: list[Member] = []
+        for case in cases:
+            slot, behind = self.slot(case.type, behind, _join(name, case.name))
+            members.append(Member(case.name, slot))
+        return Variant(start, tuple(members)), behind
+
+
+def map_entry(key: Type, value: Type) -> Struct:
+    """A map is an array of these."""
+    from rosetta_jit.model.types import Field
+
+    return Struct("", (Field("key", key), Field("value", value)))
+
+
+_SIZE = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i64": 8, "u64": 8, "f32": 4, "f64": 8}
+
+
+def _alignment(slot: Slot) -> int:
+    return _SIZE[slot.scalar] if isinstance(slot, Number) else 8
+
+
+def _align(offset: int, alignment: int) -> int:
+    return -(-offset // alignment) * alignment
+
+
+def _join(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name
