@@ -116,6 +116,8 @@ class Field:
     constant
         The one value that the field can have; the wire must carry it and packing writes it. An expression may read
         fields of the same message.
+    length
+        Number of elements or bytes, computed from other fields; the wire must agree.
     default
         What reading an absent value gives.
     required
@@ -129,6 +131,7 @@ class Field:
     number: int | None = None
     unit: str | None = None
     constant: Expr | None = None
+    length: Expr | None = None
     default: Constant | None = None
     required: bool = False
     options: tuple[tuple[str, Constant], ...] = ()
