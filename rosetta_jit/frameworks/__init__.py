@@ -1,0 +1,1 @@
+"""What each framework knows: its IDL, its encodings, the manners of its holders."""

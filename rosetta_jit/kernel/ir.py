@@ -5,32 +5,38 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
     Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
            | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
            | Copy(target, source, size) | Fill(target, size, byte)
-           | For(variable, count, Stmt*) | While(condition, Stmt*, invariant, measure) | If(condition, Stmt*, Stmt*)
+           | For(variable, count, Stmt*) | While(condition, Stmt*, invariant, measure)
+           | If(condition, Stmt*, Stmt*)
            | Switch(value, {int: Stmt*}, Stmt*) | Return(position)
-    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Unary | Binary | Compare | Fits | Convert | Select
+    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane)
+           | Unary | Binary | Compare | Fits | Convert | Select
            | IsText(address, size)
     Place  = lane, row, offset                            a typed field of a row of a lane
     Address = Wire(at) | Place
 
-**Memory.** A kernel sees the message (bytes `begin` to `end` of a buffer, by int64 offset from the buffer's start) and the lanes of one holder,
-each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be addressed, nothing is allocated.
-Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte order that the access names, and no alignment.
+**Memory.** A kernel sees the message (bytes `begin` to `end` of a buffer, by int64 offset from the buffer's start) and the lanes
+of one holder, each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be
+addressed, nothing is allocated. Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte
+order that the access names, and no alignment.
 
-**Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <= end), and the row
-of lane 0 that stands for the message (0 <= row). To encode, `begin` is where to write and `end` the end of the space.
+**Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <=
+end), and the row of lane 0 that stands for the message (0 <= row). To encode, `begin` is where to write and `end` the end of the
+space.
 
-**Locals.** Every name is bound once in a kernel's text, by Let (immutable), Var (changed by Assign) or For. A local is visible until the end of the
-block that binds it.
+**Locals.** Every name is bound once in a kernel's text, by Let (immutable), Var (changed by Assign) or For. A local is visible
+until the end of the block that binds it.
 
-**Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the width: these are
-obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an i64 operation stays in range.
-`div` and `rem` truncate toward zero. Float arithmetic is IEEE 754, round to nearest. `and or xor` of integers are bitwise, of bools logical and
-strict. Convert between integers keeps the low bits; from float to integer it truncates and saturates (NaN gives 0); everything else rounds to nearest.
+**Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the
+width: these are obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an
+i64 operation stays in range. `div` and `rem` truncate toward zero. Float arithmetic is IEEE 754, round to nearest. `and or xor`
+of integers are bitwise, of bools logical and strict. Convert between integers keeps the low bits; from float to integer it
+truncates and saturates (NaN gives 0); everything else rounds to nearest.
 
-**Failing.** Require, Expect and Reserve are the only statements that can fail. A failing Require or Expect ends the body: the next body starts
-afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that failure, among those of all bodies, whose
-offset is greatest (the earliest of equals), and leaves its offset and indices in the holder's state. A failing Reserve returns -1 at once, having left lane
-and missing rows there: the runtime grows the lane and calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
+**Failing.** Require, Expect and Reserve are the only statements that can fail. A failing Require or Expect ends the body: the
+next body starts afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that
+failure, among those of all bodies, whose offset is greatest (the earliest of equals), and leaves its offset and indices in the
+holder's state. A failing Reserve returns -1 at once, having left lane and missing rows there: the runtime grows the lane and
+calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
 """
 
 from __future__ import annotations

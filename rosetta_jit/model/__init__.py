@@ -1,0 +1,1 @@
+"""The meta-model: types, expressions, mappings, and where values lie in a holder."""

@@ -1,0 +1,1 @@
+"""What runs: holders, programs, the entry from CPython, the cache of compiled kernels."""

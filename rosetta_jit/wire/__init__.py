@@ -1,0 +1,1 @@
+"""The wire: codecs, which describe bytes without a direction."""

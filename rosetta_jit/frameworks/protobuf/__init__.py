@@ -1,0 +1,1 @@
+"""Protocol Buffers: .proto, the wire encoding, and the manners of its messages."""

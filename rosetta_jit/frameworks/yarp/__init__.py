@@ -1,0 +1,1 @@
+"""YARP: bottles in three dialects, their schemas, and their text form."""
