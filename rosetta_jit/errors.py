@@ -99,3 +99,7 @@ class DecodeError(MessageError):
 
 class EncodeError(MessageError):
     """A holder whose values the wire cannot carry."""
+
+
+class CacheWarning(UserWarning):
+    """The kernel cache is damaged or cannot be used; everything works, but compiles again."""

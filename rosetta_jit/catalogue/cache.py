@@ -1,0 +1,27 @@
+"""What the kernel cache warns of. None of it is an error: the kernel is compiled again."""
+
+from __future__ import annotations
+
+from rosetta_jit.diagnostics import Diagnostic
+
+
+def unusable_folder(folder: str, reason: str) -> Diagnostic:
+    """The folder cannot be read or written, or somebody else could have written to it."""
+    return Diagnostic(
+        "warning",
+        "cache-folder",
+        f"the cache folder {folder} is not used: {reason}",
+        notes=("compiled kernels are kept in memory and are lost when the process ends",),
+        help="give it to its user alone (chmod 700), set ROSETTA_JIT_CACHE_DIR to another folder, or set ROSETTA_JIT_CACHE=off",
+    )
+
+
+def damaged_file(name: str, reason: str) -> Diagnostic:
+    """A file that is cut, altered, or not what its name says."""
+    return Diagnostic(
+        "warning",
+        "cache-damaged",
+        f"the cache file {name} is not used: {reason}",
+        notes=("its kernel is compiled again, and the file is replaced",),
+        help="`rosetta-jit cache verify` lists all damaged files, `rosetta-jit cache clear` removes them",
+    )

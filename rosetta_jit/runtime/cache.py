@@ -1,0 +1,207 @@
+"""The kernel cache: what was compiled once is loaded by every later process, which then parses and compiles nothing.
+
+Two kinds of file. An *entry* holds the object code of a program; its name is what the code depends on (`cache_names.entry_name`). A
+*manifest* leads to it: its name is what was asked for (`cache_names.request_name`), its content the digests of all files that were read for
+the answer. A warm process digests those files again and never looks into them.
+
+Whatever is wrong with a file or a folder costs a recompile and one warning, never an error.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from dataclasses import dataclass
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.errors import CacheWarning
+from rosetta_jit.runtime.sealed import DamagedError, Entry, seal, unseal
+from rosetta_jit.runtime.stores import FolderStore, MemoryStore, Store, Stored, UntrustedError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+
+DEFAULT_MAX_BYTES = 512 * 1024 * 1024
+ENTRY, MANIFEST = ".kernel", ".manifest"
+
+
+@dataclass(frozen=True, slots=True)
+class CacheInfo:
+    """What `rosetta-jit cache info` shows. ``folder`` is None when the cache keeps nothing on disk, ``problem`` says why it cannot."""
+
+    folder: Path | None
+    problem: str
+    entries: int
+    manifests: int
+    size_bytes: int
+    max_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class DamagedFile:
+    """One finding of `Cache.verify`."""
+
+    name: str
+    reason: str
+
+
+class Cache:
+    """Compiled programs by name, in a folder or, where that is not possible, in memory.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Created when first written to, with mode 0700. It must belong to the user, must not be a symbolic link, and nobody else may be
+        able to write to it. None keeps everything in memory.
+    max_bytes : int
+        When exceeded, the files that were not used for the longest time are removed. 0 keeps nothing.
+    """
+
+    def __init__(self, folder: Path | None, *, max_bytes: int = DEFAULT_MAX_BYTES) -> None:
+        self.folder = folder
+        self.max_bytes = max_bytes
+        self._memory = MemoryStore()
+        self._store: Store = self._memory if folder is None else FolderStore(folder)
+        self._warned: set[str] = set()
+
+    @staticmethod
+    def default() -> Cache:
+        """The user's cache, one object a process. ROSETTA_JIT_CACHE_DIR names another folder, ROSETTA_JIT_CACHE=off keeps nothing."""
+        return _default(os.environ.get("ROSETTA_JIT_CACHE_DIR", ""), os.environ.get("ROSETTA_JIT_CACHE", ""))
+
+    def get(self, name: str) -> Entry | None:
+        """The program of that name, or None."""
+        return self._read(name + ENTRY)
+
+    def put(self, name: str, header: Mapping[str, object], image: bytes) -> None:
+        """Keep a program; ``header`` holds what JSON holds."""
+        self._write(name + ENTRY, header, image)
+
+    def get_manifest(self, request: str) -> str | None:
+        """The name of the entry that answers a request, if each file is as it was when the answer was made."""
+        manifest = self._read(request + MANIFEST)
+        if manifest is None:
+            return None
+        files = cast("dict[str, str | None]", manifest.header["files"])
+        unchanged = all(digest_file(path) == digest for path, digest in files.items())
+        return cast("str", manifest.header["entry"]) if unchanged else None
+
+    def put_manifest(self, request: str, files: Mapping[str, str | None], entry: str) -> None:
+        """Keep the answer to a request.
+
+        ``files`` gives the SHA-256 of each file as it was read, and None for each path where a file would have been preferred but none was.
+        """
+        self._write(request + MANIFEST, {"entry": entry, "files": dict(files)}, b"")
+
+    def info(self) -> CacheInfo:
+        problem = ""
+        try:
+            stored = self._store.stored()
+        except (OSError, UntrustedError) as error:
+            stored, problem = self._memory.stored(), str(error)
+        return CacheInfo(
+            folder=self.folder,
+            problem=problem,
+            entries=sum(file.name.endswith(ENTRY) for file in stored),
+            manifests=sum(file.name.endswith(MANIFEST) for file in stored),
+            size_bytes=sum(file.size_bytes for file in stored),
+            max_bytes=self.max_bytes,
+        )
+
+    def verify(self) -> tuple[DamagedFile, ...]:
+        """Read everything; the files that would not be used, and why."""
+        found = [(file.name, _damage(self._store, file.name)) for file in self._own_files()]
+        return tuple(DamagedFile(name, reason) for name, reason in sorted(found) if reason)
+
+    def clear(self) -> int:
+        """Remove all entries and manifests, and nothing else; how many there were."""
+        files = self._own_files()
+        for file in files:
+            self._store.remove(file.name)
+        return len(files)
+
+    def _read(self, name: str) -> Entry | None:
+        try:
+            data = self._store.read(name)
+        except (OSError, UntrustedError) as error:
+            self._warn_of_folder(error)
+            data = None
+        if data is None:
+            data = self._memory.read(name)
+        try:
+            return None if data is None else unseal(name, data)
+        except DamagedError as error:
+            from rosetta_jit.catalogue.cache import damaged_file
+
+            self._warn(name, damaged_file(name, str(error)))
+            return None
+
+    def _write(self, name: str, header: Mapping[str, object], image: bytes) -> None:
+        data = seal(name, header, image)
+        try:
+            self._store.write(name, data)
+            self._evict(self._store)
+        except (OSError, UntrustedError) as error:
+            self._warn_of_folder(error)
+            self._memory.write(name, data)
+            self._evict(self._memory)
+
+    def _own_files(self) -> list[Stored]:
+        return [file for file in self._store.stored() if file.name.endswith((ENTRY, MANIFEST))]
+
+    def _evict(self, store: Store) -> None:
+        files = sorted(store.stored(), key=lambda file: file.used_ns)
+        excess = sum(file.size_bytes for file in files) - self.max_bytes
+        for file in files:
+            if excess <= 0:
+                return
+            if file.name.endswith((ENTRY, MANIFEST)):
+                store.remove(file.name)
+                excess -= file.size_bytes
+
+    def _warn_of_folder(self, error: Exception) -> None:
+        from rosetta_jit.catalogue.cache import unusable_folder
+
+        self._warn("folder", unusable_folder(str(self.folder), str(error)))
+
+    def _warn(self, subject: str, diagnostic: Diagnostic) -> None:
+        if subject in self._warned:
+            return
+        from rosetta_jit.diagnostics import render
+
+        self._warned.add(subject)
+        warnings.warn(render(diagnostic), CacheWarning, stacklevel=5)
+
+
+@lru_cache(maxsize=4)
+def _default(folder: str, switch: str) -> Cache:
+    if switch.lower() in {"off", "0", "no", "false"}:
+        return Cache(None, max_bytes=0)
+    if folder:
+        return Cache(Path(folder))
+    from platformdirs import user_cache_path
+
+    return Cache(user_cache_path("rosetta_jit", appauthor=False))
+
+
+def digest_file(path: str) -> str | None:
+    """SHA-256 of a file's content, or None where there is no file to read."""
+    try:
+        return sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
+def _damage(store: Store, name: str) -> str:
+    try:
+        data = store.read(name)
+        if data is not None:
+            unseal(name, data)
+    except (DamagedError, UntrustedError, OSError) as error:
+        return str(error)
+    return ""
