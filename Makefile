@@ -1,0 +1,52 @@
+# `make demo` and `make test` do all the set-up by themselves, in .venv.
+
+PYTHON ?= $(firstword $(shell command -v python3.11 python3))
+VENV := .venv
+BIN := $(VENV)/bin
+OUTPUT ?= demo-output
+NATIVE := build/native/libpeers.so
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test check campaign bench bench-check clean
+
+help: ## show this list
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
+
+demo: $(VENV)/.demo ## play the bundled recordings through compiled kernels; writes pictures to $(OUTPUT)
+	$(BIN)/rosetta-jit demo --output $(OUTPUT)
+
+test: check ## lint, check types, run all tests but the campaigns
+	$(BIN)/python -m pytest -m "not campaign" $(ARGS)
+
+check: $(VENV)/.test ## lint and check types alone
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/basedpyright --pythonpath $(BIN)/python
+
+campaign: $(VENV)/.test ## the long runs of the test programme (hours)
+	$(BIN)/python -m pytest -m campaign $(ARGS)
+
+bench: $(VENV)/.test $(NATIVE) ## measure, print the table of targets and ratios; missed targets are marked
+	$(BIN)/python -m pytest bench --bench-report $(ARGS)
+
+bench-check: $(VENV)/.test $(NATIVE) ## the same, failing where a target is missed
+	$(BIN)/python -m pytest bench $(ARGS)
+
+clean: ## remove all that these commands made
+	rm -rf $(VENV) build dist $(OUTPUT) .ruff_cache .hypothesis .benchmarks
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# A stamp a set of requirements: a second run touches no network.
+$(VENV)/.demo: EXTRA := demo
+$(VENV)/.test: EXTRA := test
+$(VENV)/.demo $(VENV)/.test: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(EXTRA)]'
+	touch $@
+
+$(BIN)/python:
+	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or name one: make PYTHON=..." >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is older than Python 3.11" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(NATIVE): bench/native/Makefile $(wildcard bench/native/*.cpp bench/native/*.hpp bench/native/CMakeLists.txt)
+	$(MAKE) --directory bench/native OUTPUT=$(abspath $@)
