@@ -32,6 +32,17 @@ i64 operation stays in range. `div` and `rem` truncate toward zero. Float arithm
 of integers are bitwise, of bools logical and strict. Convert between integers keeps the low bits; from float to integer it
 truncates and saturates (NaN gives 0); everything else rounds to nearest.
 
+`shr` is arithmetic for signed, logical for unsigned integers; `shl` drops high bits. `neg` and `abs` of integers must not wrap.
+`rem` of floats is C's fmod; `min(a, b)` of floats is `a` where `a < b`, else `b` (`max` with `>`). Comparisons with NaN are
+false, `ne` true. A bool in memory is true where its byte is not 0, and is written as 0 or 1; Convert to bool asks `!= 0`.
+
+**Given**, without proof: `begin` and `end` are at most 2**60, capacities at most 2**48, 0 <= Used <= Capacity. **Memory is read
+once**: to the verifier each Load and Get is a new value, even of the same place, so that nothing proven depends on memory that
+others may change. **Places** name a field of one row: 0 <= row < Capacity, 0 <= offset, offset + width <= stride, offset and
+stride multiples of the width. Copy, Fill and IsText may run on from a place into the rows after it, up to Capacity. Reserve and
+Advance take a count that is proven >= 0. A Failure is evaluated on the failing path only, under the same obligations.
+Expressions nest at most 100 deep, blocks 100.
+
 **Failing.** Require, Expect and Reserve are the only statements that can fail. A failing Require or Expect ends the body: the
 next body starts afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that
 failure, among those of all bodies, whose offset is greatest (the earliest of equals), and leaves its offset and indices in the
@@ -334,7 +345,8 @@ Block = tuple[Stmt, ...]
 class Part:
     """A stretch of a merged `Require`: bytes ``offset`` to ``offset + size`` after its `at` belong to ``path``.
 
-    With a ``step`` the stretch stands for one element of a loop, again every ``step`` bytes, and the last ``{}`` of the path is the element's index.
+    With a ``step`` the stretch stands for one element of a loop, again every ``step`` bytes, and the last ``{}`` of the path is
+    the element's index.
     """
 
     offset: int

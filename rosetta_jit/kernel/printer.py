@@ -1,0 +1,224 @@
+"""Kernel → text: one statement a line, the same text for the same kernel, different texts for different kernels.
+
+It is what a person reads as ``stage("kernel")`` and a part of the cache's key, so that nothing of the kernel may be left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Assign,
+    Binary,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Expect,
+    Fill,
+    Fits,
+    For,
+    Get,
+    If,
+    IsText,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    Select,
+    SetField,
+    Store,
+    Switch,
+    Unary,
+    Used,
+    Var,
+    While,
+    Wire,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Part, Site, Stmt
+
+SYMBOL = {
+    "add": "+",
+    "sub": "-",
+    "mul": "*",
+    "div": "/",
+    "rem": "%",
+    "and": "&",
+    "or": "|",
+    "xor": "^",
+    "shl": "<<",
+    "shr": ">>",
+    "min": "min",
+    "max": "max",
+    "eq": "==",
+    "ne": "!=",
+    "lt": "<",
+    "le": "<=",
+    "gt": ">",
+    "ge": ">=",
+}
+
+
+def to_text(kernel: Kernel) -> str:
+    """Text of a kernel.
+
+    Parameters
+    ----------
+    kernel
+        Any kernel, verified or not.
+
+    Returns
+    -------
+    str
+        Lines that end in a newline: the head, each body, the sites.
+    """
+    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}"]
+    for number, body in enumerate(kernel.bodies):
+        lines.append(f"body {number}:")
+        lines.extend(_block(body, 1))
+    lines.append("sites:")
+    for number, site in enumerate(kernel.sites):
+        lines.extend(_site(number, site))
+    return "\n".join(lines) + "\n"
+
+
+def statement_text(stmt: Stmt) -> str:
+    """First line of a statement."""
+    return next(_statement(stmt, 0))
+
+
+def expression_text(expr: Expr) -> str:
+    """Text of an expression, on one line."""
+    match expr:
+        case Const("i64", value):
+            return str(value)
+        case Const(type_, value):
+            return f"{value!r}:{type_}"
+        case Local(type_, name):
+            return _name(name) if type_ == "i64" else f"{_name(name)}:{type_}"
+        case Load(type_, at, order):
+            return f"load {type_}{order} [{expression_text(at)}]"
+        case Get(type_, place):
+            return f"get {type_} {_address(place)}"
+        case Used(lane):
+            return f"used({lane})"
+        case Capacity(lane):
+            return f"capacity({lane})"
+        case Unary(function, operand):
+            return f"{function}({expression_text(operand)})"
+        case Binary(op, left, right) | Compare(op, left, right):
+            return f"({expression_text(left)} {SYMBOL[op]} {expression_text(right)})"
+        case Fits(op, left, right):
+            return f"fits({expression_text(left)} {SYMBOL[op]} {expression_text(right)})"
+        case Convert(type_, operand):
+            return f"{type_}({expression_text(operand)})"
+        case Select(condition, then, otherwise):
+            return f"({expression_text(then)} if {expression_text(condition)} else {expression_text(otherwise)})"
+        case IsText(address, size):
+            return f"is_text({_address(address)}, {expression_text(size)})"
+        case _:
+            assert_never(expr)
+
+
+def _statement(stmt: Stmt, depth: int) -> Iterator[str]:
+    match stmt:
+        case Require(at, size, failure):
+            yield f"require [{expression_text(at)}] {expression_text(size)}{_failure(failure)}"
+        case Expect(condition, failure):
+            yield f"expect {expression_text(condition)}{_failure(failure)}"
+        case Let(name, value):
+            yield f"let {_name(name)} = {expression_text(value)}"
+        case Var(name, value):
+            yield f"var {_name(name)} = {expression_text(value)}"
+        case Assign(name, value):
+            yield f"{_name(name)} = {expression_text(value)}"
+        case Store(at, value, order):
+            yield f"store{order} [{expression_text(at)}] = {expression_text(value)}"
+        case SetField(place, value):
+            yield f"set {_address(place)} = {expression_text(value)}"
+        case Reserve(lane, count):
+            yield f"reserve {lane}, {expression_text(count)}"
+        case Advance(lane, count):
+            yield f"advance {lane}, {expression_text(count)}"
+        case Copy(target, source, size):
+            yield f"copy {_address(target)} = {_address(source)}, {expression_text(size)}"
+        case Fill(target, size, byte):
+            yield f"fill {_address(target)}, {expression_text(size)}, {byte}"
+        case Return(position):
+            yield f"return {expression_text(position)}"
+        case For() | While() | If() | Switch():
+            yield from _nested(stmt, depth)
+        case _:
+            assert_never(stmt)
+
+
+def _nested(stmt: For | While | If | Switch, depth: int) -> Iterator[str]:
+    indent = "  " * depth
+    match stmt:
+        case For(variable, count, body):
+            yield f"for {_name(variable)} < {expression_text(count)}:"
+            yield from _block(body, depth + 1)
+        case While(condition, body, invariant, measure):
+            kept = "; ".join(map(expression_text, invariant))
+            yield f"while {expression_text(condition)} (keeps {kept}) (grows {expression_text(measure)}):"
+            yield from _block(body, depth + 1)
+        case If(condition, then, otherwise):
+            yield f"if {expression_text(condition)}:"
+            yield from _block(then, depth + 1)
+            if otherwise:
+                yield f"{indent}else:"
+                yield from _block(otherwise, depth + 1)
+        case Switch(value, cases, default):
+            yield f"switch {expression_text(value)}:"
+            for number, block in cases:
+                yield f"{indent}case {number}:"
+                yield from _block(block, depth + 1)
+            yield f"{indent}default:"
+            yield from _block(default, depth + 1)
+
+
+def _block(block: Block, depth: int) -> Iterator[str]:
+    indent = "  " * depth
+    for stmt in block:
+        lines = _statement(stmt, depth)
+        yield indent + next(lines)
+        yield from lines
+
+
+def _failure(failure: Failure) -> str:
+    indices = "".join(f"[{expression_text(i)}]" for i in failure.indices)
+    return f" else {failure.site} @ {expression_text(failure.at)}{indices}"
+
+
+def _address(address: Address) -> str:
+    match address:
+        case Place(lane, row, offset):
+            return f"lane {lane}[{expression_text(row)}].{offset}"
+        case Wire(at):
+            return f"[{expression_text(at)}]"
+        case _:
+            assert_never(address)
+
+
+def _site(number: int, site: Site) -> Iterator[str]:
+    yield f"  {number}: {site.kind!r} {site.path!r} {site.detail!r} {site.line!r}"
+    yield from (f"    {_part(part)}" for part in site.parts)
+
+
+def _part(part: Part) -> str:
+    step = f" every {part.step}" if part.step else ""
+    return f"+{part.offset}, {part.size}{step}: {part.path!r}"
+
+
+def _name(name: str) -> str:
+    """A schema's names may hold anything; quoted they stay on their line and apart from the rest."""
+    return name if name.isidentifier() else repr(name)
