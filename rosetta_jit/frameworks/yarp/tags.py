@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,10 +84,6 @@ def list_units(dialect: Dialect) -> dict[int, str | None]:
     return {LIST: None, **{LIST | code: spelling for spelling, code in dialect.tags.items()}}
 
 
-def vocab(text: bytes) -> int:
-    """The number of a vocab: its bytes little-endian (os/Vocab32.h), as the signed integer that the wire carries.
-
-    Up to four bytes make a vocab32, up to eight a vocab64.
-    """
-    size = 4 if len(text) <= 4 else 8
+def vocab(text: bytes, size: Literal[4, 8] = 4) -> int:
+    """The number of a vocab32 or vocab64: its bytes little-endian (os/Vocab32.h), as the signed integer that the wire carries."""
     return int.from_bytes(text.ljust(size, b"\0"), "little", signed=True)

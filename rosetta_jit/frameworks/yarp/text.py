@@ -206,7 +206,7 @@ def _strtoll(token: bytes) -> int:
 def _parse_vocab(token: bytes, dialect: Dialect) -> Value:
     """YARP 4 makes a vocab64 of what does not fit a vocab32; the others cut it."""
     if "vocab64" in dialect.tags and len(token) > 6:
-        return Value("vocab64", vocab(token[1:-1][:8]))
+        return Value("vocab64", vocab(token[1:-1][:8], 8))
     return Value("vocab32", vocab(token[1:-1][:4]))
 
 

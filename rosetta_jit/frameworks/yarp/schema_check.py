@@ -1,0 +1,164 @@
+"""What holds a bottle schema together: names that exist, bounded nesting and size, constants that can be computed."""
+
+from __future__ import annotations
+
+from graphlib import CycleError, TopologicalSorter
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
+from rosetta_jit.model.expr import Binary, Call, Len, Literal, Member, Name, Path, Unary
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.types import Field, Type
+
+MAX_FIELDS = 1 << 16
+"""Fields of a type with all that it contains; kernels grow with it, and declarations can double it line by line."""
+
+
+def check(structs: Mapping[str, Struct]) -> list[Diagnostic]:
+    """Everything that is wrong between the declarations of a schema."""
+    problems = [
+        catalogue.unknown_type(ref.span, ref.name, structs)
+        for struct in structs.values()
+        for ref in _refs(struct)
+        if ref.name not in structs
+    ]
+    problems = problems or _check_bounds(structs)
+    if problems:
+        return problems
+    return [problem for struct in structs.values() for problem in _check_computed(struct, structs)]
+
+
+def _refs(type_: Type) -> Iterator[Ref]:
+    """Every name that a type uses, with inline structs gone through and declared ones not."""
+    match type_:
+        case Ref():
+            yield type_
+        case Array(element):
+            yield from _refs(element)
+        case Map(_, value):
+            yield from _refs(value)
+        case Optional(value):
+            yield from _refs(value)
+        case Struct(_, fields) | Union(_, fields):
+            for field in fields:
+                yield from _refs(field.type)
+        case Bool() | Int() | Float() | String() | Bytes() | Enum():
+            return
+        case _:
+            assert_never(type_)
+
+
+def _check_bounds(structs: Mapping[str, Struct]) -> list[Diagnostic]:
+    uses = {name: {ref.name for ref in _refs(struct)} for name, struct in structs.items()}
+    try:
+        order = list(TopologicalSorter(uses).static_order())
+    except CycleError as error:
+        names: list[str] = error.args[1]
+        return [catalogue.recursive_type(structs[names[0]].span, reversed(names))]
+    extents: dict[str, tuple[int, int]] = {}
+    for name in order:
+        depth, size = extents[name] = _extent(structs[name], extents)
+        if depth - 1 > MAX_NESTING:
+            return [catalogue.nesting_too_deep(structs[name].span, MAX_NESTING)]
+        if size > MAX_FIELDS:
+            return [catalogue.too_many_fields(structs[name].span, name, MAX_FIELDS)]
+    return []
+
+
+def _extent(type_: Type, extents: Mapping[str, tuple[int, int]]) -> tuple[int, int]:
+    """How deep lists lie within a type, and how many fields it has in all."""
+    match type_:
+        case Ref(name):
+            return extents[name]
+        case Array(inner) | Map(_, inner) | Optional(inner):
+            depth, size = _extent(inner, extents)
+            return depth + 1, size + 1
+        case Struct(_, fields) | Union(_, fields):
+            parts = [_extent(field.type, extents) for field in fields]
+            return 1 + max((depth for depth, _ in parts), default=0), sum((size for _, size in parts), len(parts))
+        case Bool() | Int() | Float() | String() | Bytes() | Enum():
+            return 0, 0
+        case _:
+            assert_never(type_)
+
+
+def _check_computed(struct: Struct, structs: Mapping[str, Struct]) -> list[Diagnostic]:
+    problems: list[Diagnostic] = []
+    needs: dict[str, set[str]] = {}
+    places: dict[str, Field] = {}
+    for name, field, in_list in _fields(struct, "", in_list=False):
+        paths = [*_paths(field.constant), *_paths(field.length)]
+        if paths and in_list:
+            problems.append(catalogue.computed_in_list(field.span))
+            continue
+        problems += [problem for path in paths if (problem := _check_path(path, struct, structs)) is not None]
+        needs[name] = {_dotted(path) for path in _paths(field.constant)}
+        places[name] = field
+    try:
+        TopologicalSorter(needs).prepare()
+    except CycleError as error:
+        names: list[str] = error.args[1]
+        problems.append(catalogue.computed_cycle(places[names[0]].span, names))
+    return problems
+
+
+def _fields(type_: Type, prefix: str, *, in_list: bool) -> Iterator[tuple[str, Field, bool]]:
+    """The fields of a struct and of those inline in it, by path; those of elements are marked."""
+    match type_:
+        case Struct(_, fields):
+            for field in fields:
+                yield prefix + field.name, field, in_list
+                yield from _fields(field.type, f"{prefix}{field.name}.", in_list=in_list)
+        case Array(inner) | Map(_, inner):
+            yield from _fields(inner, prefix, in_list=True)
+        case _:
+            return
+
+
+def _paths(expr: Expr | None) -> Iterator[Path]:
+    match expr:
+        case None | Literal() | Name():
+            return
+        case Path():
+            yield expr
+        case Len(path):
+            yield path
+        case Unary(_, operand):
+            yield from _paths(operand)
+        case Binary(_, left, right):
+            yield from _paths(left)
+            yield from _paths(right)
+        case Call(_, arguments):
+            for argument in arguments:
+                yield from _paths(argument)
+        case _:
+            assert_never(expr)
+
+
+def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct]) -> Diagnostic | None:
+    """The path must lead, through structs alone, to an integer."""
+    type_: Type = root
+    for step in path.steps:
+        type_ = structs[type_.name] if isinstance(type_, Ref) else type_
+        match type_, step:
+            case Struct(_, fields), Member(name):
+                known = {field.name: field.type for field in fields}
+                if name not in known:
+                    return catalogue.unknown_path(path.span, _dotted(path), known)
+                type_ = known[name]
+            case ((Array() | Map()), _):
+                return catalogue.path_through_list(path.span, _dotted(path))
+            case _:
+                return catalogue.unknown_path(path.span, _dotted(path), ())
+    return None if isinstance(type_, Int) else catalogue.path_not_integer(path.span, _dotted(path))
+
+
+def _dotted(path: Path) -> str:
+    return ".".join(step.name for step in path.steps if isinstance(step, Member))

@@ -1,0 +1,158 @@
+r"""S-expressions: text into nested forms with their places.
+
+    Node = Text | Vocab | Number | Word | Form
+    Text = "..."     Vocab = :|set|     Number = 16, 0.5     Word = :int, +, geometry.width     Form = ( Node* )
+
+`;` starts a comment. In a text, \" \\ \n \t stand for the character.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lark import Lark, UnexpectedCharacters
+
+from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.source import Span
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from lark import Token
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Source
+
+MAX_FORMS = 160
+"""Parentheses within parentheses: two for each level of a message, and room for expressions."""
+
+MAX_DIGITS = 100
+"""Python refuses to convert very long numbers; none of these fits any field."""
+
+_ESCAPES = {"n": "\n", "t": "\t"}
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """``"..."`` with its escapes resolved."""
+
+    value: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Vocab:
+    """``:|set|``"""
+
+    value: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An integer or a decimal fraction."""
+
+    value: int | float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """Everything else that stands alone."""
+
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """``( ... )``"""
+
+    items: tuple[Node, ...]
+    span: Span
+
+
+Node = Text | Vocab | Number | Word | Form
+
+
+def head(node: Node) -> str:
+    """The word that a form starts with; nothing where it does not, or is none."""
+    match node:
+        case Form((Word(name), *_)):
+            return name
+        case _:
+            return ""
+
+
+def read_forms(source: Source) -> tuple[Node, ...]:
+    """All forms of a text. Lark splits it into tokens; a stack nests them, so that depth costs no recursion.
+
+    Raises
+    ------
+    SchemaError
+        Where parentheses or quotes do not close, or nest too deeply.
+    """
+    problems: list[Diagnostic] = []
+    opened: list[Span] = []
+    levels: list[list[Node]] = [[]]
+    for token in _tokens(source, problems):
+        span = Span(source, token.start_pos or 0, token.end_pos or 0)
+        match token.type:
+            case "LPAR":
+                opened.append(span)
+                levels.append([])
+            case "RPAR" if opened:
+                items = tuple(levels.pop())
+                levels[-1].append(Form(items, opened.pop().to(span)))
+            case "RPAR":
+                problems.append(catalogue.stray_parenthesis(span))
+            case _:
+                levels[-1].append(_atom(token, span))
+        if len(opened) > MAX_FORMS:
+            raise SchemaError((catalogue.nesting_too_deep(span, MAX_FORMS),))
+    problems += [catalogue.unclosed_parenthesis(span) for span in opened[-1:] if not problems]
+    if problems:
+        raise SchemaError(tuple(problems))
+    return tuple(levels[0])
+
+
+def _tokens(source: Source, problems: list[Diagnostic]) -> Iterator[Token]:
+    try:
+        yield from _lark().lex(source.text)  # pyright: ignore[reportUnknownMemberType]  # lark leaves a parameter untyped
+    except UnexpectedCharacters as error:
+        at: int = error.pos_in_stream or 0
+        span = Span(source, at, at + 1)
+        problems.append(catalogue.unclosed_text(span) if source.text[at] == '"' else catalogue.unreadable(span))
+
+
+@cache
+def _lark() -> Lark:
+    grammar = Path(__file__).with_name("bottle_schema.lark").read_text("utf-8")
+    return Lark(grammar, parser="lalr")
+
+
+def _atom(token: Token, span: Span) -> Node:
+    match token.type:
+        case "TEXT":
+            return Text(re.sub(r"\\(.)", _unescape, token[1:-1], flags=re.DOTALL), span)
+        case "VOCAB":
+            return Vocab(token[2:-1], span)
+        case "NUMBER":
+            return Number(_number(token), span)
+        case _:
+            return Word(str(token), span)
+
+
+def _unescape(escape: re.Match[str]) -> str:
+    return _ESCAPES.get(escape[1], escape[1])
+
+
+def _number(digits: str) -> int | float:
+    if any(mark in digits for mark in ".eE"):
+        return float(digits)
+    return int(digits[:MAX_DIGITS])
