@@ -68,7 +68,7 @@ def import_not_found(span: Span, path: str) -> Diagnostic:
     return _error("import-not-found", f'"{path}" is nowhere on the search path', span, "imported here")
 
 
-def invalid_name(span: Span, name: str) -> Diagnostic:
+def invalid_name(span: Span | None, name: str) -> Diagnostic:
     """A name that no mapping could write down."""
     return _error(
         "invalid-name",
@@ -218,16 +218,27 @@ def too_many_fields(span: Span | None, name: str, limit: int) -> Diagnostic:
     return _error("too-many-fields", f'"{name}" has more than {limit} fields in all', span, "this type", "use lists")
 
 
-def unlike_messages(first: int, second: int, path: str, difference: str) -> Diagnostic:
+def unlike_messages(number: int, path: str, first: str, second: str) -> Diagnostic:
     """Captured messages that no one schema describes."""
     return _error(
         "unlike-messages",
-        f"message {second} is not of the type of those before it",
+        f"message {number} is not of the type of those before it",
         None,
         "",
         "draft a schema from messages of one type alone",
-        f"at {path or 'the message itself'}: {difference}",
-        f"compared with messages {first} to {second - 1}",
+        f"at `{path or '.'}`: {first} and {second}",
+    )
+
+
+def undescribable_message(number: int, path: str) -> Diagnostic:
+    """A message with a dict that is none."""
+    return _error(
+        "undescribable-message",
+        f"message {number} has a dict whose elements are not (key value)",
+        None,
+        "",
+        "no schema describes it; read it without one",
+        f"at `{path or '.'}`",
     )
 
 

@@ -21,13 +21,13 @@ An anonymous struct is named ``type.field``. Paths of computed constants start a
 
 from __future__ import annotations
 
-import re
 from collections import deque
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.schema_check import check
 from rosetta_jit.frameworks.yarp.schema_type import read_struct
 from rosetta_jit.frameworks.yarp.sexpr import Form, Text, Word, head, read_forms
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Struct
     from rosetta_jit.source import Source
-
-_TYPE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
 
 
 def parse(source: Source, load: Load) -> Schema:
@@ -101,7 +99,7 @@ def _import(found: Source | None, otherwise: Diagnostic, problems: list[Diagnost
 
 
 def _declare(name: Text, body: Sequence[Node], structs: dict[str, Struct], problems: list[Diagnostic]) -> None:
-    if not _TYPE_NAME.fullmatch(name.value):
+    if not TYPE_NAME.fullmatch(name.value):
         problems.append(catalogue.invalid_name(name.span, name.value))
     elif name.value in structs:
         problems.append(catalogue.duplicate(name.span, "type", name.value, structs[name.value].span))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.frameworks.yarp.names import FIELD_NAME
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word, head
 from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
@@ -59,7 +59,6 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
 _GROUPS = MappingProxyType(
     {":vocab": "(:vocab :|set|)", ":list": "(:list :double)", ":bottle": "(:bottle FIELD ...)", ":dict": "(:dict :double)"}
 )
-_FIELD_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def read_struct(name: str, nodes: Sequence[Node], problems: list[Diagnostic], *, span: Span, depth: int = 0, keyed: bool = False) -> Struct:
@@ -86,7 +85,7 @@ def _read_field(owner: str, node: Node, problems: list[Diagnostic], depth: int, 
     match node:
         case Form((Text(name, span),)):
             problems.append(catalogue.no_type(span, name))
-        case Form((Text(name, span), type_node, *rest)) if _FIELD_NAME.fullmatch(name):
+        case Form((Text(name, span), type_node, *rest)) if FIELD_NAME.fullmatch(name):
             type_, implied = _read_field_type(type_node, f"{owner}.{name}", problems, depth)
             constants, options = _sort_rest(rest, problems)
             if type_ is not None:

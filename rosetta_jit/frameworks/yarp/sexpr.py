@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from lark import Lark, UnexpectedCharacters
 
@@ -125,7 +125,7 @@ def _tokens(source: Source, problems: list[Diagnostic]) -> Iterator[Token]:
     try:
         yield from _lark().lex(source.text)  # pyright: ignore[reportUnknownMemberType]  # lark leaves a parameter untyped
     except UnexpectedCharacters as error:
-        at: int = error.pos_in_stream or 0
+        at = cast("int", error.pos_in_stream)
         span = Span(source, at, at + 1)
         problems.append(catalogue.unclosed_text(span) if source.text[at] == '"' else catalogue.unreadable(span))
 
