@@ -37,11 +37,14 @@ clean: ## remove all that these commands made
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp a set of requirements: a second run touches no network.
-$(VENV)/.demo: EXTRA := demo
-$(VENV)/.test: EXTRA := test
-$(VENV)/.demo $(VENV)/.test: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(EXTRA)]'
+$(VENV)/.demo: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[demo]'
 	touch $@
+
+# What the tests need includes what the demo needs.
+$(VENV)/.test: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	touch $@ $(VENV)/.demo
 
 $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or name one: make PYTHON=..." >&2; exit 1; }

@@ -1,0 +1,1 @@
+"""How fast it is: every claim of the README, measured as a ratio to a peer within one run."""

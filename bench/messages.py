@@ -1,0 +1,52 @@
+"""The messages that are measured: as the bundled recordings look, in any number and size."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+
+MAPPINGS = Path(__file__).resolve().parent / "mappings"
+WIDTH, HEIGHT = 320, 240
+
+
+def specialised(count: int = 24) -> bytes:
+    """A YARP 3 bottle of doubles under one tag: 8 + 8 n bytes."""
+    return struct.pack(f"<ii{count}d", 256 + 10, count, *_angles(count))
+
+
+def tagged(count: int = 16) -> bytes:
+    """The same with a tag before each double: 8 + 12 n bytes."""
+    return struct.pack("<ii", 256, count) + b"".join(struct.pack("<id", 10, angle) for angle in _angles(count))
+
+
+def batch(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Many specialised bottles in one buffer, and their n + 1 offsets."""
+    message = np.frombuffer(specialised(), np.uint8)
+    return np.tile(message, count), np.arange(count + 1, dtype=np.int64) * len(message)
+
+
+def image(width: int = WIDTH, height: int = HEIGHT) -> bytes:
+    """A YARP 3 image as YARP 3.12 writes it, rows padded to the quantum of 8."""
+    row = -(-width * 3 // 8) * 8
+    size = row * height
+    head = struct.pack("<ii i4s i4s ii 5i ii", 256, 4, 9, b"mat\0", 9, b"rgb\0", 257, 5, 3, size, 8 | 1 << 16, width, height, 12, size)
+    return head + (np.arange(size) % 251).astype(np.uint8).tobytes()
+
+
+def joints_mapping(count: int, folder: Path) -> Path:
+    """A mapping of so many joints, written to a folder: what first compiles are measured with."""
+    fields = "\n".join(f'  ("a{index}" :double (:unit :degree))' for index in range(count))
+    (folder / f"joints{count}.bottle-schema").write_text(f'"bench.joints{count}"\n(\n{fields}\n)\n')
+    rules = "\n".join(f"  .angles[{index}] = float32(radians(.a{index}))" for index in range(count))
+    path = folder / f"joints{count}.mapping"
+    path.write_text(
+        f'import "joints{count}.bottle-schema"\nimport "rst/kinematics/JointAngles.proto"\n\n'
+        f"data-holder: rst.kinematics.JointAngles\nwire-schema: bench.joints{count}\n\nunpack-rules:\n  len(.angles) = {count}\n{rules}\n"
+    )
+    return path
+
+
+def _angles(count: int) -> list[float]:
+    return [10.0 * index - 7.25 for index in range(count)]
