@@ -1,0 +1,189 @@
+"""What can be wrong in the text of a mapping, and in what it imports."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosetta_jit.source import Span
+
+TYPESET = {"\u201c": '"', "\u201d": '"', "\u201e": '"', "\u2013": "-", "\u2014": "-", "\u2212": "-", "\u00d7": "*"}
+"""Characters that a word processor puts where the language has a plain one."""
+
+EXPECTATIONS = (
+    ("INTEGER", "a value"),
+    ("STAR", "an operator"),
+    ("FOR", "a rule"),
+    ("IMPORT", "a statement"),
+    ("EQUAL", "`=`"),
+    ("COLON", "`:`"),
+    ("LPAR", "`(`"),
+    ("RPAR", "`)`"),
+    ("LSQB", "`[`"),
+    ("RSQB", "`]`"),
+    ("COMMA", "`,`"),
+    ("FROM", "`from`"),
+    ("TO", "`to`"),
+    ("END", "`end`"),
+    ("MEMBER", "`.field`"),
+    ("START", "a field (`.name`)"),
+    ("NAME", "a name"),
+    ("STRING", "a text in quotes"),
+)
+"""Token kind → how a person calls what may stand there, in the order in which it is listed."""
+
+STARTS_VALUE = frozenset({"LPAR", "START", "NAME", "STRING"})
+STARTS_RULE = frozenset({"START"})
+
+
+def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
+    found = span.source.text[span.start : span.end]
+    name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
+    message = f"expected {_listed(_expected(expected))}, found {name}"
+    return error("syntax", message, span, "not expected here", help_=_hint(found, kind, expected))
+
+
+def _expected(kinds: frozenset[str]) -> list[str]:
+    implied = (STARTS_VALUE if "INTEGER" in kinds else frozenset[str]()) | (STARTS_RULE if "FOR" in kinds else frozenset[str]())
+    return [name for kind, name in EXPECTATIONS if kind in kinds - implied]
+
+
+def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
+    if found in TYPESET:
+        return f"write the plain character `{TYPESET[found]}`"
+    if kind == "UNCLOSED":
+        return 'close the text with `"` on the same line'
+    if kind == "MEMBER":
+        return "a path is written without blanks and begins with a dot: `.a.b[0]`"
+    if kind == "END":
+        return "every `end` closes one `for`"
+    if kind == "$END" and "END" in expected:
+        return "every `for` needs an `end`"
+    if "IMPORT" in expected and "FOR" not in expected:
+        return "statements are `import`, `data-holder:`, `wire-schema:`, `unpack-rules:` and `pack-rules:`"
+    return ""
+
+
+def nesting(span: Span, limit: int) -> Diagnostic:
+    return error(
+        "nesting",
+        f"nested deeper than {limit} levels",
+        span,
+        "this is one level too many",
+        help_="split the expression; every operator of a long sum counts as one level",
+    )
+
+
+def escape(span: Span, text: str) -> Diagnostic:
+    return error("escape", f"unknown escape `{text}`", span, help_=r"known are \" \\ \n \t \r")
+
+
+def number(span: Span, target: str) -> Diagnostic:
+    return error("number", f"the number does not fit {target}", span, "too large")
+
+
+def missing_statement(span: Span, keyword: str) -> Diagnostic:
+    return error("missing-statement", f"the mapping has no `{keyword}:`", span, help_=f"add `{keyword}: type.name`")
+
+
+def repeated_statement(span: Span, keyword: str) -> Diagnostic:
+    return error("repeated-statement", f"`{keyword}:` stands twice", span, "again here", help_="merge the two")
+
+
+def no_rules(span: Span | None) -> Diagnostic:
+    return error(
+        "no-rules",
+        "the mapping has no rules for either direction",
+        span,
+        help_="add `unpack-rules:` or `pack-rules:`; an empty block says that the direction is not meant to exist",
+    )
+
+
+def import_not_found(span: Span | None, name: str, folders: Iterable[str]) -> Diagnostic:
+    searched = tuple(f"searched {folder}" for folder in folders)
+    return error(
+        "import-not-found",
+        f'no file "{shorten(name)}" on the search path',
+        span,
+        "imported here",
+        notes=searched,
+        help_="correct the name, or name its folder in ROSETTA_JIT_PATH",
+    )
+
+
+def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
+    return error(
+        "import-name",
+        f'"{shorten(name)}" cannot be imported: {why}',
+        span,
+        help_="imports are relative to the search path and stay within it",
+    )
+
+
+def import_suffix(span: Span | None, name: str, suffixes: Iterable[str]) -> Diagnostic:
+    known = ", ".join(sorted(suffixes)) or "none"
+    return error("import-suffix", f'no front end reads "{shorten(name)}"', span, notes=(f"known suffixes: {known}",))
+
+
+def import_repeated(span: Span | None, name: str) -> Diagnostic:
+    return warning("import-repeated", f'"{shorten(name)}" is imported twice', span, help_="remove one of the two")
+
+
+def import_unused(span: Span | None, name: str) -> Diagnostic:
+    return warning("import-unused", f'nothing of "{shorten(name)}" is used', span, help_="remove the import")
+
+
+def conflicting_type(span: Span | None, name: str, first: str, second: str) -> Diagnostic:
+    return error(
+        "conflicting-type",
+        f"`{shorten(name)}` is declared twice, differently",
+        span,
+        notes=(f"by {first}", f"by {second}"),
+        help_="import only one of the two",
+    )
+
+
+def file_too_large(name: str, limit: int) -> Diagnostic:
+    return error("file-too-large", f"{name} is larger than {limit >> 20} MiB", None)
+
+
+def file_not_text(name: str) -> Diagnostic:
+    return error("file-not-text", f"{name} is not UTF-8 text", None)
+
+
+def file_unreadable(name: str, why: str) -> Diagnostic:
+    return error("file-unreadable", f"{name} cannot be read: {why}", None)
+
+
+def mapping_not_found(name: str, folders: Iterable[str]) -> Diagnostic:
+    searched = tuple(f"searched {folder}" for folder in folders)
+    return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', None, notes=searched)
+
+
+def placed(problem: Diagnostic, span: Span | None) -> Diagnostic:
+    """A problem that has no place of its own, with that of the import that met it."""
+    return problem if problem.span else replace(problem, span=span)
+
+
+def error(code: str, message: str, span: Span | None, label: str = "", *, notes: tuple[str, ...] = (), help_: str = "") -> Diagnostic:
+    return Diagnostic("error", code, message, span, label, notes, help_)
+
+
+def warning(code: str, message: str, span: Span | None, label: str = "", *, help_: str = "") -> Diagnostic:
+    return Diagnostic("warning", code, message, span, label, (), help_)
+
+
+def shorten(name: str) -> str:
+    """A name of hostile length, cut for a report."""
+    return name if len(name) <= 80 else f"{name[:77]}..."
+
+
+def _listed(names: list[str]) -> str:
+    if len(names) < 2:
+        return "".join(names) or "nothing more"
+    return f"{', '.join(names[:-1])} or {names[-1]}"

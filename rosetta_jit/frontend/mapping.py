@@ -1,0 +1,164 @@
+"""The mapping language: text → `model.mapping.Mapping`.
+
+In a rule to unpack the place on the left is on the holder's side; in a rule to pack, on the wire's. All that is *read*,
+an index within the place included, is on the other side: a target has nothing to read while it is being filled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, cast
+
+from lark import Lark, Token, Tree
+from lark.lark import PostLex
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.errors import MappingError
+from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
+from rosetta_jit.frontend.syntax import Recovery, parse_tokens
+from rosetta_jit.model.mapping import Import, Mapping
+from rosetta_jit.source import Span
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.source import Source
+
+MAX_NESTING = 64
+"""Brackets, loops, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
+
+
+def parse(source: Source) -> Mapping:
+    """Read a mapping file.
+
+    Raises
+    ------
+    MappingError
+        All syntax errors that were found, each with its place.
+    """
+    tokens: list[Token] = list(cast("Any", _grammar()).lex(source.text))  # lark types it in part only
+    deep = _too_deep(tokens, source)
+    if deep is not None:
+        raise MappingError((deep,))
+    tree = parse_tokens(_grammar(), source, tokens, _recovery(), words.unexpected)
+    if not isinstance(tree, Tree):
+        raise MappingError(tuple(tree))
+    return _Reader(source, []).read(tree)
+
+
+@cache
+def _grammar() -> Lark:
+    text = FilePath(__file__).with_name("mapping.lark").read_text(encoding="utf-8")
+    return Lark(
+        text,
+        parser="lalr",
+        lexer="basic",
+        postlex=_AlsoUnused(),
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
+
+
+class _AlsoUnused(PostLex):
+    """Makes lark keep the tokens that no rule uses, those that stand for mistakes."""
+
+    always_accept = ("UNCLOSED", "STRANGE")
+
+    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        return stream
+
+
+def _recovery() -> Recovery:
+    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "UNPACK_RULES", "PACK_RULES", "END")
+    starts = {kind: kind for kind in statements} | {"START": "FOR", "LEN": "FOR", "FOR": "FOR"}
+    return Recovery(starts, frozenset({"START", "LEN"}), opens="FOR", closes="END")
+
+
+def _too_deep(tokens: list[Token], source: Source) -> Diagnostic | None:
+    """The token at which brackets and loops nest too deeply, before the parser's stack grows with them."""
+    depth = 0
+    for token in tokens:
+        if token.type in {"LPAR", "LSQB", "FOR"}:
+            depth += 1
+        elif token.type in {"RPAR", "RSQB", "END"}:
+            depth = max(0, depth - 1)
+        if depth > MAX_NESTING:
+            return words.nesting(Span(source, token.start_pos or 0, token.end_pos or 0), MAX_NESTING)
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Turns the tree of one source into the model; problems are collected on the way."""
+
+    source: Source
+    problems: list[Diagnostic]
+
+    def read(self, tree: Tree[Token]) -> Mapping:
+        self._bound_depth(tree)
+        statements = [child for child in tree.children if isinstance(child, Tree)]
+        holder, holder_span = self._type_name(statements, "data_holder", "data-holder")
+        wire, wire_span = self._type_name(statements, "wire_schema", "wire-schema")
+        mapping = Mapping(
+            self.source,
+            tuple(self._import(child) for child in statements if child.data == "import_file"),
+            holder,
+            wire,
+            self._rules(statements, "unpack", Context(self.source, "holder", "wire", self.problems)),
+            self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
+            holder_span,
+            wire_span,
+        )
+        if self.problems:
+            raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
+        return mapping
+
+    def _bound_depth(self, tree: Tree[Token]) -> None:
+        """Refuse operator chains and paths that are too long, without recursion of our own."""
+        pending = [(tree, 0)]
+        while pending:
+            node, depth = pending.pop()
+            if depth > MAX_NESTING or (node.data == "path" and len(node.children) > MAX_NESTING):
+                raise MappingError((words.nesting(self._span(node), MAX_NESTING),))
+            # Statements, rules and blocks are already bounded by the nesting of `for` … `end`.
+            inner = depth + 1 if node.data in {"binary", "negative", "group", "call", "index", "loop"} else depth
+            pending += [(child, inner) for child in node.children if isinstance(child, Tree)]
+
+    def _import(self, tree: Tree[Token]) -> Import:
+        token = _token(tree)
+        return Import(read_string(token, self.source, self.problems), self._token_span(token))
+
+    def _type_name(self, statements: list[Tree[Token]], rule: str, keyword: str) -> tuple[str, Span | None]:
+        found = self._only(statements, rule, keyword)
+        if found is None:
+            self.problems.append(words.missing_statement(Span(self.source, 0, 0), keyword))
+            return "", None
+        token = _token(found)
+        name = read_string(token, self.source, self.problems) if token.type == "STRING" else str(token)
+        return name, self._token_span(token)
+
+    def _rules(self, statements: list[Tree[Token]], direction: str, context: Context) -> tuple[Rule, ...] | None:
+        block = self._only(statements, f"{direction}_rules", f"{direction}-rules")
+        if block is None:
+            return None
+        return tuple(read_rule(child, context) for child in block.children if isinstance(child, Tree))
+
+    def _only(self, statements: list[Tree[Token]], rule: str, keyword: str) -> Tree[Token] | None:
+        found = [child for child in statements if child.data == rule]
+        self.problems.extend(words.repeated_statement(self._span(extra), keyword) for extra in found[1:])
+        return found[0] if found else None
+
+    def _span(self, tree: Tree[Token]) -> Span:
+        return Span(self.source, tree.meta.start_pos, tree.meta.end_pos)
+
+    def _token_span(self, token: Token) -> Span:
+        return Span(self.source, token.start_pos or 0, token.end_pos or 0)
+
+
+def _token(tree: Tree[Token]) -> Token:
+    (token,) = (child for child in tree.children if isinstance(child, Token))
+    return token

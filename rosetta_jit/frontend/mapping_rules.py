@@ -1,0 +1,137 @@
+"""Rules and expressions of a mapping: the parser's tree → the model.
+
+The walks are recursive; the caller has bounded the depth of the tree.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from lark import Token, Tree
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.model.expr import Binary, Call, Index, Len, Literal, Member, Name, Path, Unary
+from rosetta_jit.model.mapping import Assign, For, SetLength
+from rosetta_jit.source import Span
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.expr import Expr, Operator, Side, Step
+    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.source import Source
+
+ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
+
+MAX_DIGITS = 400
+"""The longest number that is looked at: a float64 has at most 309 digits before its point."""
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """Which side the rules of a block write and which they read, and where their problems go."""
+
+    source: Source
+    target: Side
+    origin: Side
+    problems: list[Diagnostic]
+
+    def span(self, node: Tree[Token] | Token) -> Span:
+        if isinstance(node, Token):
+            return Span(self.source, node.start_pos or 0, node.end_pos or 0)
+        return Span(self.source, node.meta.start_pos, node.meta.end_pos)
+
+
+def read_rule(tree: Tree[Token], context: Context) -> Rule:
+    """One rule: the place is on the target's side, everything else on the origin's."""
+    span = context.span(tree)
+    match str(tree.data):
+        case "assign":
+            place, value = _trees(tree)
+            return Assign(_path(place, context.target, context), _expr(value, context), span)
+        case "set_length":
+            place, value = _trees(tree)
+            return SetLength(_path(place, context.target, context), _expr(value, context), span)
+        case _:
+            start, stop, *body = _trees(tree)
+            variable = str(_tokens(tree)[0])
+            rules = tuple(read_rule(rule, context) for rule in body)
+            return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+
+
+def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str:
+    """The characters that a quoted text stands for."""
+    text = str(token)[1:-1]
+    start = (token.start_pos or 0) + 1
+    problems.extend(
+        words.escape(Span(source, start + escape.start(), start + escape.end()), escape[0])
+        for escape in re.finditer(r"\\(.)", text)
+        if escape[1] not in ESCAPES
+    )
+    return re.sub(r"\\(.)", lambda escape: ESCAPES.get(escape[1], escape[1]), text)
+
+
+def _expr(tree: Tree[Token], context: Context) -> Expr:
+    span = context.span(tree)
+    match str(tree.data):
+        case "integer":
+            return Literal(_integer(_tokens(tree)[0], context), span)
+        case "real":
+            return Literal(_real(_tokens(tree)[0], context), span)
+        case "string":
+            return Literal(read_string(_tokens(tree)[0], context.source, context.problems), span)
+        case "true" | "false":
+            return Literal(str(tree.data) == "true", span)
+        case "name":
+            return Name(str(_tokens(tree)[0]), span)
+        case "path":
+            return _path(tree, context.origin, context)
+        case "length":
+            return Len(_path(_trees(tree)[0], context.origin, context), span)
+        case "negative":
+            return Unary("-", _expr(_trees(tree)[0], context), span)
+        case "binary":
+            left, right = (_expr(operand, context) for operand in _trees(tree))
+            return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
+        case "group":
+            return _expr(_trees(tree)[0], context)
+        case _:
+            arguments = tuple(_expr(argument, context) for argument in _trees(tree))
+            return Call(str(_tokens(tree)[0]), arguments, span)
+
+
+def _path(tree: Tree[Token], side: Side, context: Context) -> Path:
+    return Path(side, tuple(_step(step, context) for step in tree.children), context.span(tree))
+
+
+def _step(step: Tree[Token] | Token, context: Context) -> Step:
+    if isinstance(step, Token):
+        return Member(str(step)[1:].strip('"'), context.span(step))
+    return Index(_expr(_trees(step)[0], context), context.span(step))
+
+
+def _integer(token: Token, context: Context) -> int:
+    if len(token) <= MAX_DIGITS:
+        value = int(token, 16) if token[:2] in {"0x", "0X"} else int(token)
+        if value < 2**64:
+            return value
+    context.problems.append(words.number(context.span(token), "an integer of 64 bits"))
+    return 0
+
+
+def _real(token: Token, context: Context) -> float:
+    value = float(token) if len(token) <= MAX_DIGITS else math.inf
+    if math.isinf(value):
+        context.problems.append(words.number(context.span(token), "a float64"))
+        return 0.0
+    return value
+
+
+def _trees(tree: Tree[Token]) -> list[Tree[Token]]:
+    return [child for child in tree.children if isinstance(child, Tree)]
+
+
+def _tokens(tree: Tree[Token]) -> list[Token]:
+    return [child for child in tree.children if isinstance(child, Token)]

@@ -1,0 +1,189 @@
+"""Calls: conversions, named by the type that they give, and the functions of the language.
+
+int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
+int8 … uint64 (x [, round | truncate])     of a float
+float32 float64 (x)   bool (x)   enum.name (x)
+radians degrees sqrt (x) of float64   floor ceil (x)   abs (x)   min max (x, y, …)   align (n, quantum)
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import reduce
+from typing import TYPE_CHECKING, Literal, cast
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering import conversions
+from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
+from rosetta_jit.lowering.typed import INT64, Call, Const, Convert
+from rosetta_jit.model.expr import Name
+from rosetta_jit.model.types import Bool, Enum, Float, Int
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.lowering.scope import Scope
+    from rosetta_jit.lowering.typed import ConversionRule, Expr, Function
+    from rosetta_jit.model import expr as model
+    from rosetta_jit.model.types import Type
+
+    TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+
+INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
+FLOATS = ("float32", "float64")
+FUNCTIONS = ("radians", "degrees", "sqrt", "floor", "ceil", "abs", "min", "max", "align")
+
+
+def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+    """The typed form of a call; ``type_expr`` types its arguments."""
+    target = _named_type(expr.function, scope)
+    if target is not None:
+        scope.named_enums.update({expr.function} & scope.enums.keys())
+        return _conversion(expr, target, scope, type_expr)
+    if expr.function not in FUNCTIONS:
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "len", *scope.enums}
+        scope.problems.append(words.unknown_function(expr.span, expr.function, known))
+        return None
+    arguments = [type_expr(argument, scope) for argument in expr.arguments]
+    typed = [argument for argument in arguments if argument is not None]
+    if len(typed) < len(arguments) or not _arity(expr, scope):
+        return None
+    return _function(expr, typed, scope)
+
+
+def _named_type(name: str, scope: Scope) -> Type | None:
+    if name in INTEGERS:
+        bits = cast("Literal[8, 16, 32, 64]", int(name.lstrip("uint")))
+        return Int(bits, signed=not name.startswith("u"))
+    if name in FLOATS:
+        return Float(32 if name == "float32" else 64)
+    return Bool() if name == "bool" else scope.enums.get(name)
+
+
+def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+    if not 1 <= len(expr.arguments) <= 2:
+        scope.problems.append(words.arguments(expr.span, expr.function, "a value and at most a rule", len(expr.arguments)))
+        return None
+    value = type_expr(expr.arguments[0], scope)
+    if value is None:
+        return None
+    rules = _rules(value.type, target)
+    if not rules:
+        scope.problems.append(words.type_clash(value.span, describe(value.type), describe(target)))
+        return None
+    rule = _rule(expr, rules, scope)
+    return None if rule is None else _converted(value, target, rule, expr, scope)
+
+
+def _rules(source: Type, target: Type) -> tuple[ConversionRule, ...]:
+    """The rules by which one scalar may become the other; the first one holds where none is named."""
+    match source, target:
+        case Int(), Int():
+            return ("exact", "saturate", "wrap")
+        case Float(), Int():
+            return ("exact", "round", "truncate")
+        case ((Bool() | Enum()), Int()) | (Int(), (Bool() | Enum())):
+            return ("exact",)
+        case ((Int() | Float()), Float()):
+            return ("nearest",)
+        case _:
+            return ()
+
+
+def _rule(expr: model.Call, rules: tuple[ConversionRule, ...], scope: Scope) -> ConversionRule | None:
+    if len(expr.arguments) == 1:
+        return rules[0]
+    named = expr.arguments[1]
+    for rule in rules:
+        if isinstance(named, Name) and named.name == rule:
+            return rule
+    scope.problems.append(words.conversion_rule(named.span, expr.function, rules))
+    return None
+
+
+def _converted(value: Expr, target: Type, rule: ConversionRule, expr: model.Call, scope: Scope) -> Expr | None:
+    free = convert(value, target)
+    if free is not None:
+        return replace(free, span=expr.span)
+    match value, target:
+        case Const(value=int(number), type=Int()), Int():
+            if rule == "exact":
+                scope.problems.append(words.constant_range(value.span, str(number), describe(target)))
+                return None
+            low, high = conversions.bounds(target)
+            known = wrap(target, number) if rule == "wrap" else min(max(number, low), high)
+            return Const(known, target, expr.span)
+        case _:
+            return Convert(value, target, rule, expr.span)
+
+
+def _arity(expr: model.Call, scope: Scope) -> bool:
+    found = len(expr.arguments)
+    match expr.function:
+        case "min" | "max":
+            fits, expected = found >= 2, "two or more values"
+        case "align":
+            fits, expected = found == 2, "a number and a quantum"
+        case _:
+            fits, expected = found == 1, "one value"
+    if not fits:
+        scope.problems.append(words.arguments(expr.span, expr.function, expected, found))
+    return fits
+
+
+def _function(expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | None:
+    targets = _candidates(expr.function)
+    for target in targets:
+        converted = [_argument(argument, target) for argument in arguments]
+        known = [argument for argument in converted if argument is not None]
+        if len(known) == len(arguments) and not _narrows(arguments, target, targets):
+            return _folded(expr, known, target)
+    wrong = next((argument for argument in arguments if _argument(argument, targets[-1]) is None), arguments[0])
+    scope.problems.append(words.operand(wrong.span, expr.function, describe(wrong.type)))
+    return None
+
+
+def _candidates(function: str) -> tuple[Int | Float, ...]:
+    """The types in which a function is computed, narrowest first."""
+    match function:
+        case "align":
+            return (INT64,)
+        case "abs" | "min" | "max":
+            return (INT64, Float(32), FLOAT64)
+        case "floor" | "ceil":
+            return (Float(32), FLOAT64)
+        case _:
+            return (FLOAT64,)
+
+
+def _argument(value: Expr, target: Int | Float) -> Expr | None:
+    return as_int64(value) if isinstance(target, Int) else convert(value, target)
+
+
+def _narrows(arguments: list[Expr], target: Int | Float, targets: tuple[Int | Float, ...]) -> bool:
+    """Constants alone are computed in float64, whatever narrower type could hold them."""
+    constant = all(isinstance(argument, Const) for argument in arguments)
+    return constant and isinstance(target, Float) and target != targets[-1]
+
+
+def _folded(expr: model.Call, arguments: list[Expr], target: Int | Float) -> Expr:
+    function = cast("Function", expr.function)
+    numbers = [argument.value for argument in arguments if isinstance(argument, Const) and isinstance(argument.value, int)]
+    if isinstance(target, Int) and len(numbers) == len(arguments):
+        known = _of_integers(function, numbers)
+        if conversions.holds(target, known):
+            return Const(known, target, expr.span)
+    return Call(function, tuple(arguments), target, expr.span)
+
+
+def _of_integers(function: Function, numbers: list[int]) -> int:
+    match function:
+        case "align":
+            number, quantum = numbers
+            return number if quantum <= 1 else -(-number // quantum) * quantum
+        case "min":
+            return reduce(min, numbers)
+        case "max":
+            return reduce(max, numbers)
+        case _:
+            return abs(numbers[0])

@@ -1,0 +1,159 @@
+"""The static checks of a mapping, from what it imports to the last element of each array, as one report.
+
+Imports are read by the front ends, names and types resolved, and each direction is checked as a whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.errors import MappingError, ReportError
+from rosetta_jit.frontend.search import Reading
+from rosetta_jit.lowering.completeness import check_complete
+from rosetta_jit.lowering.resolve import Resolved, resolve
+from rosetta_jit.model.types import Schema
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping as Dictionary
+    from collections.abc import Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frontend.idl import FrontEnd
+    from rosetta_jit.frontend.search import SearchPath
+    from rosetta_jit.lowering.scope import Message
+    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.model.mapping import Import, Mapping
+    from rosetta_jit.model.types import Declaration
+    from rosetta_jit.source import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A mapping without errors. None as rules means that the direction has no block, ``()`` that it is empty.
+
+    ``holder`` and ``wire`` are the message types with the schema of all imports.
+    """
+
+    mapping: Mapping
+    holder: Message
+    wire: Message
+    unpack: tuple[Rule, ...] | None
+    pack: tuple[Rule, ...] | None
+    warnings: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Imported:
+    """What one import declares."""
+
+    statement: Import
+    schema: Schema
+
+
+def check(mapping: Mapping, front_ends: Dictionary[str, FrontEnd], search: SearchPath, reading: Reading | None = None) -> Checked:
+    """Read what a mapping imports, and check it.
+
+    Parameters
+    ----------
+    front_ends
+        By the suffix of the files that they read, ``.proto``.
+    reading
+        Collects the files that were read.
+
+    Raises
+    ------
+    MappingError
+        Everything that is wrong with the mapping and with what it imports, in the order of the text.
+    """
+    problems: list[Diagnostic] = []
+    imported = _imports(mapping, _Imports(mapping.source, front_ends, search, reading or Reading()), problems)
+    complete = len(imported) == len({statement.path for statement in mapping.imports})
+    schema = _merged(imported, problems)
+    resolved = resolve(mapping, schema, schema) if complete else ()
+    if not isinstance(resolved, Resolved):
+        raise MappingError(_sorted([*problems, *resolved]))
+    problems += resolved.problems
+    problems += _directions(mapping, resolved)
+    problems += _unused(imported, mapping, resolved)
+    errors = [problem for problem in problems if problem.severity == "error"]
+    if errors:
+        raise MappingError(_sorted(problems))
+    unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, _sorted(problems))
+
+
+@dataclass(frozen=True, slots=True)
+class _Imports:
+    """How the imports of one source are read."""
+
+    importer: Source
+    front_ends: Dictionary[str, FrontEnd]
+    search: SearchPath
+    reading: Reading
+
+    def read(self, statement: Import) -> Schema | Diagnostic:
+        source = self.search.loader(self.reading, self.importer)(statement.path)
+        if source is None:
+            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
+        front_end = self.front_ends.get(PurePosixPath(statement.path).suffix)
+        if front_end is None:
+            return words.import_suffix(statement.span, statement.path, self.front_ends)
+        return front_end(source, self.search.loader(self.reading, source))
+
+
+def _imports(mapping: Mapping, imports: _Imports, problems: list[Diagnostic]) -> list[_Imported]:
+    imported: list[_Imported] = []
+    seen: set[str] = set()
+    for statement in mapping.imports:
+        if statement.path in seen:
+            problems.append(words.import_repeated(statement.span, statement.path))
+            continue
+        seen.add(statement.path)
+        try:
+            schema = imports.read(statement)
+        except ReportError as error:
+            problems.extend(words.placed(problem, statement.span) for problem in error.diagnostics)
+            continue
+        if isinstance(schema, Schema):
+            imported.append(_Imported(statement, schema))
+        else:
+            problems.append(schema)
+    return imported
+
+
+def _merged(imported: list[_Imported], problems: list[Diagnostic]) -> Schema:
+    types: dict[str, Declaration] = {}
+    owners: dict[str, str] = {}
+    for one in imported:
+        for name, declaration in one.schema.types.items():
+            if types.setdefault(name, declaration) != declaration:
+                problems.append(words.conflicting_type(one.statement.span, name, owners[name], one.statement.path))
+            owners.setdefault(name, one.statement.path)
+    return Schema(types, tuple(dict.fromkeys(source for one in imported for source in one.schema.sources)))
+
+
+def _directions(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
+    """Each direction as a whole. An empty block says that the direction is not meant to exist."""
+    if resolved.unpack is None and resolved.pack is None:
+        return [words.no_rules(mapping.wire_span)]
+    problems: list[Diagnostic] = []
+    if mapping.unpack_rules and resolved.unpack is not None:
+        problems += check_complete(resolved.unpack, resolved.holder, "holder", mapping.holder_span)
+    if mapping.pack_rules and resolved.pack is not None:
+        problems += check_complete(resolved.pack, resolved.wire, "wire", mapping.wire_span)
+    return problems
+
+
+def _unused(imported: list[_Imported], mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
+    used = {mapping.holder_type, mapping.wire_type, *resolved.enums}
+    return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not used & one.schema.types.keys()]
+
+
+def _sorted(problems: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    def place(problem: Diagnostic) -> tuple[str, int]:
+        return ("", -1) if problem.span is None else (problem.span.source.name, problem.span.start)
+
+    return tuple(sorted(dict.fromkeys(problems), key=place))

@@ -1,0 +1,201 @@
+"""Types of expressions: model expression → typed expression, every conversion made explicit.
+
+Integers are computed in int64, where `/` and `%` truncate; floats in the wider of the two operands. What cannot be typed
+is reported and gives None; whoever asked stops there, so that one mistake makes one report.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering.calls import type_call
+from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
+from rosetta_jit.lowering.scope import Broken, resolve_path
+from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
+from rosetta_jit.model import expr as model
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.scope import Scope
+    from rosetta_jit.lowering.typed import Expr
+    from rosetta_jit.source import Span
+
+CONSTANTS = {"pi": math.pi}
+
+
+def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
+    """The typed form of an expression, or None where it has none; the problems are in the scope."""
+    match expr:
+        case model.Literal():
+            return _literal(expr)
+        case model.Name():
+            return _name(expr, scope)
+        case model.Path():
+            place = resolve_path(expr, scope, type_index)
+            return None if isinstance(place, Broken) else Access(place, place.type, expr.span)
+        case model.Len():
+            return _length(expr, scope)
+        case model.Unary():
+            return _negative(expr, scope)
+        case model.Binary():
+            return _binary(expr, scope)
+        case model.Call():
+            return type_call(expr, scope, type_expr)
+        case _:
+            assert_never(expr)
+
+
+def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
+    """An expression that must be an integer, as int64."""
+    typed = type_expr(expr, scope)
+    if typed is None:
+        return None
+    integer = as_int64(typed)
+    if integer is None:
+        scope.problems.append(words.integer_needed(typed.span, what, describe(typed.type)))
+    return integer
+
+
+def type_index(expr: model.Expr, scope: Scope) -> Expr | None:
+    """The index of an element."""
+    return type_integer(expr, scope, "an index")
+
+
+def _literal(expr: model.Literal) -> Const:
+    match expr.value:
+        case bool():
+            return Const(expr.value, Bool(), expr.span)
+        case int():
+            return Const(expr.value, Int(64, signed=holds(INT64, expr.value)), expr.span)
+        case float():
+            return Const(expr.value, FLOAT64, expr.span)
+        case str():
+            return Const(expr.value, String(), expr.span)
+
+
+def _name(expr: model.Name, scope: Scope) -> Expr | None:
+    if expr.name in scope.locals:
+        return Local(expr.name, INT64, expr.span)
+    if expr.name in CONSTANTS:
+        return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
+    if expr.name in scope.constants:
+        enum, number = scope.constants[expr.name]
+        scope.named_enums.add(enum.name)
+        return Const(number, enum, expr.span)
+    known = {*scope.locals, *CONSTANTS, *scope.constants}
+    scope.problems.append(words.unknown_name(expr.span, expr.name, known))
+    return None
+
+
+def _length(expr: model.Len, scope: Scope) -> Expr | None:
+    place = resolve_path(expr.path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    match place.type:
+        case Array(length=int(length)):
+            return Const(length, INT64, expr.span)
+        case Array() | Bytes() | String():
+            return LenOf(place, INT64, expr.span)
+        case other:
+            scope.problems.append(words.no_length(expr.path.span, describe(other)))
+            return None
+
+
+def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
+    operand = type_expr(expr.operand, scope)
+    if operand is None:
+        return None
+    if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
+        return _constant(-operand.value, expr.span, scope)
+    number = _computable(operand, "-", scope)
+    return None if number is None else Unary("-", number, number.type, expr.span)
+
+
+def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
+    left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
+    if left is None or right is None:
+        return None
+    if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
+        scope.problems.append(words.zero_division(right.span))
+        return None
+    match left, right:
+        case Const(value=int() | float() as x, type=Int() | Float()), Const(value=int() | float() as y, type=Int() | Float()):
+            return _constant(_compute(expr.operator, x, y), expr.span, scope)
+        case _:
+            pass
+    numbers = _computable(left, expr.operator, scope), _computable(right, expr.operator, scope)
+    if numbers[0] is None or numbers[1] is None:
+        return None
+    pair = unify(numbers[0], numbers[1], scope)
+    return None if pair is None else Binary(expr.operator, *pair, pair[0].type, expr.span)
+
+
+def _computable(operand: Expr, operator: str, scope: Scope) -> Expr | None:
+    """A number that can be computed with; uint64 cannot, as its values do not fit int64."""
+    match operand.type:
+        case Float():
+            return operand
+        case Int() as type_ if type_.signed or type_.bits < 64:
+            return operand
+        case other:
+            scope.problems.append(words.operand(operand.span, operator, describe(other)))
+            return None
+
+
+def unify(left: Expr, right: Expr, scope: Scope) -> tuple[Expr, Expr] | None:
+    """Two numbers as one type: int64, or the narrowest float that holds both."""
+    if isinstance(left.type, Int) and isinstance(right.type, Int):
+        pair = as_int64(left), as_int64(right)
+        return None if pair[0] is None or pair[1] is None else (pair[0], pair[1])
+    for target in (Float(32), FLOAT64):
+        if Float(64) in {_bare(left), _bare(right)} and target.bits == 32:
+            continue
+        pair = convert(left, target), convert(right, target)
+        if pair[0] is not None and pair[1] is not None:
+            return pair[0], pair[1]
+    wide = left if convert(left, FLOAT64) is None else right
+    scope.problems.append(words.needs_word(wide.span, describe(wide.type), "float64", "`float64(...)` rounds to the nearest"))
+    return None
+
+
+def _bare(value: Expr) -> Float | None:
+    """The float type of a value without the IDL's word; None for integers and constants, which adapt."""
+    return Float(value.type.bits) if isinstance(value.type, Float) and not isinstance(value, Const) else None
+
+
+def _compute(operator: model.Operator, x: float, y: float) -> float | None:
+    """The value of a constant expression; None where a float overflows."""
+    whole = isinstance(x, int) and isinstance(y, int)
+    try:
+        match operator:
+            case "+":
+                return x + y
+            case "-":
+                return x - y
+            case "*":
+                return x * y
+            case "/":
+                return _quotient(int(x), int(y)) if whole else x / y
+            case "%":
+                return int(x) - int(y) * _quotient(int(x), int(y)) if whole else math.fmod(x, y)
+    except OverflowError:
+        return None
+
+
+def _quotient(x: int, y: int) -> int:
+    """Integer division that truncates toward zero."""
+    return abs(x) // abs(y) * (1 if (x < 0) == (y < 0) else -1)
+
+
+def _constant(value: float | None, span: Span | None, scope: Scope) -> Const | None:
+    match value:
+        case int() if -(2**63) <= value < 2**64:
+            return Const(value, Int(64, signed=value < 2**63), span)
+        case float() if math.isfinite(value):
+            return Const(value, FLOAT64, span)
+        case _:
+            target = "int64" if isinstance(value, int) else "float64"
+            scope.problems.append(words.constant_range(span, "the result", target))
+            return None

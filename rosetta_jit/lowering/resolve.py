@@ -1,0 +1,210 @@
+"""Names and types of a mapping's rules: `model.mapping` → `lowering.typed`.
+
+Every rule that can be typed is typed; what cannot be is reported, and the field that it meant is remembered, so that
+the checks that follow do not report the same mistake in other words.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering.conversions import convert, describe, same, widens, word_for
+from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.typed import Access, Assign, Const, FieldStep, For, Local, SetLength
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.typed import Expr, Place, Rule
+    from rosetta_jit.model.expr import Side
+    from rosetta_jit.model.mapping import Mapping
+    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.source import Span
+
+
+@dataclass(frozen=True, slots=True)
+class TypedRules:
+    """One direction: the rules that have types, and the fields that broken rules meant to set."""
+
+    rules: tuple[Rule, ...]
+    broken: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """Both directions, None where the mapping has no block; the enums that they name; what is wrong with names and types."""
+
+    holder: Message
+    wire: Message
+    unpack: TypedRules | None
+    pack: TypedRules | None
+    enums: frozenset[str]
+    problems: tuple[Diagnostic, ...]
+
+
+def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[Diagnostic, ...]:
+    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message."""
+    problems: list[Diagnostic] = []
+    holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
+    wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
+    if holder_type is None or wire_type is None:
+        return tuple(problems)
+    enums = enums_of(holder, wire)
+    messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
+    named: set[str] = set()
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named)
+    unpack = _block(mapping.unpack_rules, scope)
+    pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
+
+
+def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
+    found = schema.types.get(name)
+    if isinstance(found, Struct):
+        return Message(found, schema)
+    if found is None:
+        problems.append(words.unknown_type(span, name, [known for known, type_ in schema.types.items() if isinstance(type_, Struct)]))
+    else:
+        problems.append(words.not_a_message(span, name))
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """Types the rules of one direction."""
+
+    broken: list[tuple[str, ...]] = field(default_factory=list[tuple[str, ...]])
+
+    def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+        typed = [self.rule(rule, scope) for rule in rules]
+        return tuple(rule for rule in typed if rule is not None)
+
+    def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
+        match rule:
+            case model.Assign():
+                return self.assign(rule, scope)
+            case model.SetLength():
+                return self.set_length(rule, scope)
+            case model.For():
+                return self.loop(rule, scope)
+            case _:
+                assert_never(rule)
+
+    def assign(self, rule: model.Assign, scope: Scope) -> Assign | None:
+        place = self.place(rule, scope)
+        value = type_expr(rule.value, scope)
+        if place is None:
+            return None
+        fitting = None if value is None else _fit(value, place, scope)
+        if fitting is None:
+            self.broken.append(_fields(place))
+            return None
+        return Assign(place, fitting, rule.span)
+
+    def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
+        place = self.place(rule, scope)
+        value = type_integer(rule.value, scope, "a length")
+        if place is None:
+            return None
+        if value is None or not _length_can_be(value, place, scope):
+            self.broken.append(_fields(place))
+            return None
+        return SetLength(place, value, rule.span)
+
+    def place(self, rule: model.Assign | model.SetLength, scope: Scope) -> Place | None:
+        place = resolve_path(rule.place, scope, type_index)
+        if isinstance(place, Broken):
+            self.broken.append(place.fields)
+            return None
+        return place
+
+    def loop(self, rule: model.For, scope: Scope) -> For | None:
+        if rule.variable in scope.locals:
+            scope.problems.append(words.shadowed(rule.span, rule.variable))
+        start = type_integer(rule.start, scope, "where a loop starts")
+        stop = type_integer(rule.stop, scope, "where a loop ends")
+        body = self.rules(rule.body, scope.inside(rule.variable))
+        if start is None or stop is None:
+            self.broken.extend(_fields(place) for place in _places(body))
+            return None
+        if isinstance(start, Const) and isinstance(stop, Const) and int(stop.value) < int(start.value):
+            scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
+        return For(Local(rule.variable), start, stop, body, rule.span)
+
+
+def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
+    if rules is None:
+        return None
+    block = _Block()
+    typed = block.rules(rules, scope)
+    return TypedRules(typed, tuple(block.broken))
+
+
+def _fields(place: Place) -> tuple[str, ...]:
+    return tuple(step.field.name for step in place.steps if isinstance(step, FieldStep))
+
+
+def _places(rules: tuple[Rule, ...]) -> list[Place]:
+    """All places that rules set, those within loops included."""
+    return [place for rule in rules for place in (_places(rule.body) if isinstance(rule, For) else [rule.place])]
+
+
+def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
+    """The value as the type of the place, reported where that takes a word or cannot be."""
+    target = place.type
+    if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    scalar = not isinstance(target, Array | Struct | Union | Map)
+    fitting = convert(value, target) if scalar else None
+    if fitting is None:
+        scope.problems.append(_mismatch(value, target))
+    return fitting
+
+
+def _whole(source: Type, target: Type, scope: Scope) -> bool:
+    """Whether an array, struct, text or blob can be assigned as a whole."""
+    origin, aim = (scope.messages[side] for side in (_other(scope.target), scope.target))
+    source, target = origin.value_type(source), aim.value_type(target)
+    match source, target:
+        case ((String() | Bytes()), (String() | Bytes())):
+            return True
+        case Array(length=int(length)), Array(length=int(other)) if length != other:
+            return False
+        case Array(element=element), Array(element=wanted):
+            return _whole(element, wanted, scope) or same(element, wanted) or widens(element, wanted)
+        case (Struct(), Struct()) | (Union(), Union()) | (Map(), Map()):
+            return source == target
+        case _:
+            return False
+
+
+def _other(side: Side) -> Side:
+    return "wire" if side == "holder" else "holder"
+
+
+def _mismatch(value: Expr, target: Type) -> Diagnostic:
+    source, aim = describe(value.type), describe(target)
+    match value, target:
+        case Const(value=int(number), type=Int()), Int() | Float():
+            return words.constant_range(value.span, str(number), aim)
+        case Const(value=float(number), type=Float()), Float():
+            return words.constant_range(value.span, repr(number), aim)
+        case _:
+            how = word_for(value.type, target)
+            return words.needs_word(value.span, source, aim, how) if how else words.type_clash(value.span, source, aim)
+
+
+def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
+    match place.type:
+        case Array(length=int(length)) if not (isinstance(value, Const) and value.value == length):
+            scope.problems.append(words.length_not_settable(place.span, describe(place.type)))
+            return False
+        case Array() | Bytes():
+            return True
+        case other:
+            scope.problems.append(words.length_not_settable(place.span, describe(other)))
+            return False

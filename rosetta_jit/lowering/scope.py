@@ -1,0 +1,144 @@
+"""What the rules of a mapping can name: the two messages, enum constants, loop variables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering.conversions import describe
+from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
+from rosetta_jit.model.expr import Index, Member
+from rosetta_jit.model.types import Array, Bytes, Enum, Int, Optional, Struct, Union
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.typed import Expr, Step
+    from rosetta_jit.model.expr import Expr as Untyped
+    from rosetta_jit.model.expr import Path, Side
+    from rosetta_jit.model.types import Field, Schema, Type
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One side of a mapping: its type, and the schema that its references are looked up in."""
+
+    root: Struct
+    schema: Schema
+
+    def value_type(self, type_: Type) -> Type:
+        """The type of a value that is there: without Optional, references resolved."""
+        resolved = self.schema.resolve(type_)
+        return self.value_type(resolved.value) if isinstance(resolved, Optional) else resolved
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The names that are known at one point of a mapping; where problems go, and the enums that were named."""
+
+    messages: Mapping[Side, Message]
+    enums: Mapping[str, Enum]
+    constants: Mapping[str, tuple[Enum, int]]
+    target: Side
+    locals: tuple[str, ...]
+    problems: list[Diagnostic]
+    named_enums: set[str]
+
+    def inside(self, variable: str) -> Scope:
+        return replace(self, locals=(*self.locals, variable))
+
+
+def enums_of(*schemas: Schema) -> dict[str, Enum]:
+    """All enums by qualified name."""
+    return {name: found for schema in schemas for name, found in schema.types.items() if isinstance(found, Enum)}
+
+
+def constants_of(enums: Mapping[str, Enum]) -> dict[str, tuple[Enum, int]]:
+    """Enum constants by qualified name, within their enum and, as protobuf scopes them, beside it."""
+    beside = {_scope(name) + value: (enum, number) for name, enum in enums.items() for value, number in enum.values}
+    within = {f"{name}.{value}": (enum, number) for name, enum in enums.items() for value, number in enum.values}
+    return beside | within
+
+
+def _scope(name: str) -> str:
+    outer = name.rpartition(".")[0]
+    return f"{outer}." if outer else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """A path that does not resolve: the fields that it may have meant, so that nothing more is said about them."""
+
+    fields: tuple[str, ...]
+
+
+def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Expr | None]) -> Place | Broken:
+    """The place that a path names; ``index`` types the expressions within."""
+    message = scope.messages[path.side]
+    type_: Type = message.root
+    steps: list[Step] = []
+    for step in path.steps:
+        found: tuple[list[Step], Type] | Broken
+        match step:
+            case Member():
+                found = _member(step, type_, message, scope, path.side)
+            case Index():
+                found = _element(step, type_, scope, index)
+            case _:
+                assert_never(step)
+        if isinstance(found, Broken):
+            return Broken(tuple(done.field.name for done in steps if isinstance(done, FieldStep)) + found.fields)
+        steps += found[0]
+        type_ = message.value_type(found[1])
+    return Place(path.side, tuple(steps), type_, path.span)
+
+
+def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Side) -> tuple[list[Step], Type] | Broken:
+    if not isinstance(type_, Struct | Union):
+        scope.problems.append(words.not_a_struct(step.span, step.name, describe(type_)))
+        return Broken(())
+    members = members_of(type_, message.schema)
+    if step.name in members:
+        fields = members[step.name]
+        return [FieldStep(field) for field in fields], fields[-1].type
+    elsewhere = ""
+    if side != scope.target and step.name in members_of(scope.messages[scope.target].root, scope.messages[scope.target].schema):
+        elsewhere = words.other_side(f".{step.name}", side)
+    scope.problems.append(words.unknown_field(step, side, type_.name, members.keys(), elsewhere))
+    return Broken((words.nearest(step.name, members.keys()) or step.name,))
+
+
+def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, ...]]:
+    """What can be named in a struct: its fields, and the cases of its unions as if they were fields."""
+    fields = type_.fields if isinstance(type_, Struct) else type_.cases
+    members: dict[str, tuple[Field, ...]] = {}
+    for field in fields:
+        union = schema.resolve(field.type)
+        if isinstance(union, Union):
+            members |= {case.name: (field, case) for case in union.cases}
+    return members | {field.name: (field,) for field in fields}
+
+
+def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, Scope], Expr | None]) -> tuple[list[Step], Type] | Broken:
+    index = typed(step.index, scope)
+    if not isinstance(type_, Array | Bytes):
+        scope.problems.append(words.not_indexable(step.span, describe(type_)))
+        return Broken(())
+    if index is None or not _in_range(index, type_, scope):
+        return Broken(())
+    return [IndexStep(index, step.span)], element_type(type_)
+
+
+def _in_range(index: Expr, type_: Array | Bytes, scope: Scope) -> bool:
+    length = type_.length if isinstance(type_, Array) else None
+    if not isinstance(index, Const) or 0 <= int(index.value) < (2**63 if length is None else length):
+        return True
+    scope.problems.append(words.index_range(index.span, int(index.value), length))
+    return False
+
+
+def element_type(type_: Array | Bytes) -> Type:
+    """The type of one element; a byte is a uint8."""
+    return type_.element if isinstance(type_, Array) else Int(8, signed=False)

@@ -1,0 +1,171 @@
+"""Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
+
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call      each with `type`
+    Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
+    Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
+
+Every change of a scalar type is a `Convert`; both operands of a `Binary` have its type. Only an `Assign` of a whole array,
+struct, string or blob (`Access` as the value) may have two types: elements are then widened, text is checked, and a
+length that the target fixes is checked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+from typing import Literal as OneOf
+
+from rosetta_jit.model.types import Int
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Operator, Side
+    from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.source import Span
+
+INT64 = Int(64)
+
+ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate", "nearest"]
+"""``widen`` cannot fail; ``exact``, ``round`` (half to even) and ``truncate`` (toward zero) are a range error where the
+target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
+
+Function = OneOf["radians", "degrees", "sqrt", "floor", "ceil", "abs", "min", "max", "align"]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldStep:
+    """A member of a struct or a case of a union."""
+
+    field: Field
+
+
+@dataclass(frozen=True, slots=True)
+class IndexStep:
+    """An element, counted from 0; outside the array it is an error of kind ``index``."""
+
+    index: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Step = FieldStep | IndexStep
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place on one side. ``type`` is that of the last step, without Optional and with references resolved."""
+
+    side: Side
+    steps: tuple[Step, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """A number, text or enum value that is known; floats that a float32 cannot hold exactly are rounded when used."""
+
+    value: bool | int | float | str
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A loop variable, int64."""
+
+    name: str
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """The value at a place."""
+
+    place: Place
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LenOf:
+    """The number of elements, or of bytes, at a place; int64."""
+
+    place: Place
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """``-operand``, of int64 or a float."""
+
+    operator: OneOf["-"]
+    operand: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Arithmetic of two int64, or of two floats of one size."""
+
+    operator: Operator
+    left: Expr
+    right: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Convert:
+    """A scalar as another type."""
+
+    operand: Expr
+    type: Type
+    rule: ConversionRule
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function of the language; all arguments and the result have ``type``."""
+
+    function: Function
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """``.place = value``"""
+
+    place: Place
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SetLength:
+    """``len(.place) = value``"""
+
+    place: Place
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """A loop; ``stop`` is exclusive, and below ``start`` it is an error of kind ``count``."""
+
+    variable: Local
+    start: Expr
+    stop: Expr
+    body: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For
