@@ -1,0 +1,66 @@
+"""The command line `rosetta-jit`: one file a command, each with `add` (its arguments) and `run` (its work; gives the exit code).
+
+Exit codes: 0 all is well, 1 the input is wrong, 2 the command line is wrong. What is wrong goes to stderr. The library is imported
+by a command when it runs, so that help costs nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.cli import cache, check, decode, demo, dump, encode, infer
+from rosetta_jit.cli import compile as compile_
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+COMMANDS = (demo, check, compile_, decode, encode, dump, infer, cache)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; gives the exit code."""
+    from rosetta_jit.errors import RosettaError
+
+    chosen = parser().parse_args(arguments)
+    run = cast("Callable[[argparse.Namespace], int]", chosen.run)
+    try:
+        return run(chosen)
+    except RosettaError as error:
+        print(error, file=sys.stderr)
+    except BrokenPipeError:
+        # Whoever read our output has seen enough. Python would complain once more when it flushes at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        print(f"error: {error}", file=sys.stderr)
+    return 1
+
+
+def parser() -> argparse.ArgumentParser:
+    """The arguments of all commands."""
+    root = argparse.ArgumentParser(
+        prog="rosetta-jit", description="Decode one robot middleware's bytes into another's data holders, and back."
+    )
+    root.add_argument("--version", action=_Version)
+    commands = root.add_subparsers(metavar="COMMAND", required=True)
+    for command in COMMANDS:
+        command.add(commands)
+    return root
+
+
+class _Version(argparse.Action):
+    """Asks the installed package for its version, only when somebody wants to know."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, **_: object) -> None:
+        super().__init__(option_strings, dest, nargs=0, help="show the version and exit")
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            print(f"rosetta-jit {version('rosetta-jit')}")
+        except PackageNotFoundError:
+            print("rosetta-jit, from a folder of sources")
+        parser.exit()

@@ -1,0 +1,45 @@
+"""Arguments that several commands share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+    from collections.abc import Callable
+
+
+class Commands(Protocol):
+    """What `ArgumentParser.add_subparsers` gives; argparse has no public name for it."""
+
+    def add_parser(self, name: str, *, help: str, description: str) -> ArgumentParser: ...  # noqa: A002 - argparse's name
+
+
+def add_command(commands: Commands, name: str, summary: str, run: Callable[[Namespace], int]) -> ArgumentParser:
+    """A command of that name; its summary is shown in both helps."""
+    command = commands.add_parser(name, help=summary, description=summary)
+    command.set_defaults(run=run)
+    return command
+
+
+def add_mapping(command: ArgumentParser) -> None:
+    """The mapping, by its path or its name on the search path."""
+    command.add_argument(
+        "mapping", metavar="MAPPING", help="a mapping's path, or its name on the search path (yarp/icub/torso_state.mapping)"
+    )
+
+
+def add_mappings(command: ArgumentParser) -> None:
+    """The same, several."""
+    command.add_argument("mappings", metavar="MAPPING", nargs="+", help="a mapping's path, or its name on the search path")
+
+
+def add_encoding(command: ArgumentParser, default: str | None = None) -> None:
+    """Which bytes, where a framework has several."""
+    shown = f" (default: {default})" if default else " (default: the mapping's own)"
+    command.add_argument("--encoding", default=default, help=f"yarp2012, yarp3, yarp4, yarp, protobuf{shown}")
+
+
+def encoding_options(arguments: Namespace) -> dict[str, str]:
+    """``encoding`` as keyword argument, where the user gave one."""
+    return {"encoding": arguments.encoding} if arguments.encoding else {}

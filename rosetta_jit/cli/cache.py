@@ -1,0 +1,59 @@
+"""`rosetta-jit cache`: look at the kernel cache, check it, empty it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from rosetta_jit.cli.arguments import Commands, add_command
+
+if TYPE_CHECKING:
+    import argparse
+
+ACTIONS = ("info", "verify", "clear")
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "cache", "Look at the cache of compiled kernels (info), check it (verify), or empty it (clear).", run)
+    command.add_argument("action", choices=ACTIONS)
+    command.add_argument("--json", action="store_true", help="one JSON object, on stdout")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code 1 if `verify` finds something, or if the folder cannot be used."""
+    actions = {"info": _info, "verify": _verify, "clear": _clear}
+    return actions[arguments.action](as_json=arguments.json)
+
+
+def _info(*, as_json: bool) -> int:
+    from rosetta_jit.runtime.cache import Cache
+
+    info = Cache.default().info()
+    facts = asdict(info) | {"folder": str(info.folder) if info.folder else None}
+    if as_json:
+        print(json.dumps(facts))
+    else:
+        print("\n".join(f"{name.replace('_', ' ') + ':':<12}{value}" for name, value in facts.items() if value != ""))
+    return int(bool(info.problem))
+
+
+def _verify(*, as_json: bool) -> int:
+    from rosetta_jit.runtime.cache import Cache
+
+    damaged = Cache.default().verify()
+    if as_json:
+        print(json.dumps({"damaged": [asdict(file) for file in damaged]}))
+    for file in () if as_json else damaged:
+        print(f"{file.name}: {file.reason}", file=sys.stderr)
+    return int(bool(damaged))
+
+
+def _clear(*, as_json: bool) -> int:
+    from rosetta_jit.runtime.cache import Cache
+
+    count = Cache.default().clear()
+    print(json.dumps({"removed": count}) if as_json else f"{count} files removed")
+    return 0

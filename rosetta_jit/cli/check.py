@@ -1,0 +1,41 @@
+"""`rosetta-jit check`: all mistakes of some mappings, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
+from rosetta_jit.diagnostics import Diagnostic, render, to_json
+from rosetta_jit.errors import ReportError
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "check", "Report what is wrong with mappings and the schemas that they import.", run)
+    add_mappings(command)
+    command.add_argument("--json", action="store_true", help="one JSON object a mapping, on stdout")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code 1 if any mapping has an error; warnings are shown and forgiven."""
+    reports = [(mapping, _diagnostics(mapping)) for mapping in cast("list[str]", arguments.mappings)]
+    for mapping, diagnostics in reports:
+        if arguments.json:
+            print(json.dumps({"mapping": mapping, "diagnostics": [to_json(diagnostic) for diagnostic in diagnostics]}))
+        for diagnostic in () if arguments.json else diagnostics:
+            print(render(diagnostic), end="\n\n", file=sys.stderr)
+    return int(any(diagnostic.severity == "error" for _, diagnostics in reports for diagnostic in diagnostics))
+
+
+def _diagnostics(mapping: str) -> tuple[Diagnostic, ...]:
+    import rosetta_jit
+
+    try:
+        return tuple(rosetta_jit.check(mapping))
+    except ReportError as error:
+        return error.diagnostics

@@ -1,0 +1,64 @@
+"""`rosetta-jit decode`: messages in, their values out as text, JSON or numpy arrays."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_options
+from rosetta_jit.errors import DecodeError
+from rosetta_jit.recording import read_messages
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Iterator, Sequence
+
+    from rosetta_jit.runtime.holder import Holder
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "decode", "Decode messages and print their values.", run)
+    add_mapping(command)
+    command.add_argument("files", metavar="FILE", nargs="+", help="one message, or a recording (.rec, .rec.xz)")
+    add_encoding(command)
+    form = command.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help='one JSON object a message and line; bytes as {"base64": …}')
+    form.add_argument("--npz", metavar="OUT", help="write the columns of all messages to a numpy archive")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Messages that cannot be decoded are reported and skipped; then the exit code is 1."""
+    import rosetta_jit
+
+    decode = rosetta_jit.Decoder(arguments.mapping, **encoding_options(arguments))
+    failures: list[str] = []
+    holders = _holders(decode, cast("list[str]", arguments.files), failures)
+    if arguments.npz:
+        from rosetta_jit.cli.columns import write_columns
+
+        write_columns(holders, Path(arguments.npz))
+    else:
+        for holder in holders:
+            print(_text(holder, as_json=arguments.json))
+    return int(bool(failures))
+
+
+def _holders(decode: Callable[[bytes], Holder], files: Sequence[str], failures: list[str]) -> Iterator[Holder]:
+    """The decoder's own holder, filled anew for each message."""
+    for file in files:
+        for index, message in enumerate(read_messages(Path(file))):
+            try:
+                yield decode(message.data)
+            except DecodeError as error:
+                failures.append(file)
+                print(f"{file}: message {index}: {error}", file=sys.stderr)
+
+
+def _text(holder: Holder, *, as_json: bool) -> str:
+    if not as_json:
+        return str(holder)
+    from rosetta_jit.cli.values import dump
+
+    return dump(holder.to_dict())

@@ -1,0 +1,31 @@
+"""`rosetta-jit demo`: the main job on bundled recordings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosetta_jit.cli.arguments import Commands, add_command
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(
+        commands, "demo", "Play recordings of an iCub through compiled kernels; print a table and draw what was decoded.", run
+    )
+    command.add_argument("--output", metavar="DIR", default="demo-output", help="where the pictures go (default: demo-output)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the table and the names of the pictures."""
+    from rosetta_jit.demo.play import play
+    from rosetta_jit.demo.table import table
+
+    report = play(Path(arguments.output))
+    print(table(report))
+    for picture in report.pictures:
+        print(f"wrote {picture}")
+    return 0

@@ -1,0 +1,30 @@
+"""`rosetta-jit dump`: what became of a mapping, stage by stage."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_options
+
+if TYPE_CHECKING:
+    import argparse
+
+STAGES = ("model", "codec", "kernel", "python", "llvm", "asm")
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "dump", "Print what a mapping became at one stage of compilation.", run)
+    add_mapping(command)
+    command.add_argument("--stage", choices=STAGES, default="kernel", help="default: kernel")
+    command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
+    add_encoding(command)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the text of the stage."""
+    import rosetta_jit
+
+    program = rosetta_jit.Encoder if arguments.direction == "encode" else rosetta_jit.Decoder
+    print(program(arguments.mapping, **encoding_options(arguments)).stage(arguments.stage))
+    return 0

@@ -1,0 +1,66 @@
+"""`rosetta-jit encode`: values as `decode --json` prints them in, messages out."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.catalogue import values as words
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_options
+from rosetta_jit.cli.values import load
+from rosetta_jit.errors import ReportError
+from rosetta_jit.recording import Message, is_recording, write_recording
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "encode", "Encode values to messages.", run)
+    add_mapping(command)
+    command.add_argument("files", metavar="FILE.json", nargs="+", help="one JSON object, or one a line, as `decode --json` prints them")
+    add_encoding(command)
+    command.add_argument(
+        "-o", "--output", metavar="OUT", default="-", help="for one message any file, for several a recording (.rec, .rec.xz)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """All messages are encoded before anything is written."""
+    import rosetta_jit
+
+    encode = rosetta_jit.Encoder(arguments.mapping, **encoding_options(arguments))
+    holder = type(encode.new())
+    values = [value for file in cast("list[str]", arguments.files) for value in _values(Path(file))]
+    messages = [encode(holder.from_dict(value)) for value in values]
+    output = Path(arguments.output)
+    if is_recording(output):
+        write_recording(output, (Message(0.0, message) for message in messages))
+    elif len(messages) != 1:
+        raise ReportError((words.several_messages(len(messages)),))
+    elif arguments.output == "-":
+        sys.stdout.buffer.write(messages[0])
+    else:
+        output.write_bytes(messages[0])
+    return 0
+
+
+def _values(path: Path) -> Iterator[dict[str, object]]:
+    text = path.read_text("utf-8", "surrogateescape")
+    for number, line in _documents(text):
+        try:
+            value = load(line)
+        except (ValueError, RecursionError) as error:
+            raise ReportError((words.no_json(f"{path}:{number}", str(error)),)) from error
+        if not isinstance(value, dict):
+            raise ReportError((words.no_json(f"{path}:{number}", "an object is expected"),))
+        yield cast("dict[str, object]", value)
+
+
+def _documents(text: str) -> list[tuple[int, str]]:
+    """Lines, where each begins an object of its own; else the text is one document."""
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    return lines if all(line.lstrip().startswith("{") and line.rstrip().endswith("}") for _, line in lines) else [(1, text)]

@@ -1,0 +1,89 @@
+"""Recordings: captured messages in a file, each with the time at which it came.
+
+    recording = message*
+    message   = time in seconds (float64), length (u32), that many bytes
+
+All little-endian; `.rec` as it is, `.rec.xz` compressed. Any other file is one message.
+"""
+
+from __future__ import annotations
+
+import lzma
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, BinaryIO, cast
+
+from rosetta_jit.catalogue import recording as words
+from rosetta_jit.errors import ReportError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+MAX_MESSAGE_BYTES = 256 * 1024 * 1024
+"""A compressed recording of a few KB may promise, and hold, a message of 4 GiB."""
+
+_HEAD = struct.Struct("<dI")
+
+
+class RecordingError(ReportError):
+    """A recording that cannot be read to its end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """The bytes of one message and when they came, in seconds."""
+
+    time_s: float
+    data: bytes
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file of that name holds several messages."""
+    return path.name.endswith((".rec", ".rec.xz"))
+
+
+def read_messages(path: Path) -> Iterator[Message]:
+    """The messages of a recording, or the one message of any other file.
+
+    Raises
+    ------
+    RecordingError
+        After the last whole message, if the recording is cut short or damaged.
+    OSError
+        If the file cannot be read.
+    """
+    if not is_recording(path):
+        yield Message(0.0, path.read_bytes())
+        return
+    with _open(path, "rb") as file:
+        try:
+            yield from _messages(file, str(path))
+        except (EOFError, lzma.LZMAError) as error:
+            raise RecordingError((words.damaged(str(path), str(error)),)) from error
+
+
+def write_recording(path: Path, messages: Iterable[Message]) -> None:
+    """Write messages to `.rec` or `.rec.xz`."""
+    with _open(path, "wb") as file:
+        for message in messages:
+            file.write(_HEAD.pack(message.time_s, len(message.data)) + message.data)
+
+
+def _open(path: Path, mode: str) -> BinaryIO:
+    return cast("BinaryIO", lzma.open(path, mode) if path.suffix == ".xz" else path.open(mode))
+
+
+def _messages(file: BinaryIO, name: str) -> Iterator[Message]:
+    index = 0
+    while head := file.read(_HEAD.size):
+        if len(head) < _HEAD.size:
+            raise RecordingError((words.cut(name, index),))
+        time_s, size = cast("tuple[float, int]", _HEAD.unpack(head))
+        if size > MAX_MESSAGE_BYTES:
+            raise RecordingError((words.too_long(name, index, size, MAX_MESSAGE_BYTES),))
+        data = file.read(size)
+        if len(data) < size:
+            raise RecordingError((words.cut(name, index),))
+        yield Message(time_s, data)
+        index += 1
