@@ -7,6 +7,8 @@ RosettaError
     MessageError        what is wrong with one message: kind and field path
         DecodeError         bytes that are not what the schema promises; with byte offset
         EncodeError         a holder whose values the wire cannot carry
+    ValuesError         plain values that a holder's type cannot take; with field path
+    InvalidHolder       a holder that was read although the last decode into it failed
 
 Errors of the caller (an object of the wrong type, a read-only output) are Python's own TypeError and BufferError.
 """
@@ -103,3 +105,24 @@ class EncodeError(MessageError):
 
 class CacheWarning(UserWarning):
     """The kernel cache is damaged or cannot be used; everything works, but compiles again."""
+
+
+class ValuesError(RosettaError, ValueError):
+    """Plain values that a holder's type cannot take.
+
+    Attributes
+    ----------
+    path : str
+        The field, as written in the IDL, with indices: ``.joints[3].name``.
+    detail : str
+        One sentence for a person.
+    """
+
+    def __init__(self, path: str, detail: str) -> None:
+        self.path = path
+        self.detail = detail
+        super().__init__(f"{detail} - at `{path or '.'}`")
+
+
+class InvalidHolder(RosettaError):  # noqa: N818  the holder is what is wrong
+    """A holder was read although the last decode into it failed."""

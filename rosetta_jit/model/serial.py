@@ -1,0 +1,168 @@
+"""Types as plain data and back: what a cached program keeps so that a warm process rebuilds its holder without an IDL.
+
+    {"type": Type, "declared": {name: Type}}          only what the type reaches
+    Type  = [word, ...]                               the word of the model in lower case, then its attributes in order
+    Field = [name, Type, number, unit, default, required, options]
+
+Documentation, spans and expressions (constants, lengths) stay behind: only the compiler reads them.
+"""
+
+from __future__ import annotations
+
+from typing import Any, assert_never, cast
+
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    Optional,
+    Ref,
+    Schema,
+    String,
+    Struct,
+    Type,
+    Union,
+)
+
+Plain = dict[str, Any]
+"""What JSON can carry."""
+
+MAX_DEPTH = 100
+"""Types written inside each other; references do not count."""
+
+
+def to_plain(type_: Type, schema: Schema) -> Plain:
+    """The type and every declaration that it reaches, as plain data.
+
+    Raises
+    ------
+    ValueError
+        If types are written inside each other more than `MAX_DEPTH` deep.
+    """
+    writing = _Writing()
+    root = writing.type(type_, 0)
+    declared: dict[str, list[Any]] = {}
+    while writing.pending:
+        name = writing.pending.pop()
+        if name not in declared:
+            declared[name] = writing.type(schema.types[name], 0)
+    return {"type": root, "declared": dict(sorted(declared.items()))}
+
+
+def from_plain(plain: Plain) -> tuple[Type, Schema]:
+    """The type, and a schema of the declarations that it reaches.
+
+    Raises
+    ------
+    ValueError
+        If the data is not what `to_plain` makes.
+    """
+    try:
+        declared = {name: _type(each, 0) for name, each in plain["declared"].items()}
+        root = _type(plain["type"], 0)
+    except (KeyError, IndexError, TypeError, AttributeError) as problem:
+        raise ValueError(f"not a type: {problem}") from None
+    return root, Schema({name: each for name, each in declared.items() if isinstance(each, Struct | Enum)})
+
+
+class _Writing:
+    """Names that were referred to and not yet written."""
+
+    def __init__(self) -> None:
+        self.pending: list[str] = []
+
+    def type(self, type_: Type, depth: int) -> list[Any]:
+        if depth > MAX_DEPTH:
+            raise ValueError(f"types nest more than {MAX_DEPTH} deep")
+        match type_:
+            case Bool(spelling):
+                return ["bool", spelling]
+            case Int(bits, signed, spelling):
+                return ["int", bits, signed, spelling]
+            case Float(bits, spelling):
+                return ["float", bits, spelling]
+            case String(encoding, spelling):
+                return ["string", encoding, spelling]
+            case Bytes(spelling):
+                return ["bytes", spelling]
+            case Enum(name, values, closed):
+                return ["enum", name, [list(pair) for pair in values], closed]
+            case Array(element, length):
+                return ["array", self.type(element, depth + 1), length]
+            case Struct(name, fields):
+                return ["struct", name, [self.field(each, depth + 1) for each in fields]]
+            case Union(name, cases):
+                return ["union", name, [self.field(each, depth + 1) for each in cases]]
+            case Optional(value):
+                return ["optional", self.type(value, depth + 1)]
+            case Map(key, value):
+                return ["map", self.type(key, depth + 1), self.type(value, depth + 1)]
+            case Ref(name):
+                self.pending.append(name)
+                return ["ref", name]
+            case _:
+                assert_never(type_)
+
+    def field(self, field: Field, depth: int) -> list[Any]:
+        options = [[name, _plain_constant(value)] for name, value in field.options]
+        default = _plain_constant(field.default)
+        return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options]
+
+
+def _type(plain: list[Any], depth: int) -> Type:
+    if depth > MAX_DEPTH:
+        raise ValueError(f"types nest more than {MAX_DEPTH} deep")
+    match plain:
+        case ["bool", spelling]:
+            return Bool(spelling)
+        case ["int", bits, signed, spelling]:
+            return Int(bits, signed, spelling)
+        case ["float", bits, spelling]:
+            return Float(bits, spelling)
+        case ["string", encoding, spelling]:
+            return String(encoding, spelling)
+        case ["bytes", spelling]:
+            return Bytes(spelling)
+        case ["enum", name, values, closed]:
+            return Enum(name, tuple((each, number) for each, number in values), closed)
+        case ["array", element, length]:
+            return Array(_type(element, depth + 1), length)
+        case ["struct", name, fields]:
+            return Struct(name, tuple(_field(each, depth + 1) for each in fields))
+        case ["union", name, cases]:
+            return Union(name, tuple(_field(each, depth + 1) for each in cases))
+        case ["optional", value]:
+            return Optional(_type(value, depth + 1))
+        case ["map", key, value]:
+            return Map(_type(key, depth + 1), _type(value, depth + 1))
+        case ["ref", name]:
+            return Ref(name)
+        case _:
+            raise ValueError(f"not a type: {plain!r:.80}")
+
+
+def _field(plain: list[Any], depth: int) -> Field:
+    name, type_, number, unit, default, required, options = plain
+    return Field(
+        name,
+        _type(type_, depth),
+        number=number,
+        unit=unit,
+        default=_constant(default),
+        required=required,
+        options=tuple((each, _constant(value)) for each, value in options),
+    )
+
+
+def _plain_constant(value: object) -> Any:
+    """Bytes are the one constant that JSON has no word for."""
+    return {"hex": value.hex()} if isinstance(value, bytes) else value
+
+
+def _constant(plain: Any) -> Any:
+    return bytes.fromhex(cast("str", plain["hex"])) if isinstance(plain, dict) else plain

@@ -1,0 +1,277 @@
+"""Lanes: the memory of a holder, one growing array of rows a lane, and the state through which kernels find it.
+
+The state and the first rows of all lanes lie in one allocation (the arena), so that a small holder costs little and thousands of them stay
+small. A lane that grows moves to memory of its own; whoever still has a view keeps what it shows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rosetta_jit.errors import InvalidHolder
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, STRIDE, USED, VALID, lane_word, state_words
+from rosetta_jit.model.layout import Number
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rosetta_jit.model.layout import Layout
+
+Array = np.ndarray[Any, Any]
+
+ALIGNMENT = 64
+"""Of each lane: a cache line, and the widest vector register."""
+
+INITIAL_BYTES = 64
+"""What a lane has room for before it grows."""
+
+MAX_WASTE = 1 << 16
+"""Bytes that a holder may leave unused before it tidies up, at least."""
+
+SCRATCH_STRIDE = 8
+"""One word a row, for what an encoder must remember between its passes."""
+
+CLEAN, UNSETTLED = 1, 2
+"""Values of the state's word `VALID`, besides 0. An unsettled holder reads as usual, but must be settled before it is encoded: spans are
+borrowed from a message, or rows of a recursive lane lie before their parents. Encoders accept 1 and leave 2 to their slow path."""
+
+SCALARS: tuple[str, ...] = ("bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64")
+_FORMATS = {
+    "bool": "?",
+    "i8": "b",
+    "u8": "B",
+    "i16": "h",
+    "u16": "H",
+    "i32": "i",
+    "u32": "I",
+    "i64": "q",
+    "u64": "Q",
+    "f32": "f",
+    "f64": "d",
+}
+"""Of memoryview and numpy alike."""
+_BYTES = np.dtype(np.uint8)
+
+
+def cell_key(lane: int, scalar: str) -> int:
+    """The key of a lane's cells of one scalar in `Cells`."""
+    return lane << 4 | SCALARS.index(scalar)
+
+
+def dtype_of(scalar: str) -> np.dtype[Any]:
+    """The numpy type of a scalar."""
+    return np.dtype(_FORMATS[scalar])
+
+
+class Cells(dict[int, Any]):
+    """The lanes as cells of each scalar, made when first asked for: reading one costs a third of what numpy takes."""
+
+    __slots__ = ("buffers",)
+
+    def __init__(self, buffers: list[NDArray[np.uint8]]) -> None:
+        self.buffers = buffers
+
+    def __missing__(self, key: int) -> Any:
+        lane: Any = self.buffers[key >> 4]
+        cells: Any = memoryview(lane).cast(cast("Any", _FORMATS[SCALARS[key & 15]]))
+        self[key] = cells
+        return cells
+
+
+class Arrays(dict[int, Array]):
+    """The lanes of numbers as arrays of their type, all rows, made when first asked for."""
+
+    __slots__ = ("array_type", "buffers", "dtypes")
+
+    def __init__(self, buffers: list[NDArray[np.uint8]], dtypes: tuple[np.dtype[Any], ...], array_type: type[Array]) -> None:
+        self.buffers = buffers
+        self.dtypes = dtypes
+        self.array_type = array_type
+
+    def __missing__(self, lane: int) -> Array:
+        array: Array = self.buffers[lane].view(self.dtypes[lane]).view(self.array_type)
+        self[lane] = array
+        return array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
+
+    ``template`` is the state with addresses counted from the arena's start, ``addressed`` has a 1 at each address.
+    """
+
+    layout: Layout
+    rows: int
+    strides: tuple[int, ...]
+    offsets: tuple[int, ...]
+    sizes: tuple[int, ...]
+    dtypes: tuple[np.dtype[Any], ...]
+    size_bytes: int
+    template: NDArray[np.int64]
+    addressed: NDArray[np.int64]
+
+
+def plan(layout: Layout, rows: int = 1) -> Plan:
+    """A plan with room for so many messages, which are in use (and zero) from the start."""
+    strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
+    words = state_words(len(strides))
+    template, addressed = np.zeros(words, np.int64), np.zeros(words, np.int64)
+    template[VALID] = CLEAN
+    behind = _aligned(8 * words)
+    offsets: list[int] = []
+    sizes: list[int] = []
+    for lane, stride in enumerate(strides):
+        capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride)
+        offsets.append(behind)
+        sizes.append(_aligned(capacity * stride, 8))
+        template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = behind, capacity, rows if lane == 0 else 0, stride
+        addressed[lane_word(lane, ADDRESS)] = 1
+        behind = _aligned(behind + sizes[-1])
+    dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else _BYTES for lane in layout.lanes), _BYTES)
+    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addressed)
+
+
+def _aligned(size: int, alignment: int = ALIGNMENT) -> int:
+    return -(-size // alignment) * alignment
+
+
+class Lanes:
+    """The memory of one holder or batch.
+
+    Attributes
+    ----------
+    state : ndarray of int64
+        What kernels are given; its words are those of `rosetta_jit.kernel.state`. It never moves.
+    words : memoryview
+        The same words, quicker to read one at a time.
+    buffers : list of ndarray of uint8
+        The bytes of each lane, the scratch lane last.
+    cells : Cells
+        The same bytes as scalars.
+    source : list
+        One element: the message from which spans are borrowed, or None.
+    wasted : int
+        About how many bytes of rows nothing refers to any more.
+    moves : int
+        How often rows changed their place, so that views know when to look for theirs again.
+    """
+
+    __slots__ = ("__weakref__", "arena", "arrays", "buffers", "cells", "moves", "plan", "source", "state", "wasted", "words")
+
+    def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
+        self.plan = plan
+        arena = np.zeros(plan.size_bytes + ALIGNMENT, np.uint8)
+        address: int = arena.__array_interface__["data"][0]
+        shift = -address % ALIGNMENT
+        self.arena = arena[shift : shift + plan.size_bytes]
+        self.state: NDArray[np.int64] = self.arena[: plan.template.nbytes].view(np.int64)
+        np.multiply(plan.addressed, address + shift, out=self.state)
+        self.state += plan.template
+        self.words = memoryview(cast("Any", self.state))
+        self.buffers = [self.arena[start : start + size] for start, size in zip(plan.offsets, plan.sizes, strict=True)]
+        self.cells = Cells(self.buffers)
+        self.arrays = Arrays(self.buffers, plan.dtypes, array_type)
+        self.source: list[Any] = [None]
+        self.moves = 0
+        self.wasted = 0
+
+    @classmethod
+    def of(cls, layout: Layout, rows: int = 1) -> Lanes:
+        """Lanes of a layout."""
+        return cls(plan(layout, rows))
+
+    def used(self, lane: int) -> int:
+        """How many rows of a lane are in use."""
+        return self.words[lane_word(lane, USED)]
+
+    def capacity(self, lane: int) -> int:
+        """How many rows a lane has room for."""
+        return self.words[lane_word(lane, CAPACITY)]
+
+    def grow(self, lane: int, rows: int) -> None:
+        """Room for so many rows more than the lane has, and at least twice as many as before.
+
+        Raises
+        ------
+        MemoryError
+            If there is no such memory; the lanes are as before.
+        """
+        stride = self.plan.strides[lane]
+        capacity = self.capacity(lane)
+        capacity = max(2 * capacity, capacity + rows)
+        old, size = self.buffers[lane], _aligned(capacity * stride, 8)
+        memory = np.empty(size + ALIGNMENT, np.uint8)
+        shift = -memory.__array_interface__["data"][0] % ALIGNMENT
+        self._place(lane, memory[shift : shift + size], capacity)
+        self.buffers[lane][: old.size] = old
+
+    def _place(self, lane: int, buffer: NDArray[np.uint8], capacity: int) -> None:
+        self.buffers[lane] = buffer
+        self.words[lane_word(lane, ADDRESS)] = buffer.__array_interface__["data"][0]
+        self.words[lane_word(lane, CAPACITY)] = capacity
+        self._forget(lane)
+
+    def _forget(self, lane: int) -> None:
+        """Drop the views of a lane that has moved."""
+        self.arrays.pop(lane, None)
+        for key in [key for key in self.cells if key >> 4 == lane]:
+            del self.cells[key]
+
+    def take(self, lane: int, rows: int) -> int:
+        """Take so many rows at the lane's end into use, zeroed; the number of the first."""
+        start = self.used(lane)
+        missing = start + rows - self.capacity(lane)
+        if missing > 0:
+            self.grow(lane, missing)
+        stride = self.plan.strides[lane]
+        self.buffers[lane][start * stride : (start + rows) * stride] = 0
+        self.words[lane_word(lane, USED)] = start + rows
+        return start
+
+    def give_back(self, lane: int, start: int) -> None:
+        """Rows from ``start`` on are not in use any more."""
+        self.words[lane_word(lane, USED)] = start
+
+    def reset(self, rows: int = 1) -> None:
+        """Empty messages in the first rows of lane 0, nothing in the others, and nothing borrowed."""
+        if rows > self.capacity(0):
+            self.grow(0, rows - self.capacity(0))
+        for lane in range(len(self.buffers)):
+            self.give_back(lane, 0)
+        self.take(0, rows)
+        self.source[0] = None
+        self.wasted = 0
+        self.moves += 1
+        self.words[VALID] = CLEAN
+
+    def adopt(self, other: Lanes) -> None:
+        """Take over the rows of other lanes of the same layout, which are not used any more."""
+        for lane, buffer in enumerate(other.buffers):
+            self._place(lane, buffer, other.capacity(lane))
+            self.give_back(lane, other.used(lane))
+        self.source[0] = None
+        self.wasted = 0
+        self.moves += 1
+        self.words[VALID] = CLEAN
+
+    def unsettle(self) -> None:
+        """Spans are borrowed, or rows lie before their parents: encoders must not read this as it is."""
+        self.words[VALID] = UNSETTLED
+
+    def waste(self, lane: int, rows: int) -> None:
+        """Rows of a lane are not referred to any more. Where there are many, the next encode tidies up."""
+        self.wasted += rows * self.plan.strides[lane]
+        if self.wasted > max(MAX_WASTE, sum(buffer.size for buffer in self.buffers) // 2):
+            self.unsettle()
+
+    def borrowed(self, start: int, size: int) -> memoryview:
+        """Bytes of the message that the holder borrows from, read-only."""
+        return memoryview(self.source[0]).cast("B")[start : start + size].toreadonly()
+
+    def invalid(self) -> InvalidHolder:
+        """The error of reading what a failed decode left behind."""
+        return InvalidHolder("the last decode into this holder failed; decode again or clear it before you read it")
