@@ -1,0 +1,126 @@
+"""Imports point one way (also those inside functions and under TYPE_CHECKING); this table is the architecture.
+
+Each line says what a module or package may import besides itself; a package stands for all that is in it.
+"""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
+
+REPORTS = {"source", "errors", "diagnostics", "catalogue"}
+RUNTIME = {"model.types", "model.layout", "model.serial", "kernel.state"}
+MIDDLE = REPORTS | {"model", "frontend", "wire", "kernel", "lowering"}
+ANYTHING = MIDDLE | {"backends", "frameworks", "runtime", "pipeline", "recording", "cli", "demo", ""}
+
+MAY_IMPORT = {
+    "source": set(),
+    "errors": {"diagnostics"},
+    "diagnostics": {"source"},
+    "catalogue": {"source", "diagnostics", "model"},
+    "model": REPORTS,
+    "frontend": REPORTS | {"model"},
+    "wire": REPORTS | {"model"},
+    "kernel": REPORTS | {"model"},
+    "lowering": MIDDLE,
+    "backends": {"kernel", "errors"},
+    "frameworks": REPORTS | {"model", "frontend.idl", "wire", "runtime.holder"},
+    "runtime": REPORTS | RUNTIME,
+    "recording": REPORTS,
+    "pipeline": ANYTHING - {"cli", "demo", ""},
+    "demo": ANYTHING - {"cli"},
+    "cli": ANYTHING,
+    "": ANYTHING - {"cli", "demo"},
+}
+
+
+@cache
+def modules():
+    return {
+        ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix("__init__").rstrip("."): path
+        for path in PACKAGE.rglob("*.py")
+    }
+
+
+@cache
+def parsed(path):
+    return ast.parse(path.read_text())
+
+
+@cache
+def imported(path):
+    """The modules of ours that a source file imports, without the package's name, and the line."""
+    return tuple(found(path))
+
+
+def found(path):
+    for node in ast.walk(parsed(path)):
+        match node:
+            case ast.Import():
+                names = [alias.name for alias in node.names]
+            case ast.ImportFrom(module=module, level=0):
+                names = [f"{module}.{alias.name}" if is_module(module, alias.name) else module for alias in node.names]
+            case ast.ImportFrom():
+                names = ["rosetta_jit.<relative import>"]
+            case _:
+                continue
+        yield from ((name.removeprefix("rosetta_jit").lstrip("."), node.lineno) for name in names if name.split(".")[0] == "rosetta_jit")
+
+
+def is_module(package, name):
+    folder = PACKAGE.parent / package.replace(".", "/")
+    return (folder / name).is_dir() or (folder / f"{name}.py").is_file()
+
+
+def within(module, packages):
+    return any(module == package or (package and module.startswith(f"{package}.")) for package in packages)
+
+
+def test_every_module_has_a_layer():
+    assert {module.split(".")[0] for module in modules()} <= set(MAY_IMPORT)
+
+
+@pytest.mark.parametrize("layer", MAY_IMPORT)
+def test_imports_point_one_way(layer):
+    wrong = [
+        f"{path.relative_to(PACKAGE.parent)}:{line} imports {target or 'rosetta_jit'}"
+        for module, path in modules().items()
+        if module.split(".")[0] == layer
+        for target, line in imported(path)
+        if target.split(".")[0] != layer and not within(target, MAY_IMPORT[layer])
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_no_framework_knows_another():
+    wrong = [
+        f"{module} imports {target}"
+        for module, path in modules().items()
+        if module.startswith("frameworks.") and module.count(".") > 1
+        for target, _ in imported(path)
+        if target.startswith("frameworks.") and target.count(".") > 1 and target.split(".")[1] != module.split(".")[1]
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_nothing_is_imported_in_a_circle():
+    """Imports that run when a module is imported; those inside functions and under TYPE_CHECKING may close a circle."""
+    graph = {module: {target for target in top_level(path) if target in modules()} - {module} for module, path in modules().items()}
+    while leaves := {module for module, targets in graph.items() if not targets & graph.keys()}:
+        graph = {module: targets for module, targets in graph.items() if module not in leaves}
+    assert not graph, sorted(graph)
+
+
+def top_level(path):
+    for node in parsed(path).body:
+        match node:
+            case ast.Import():
+                yield from (alias.name.removeprefix("rosetta_jit.") for alias in node.names)
+            case ast.ImportFrom(module=str(module)) if module.startswith("rosetta_jit"):
+                short = module.removeprefix("rosetta_jit").lstrip(".")
+                yield from (f"{short}.{alias.name}".lstrip(".") if is_module(module, alias.name) else short for alias in node.names)
