@@ -1,0 +1,70 @@
+; decode(message) -> the program's own holder, which may keep views into the message: item 0 of its source cell, a list, becomes the bytes object
+; or a memoryview of whatever else has a buffer. The memoryview is made first and the kernel reads through it: an exporter need not
+; give out the same memory twice. Another holder has a cell of its own: the slow path.
+define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
+  %view = alloca [80 x i8], align 8
+  %context = call ptr @context(ptr %self)
+  %state = load ptr, ptr %context
+  %count = call i64 @positional(i64 %nargsf, ptr %names)
+  %usual = icmp eq i64 %count, 1
+  br i1 %usual, label %message, label %slow, !prof !0
+message:
+  %message.object = load ptr, ptr %args
+  %type.at = getelementptr i8, ptr %message.object, i64 8
+  %type = load ptr, ptr %type.at
+  %is_bytes = icmp eq ptr %type, @PyBytes_Type
+  br i1 %is_bytes, label %bytes, label %buffer, !prof !1
+bytes:
+  call void @Py_IncRef(ptr %message.object)
+  %size.at = getelementptr i8, ptr %message.object, i64 16
+  %size = load i64, ptr %size.at
+  %data = getelementptr i8, ptr %message.object, i64 32
+  br label %decode
+buffer:
+  %memory = call ptr @PyMemoryView_FromObject(ptr %message.object)
+  %has = icmp ne ptr %memory, null
+  br i1 %has, label %open, label %raise, !prof !0
+open:
+  %got = call i32 @PyObject_GetBuffer(ptr %memory, ptr %view, i32 0)
+  %flat = icmp eq i32 %got, 0
+  br i1 %flat, label %viewed, label %drop, !prof !0
+viewed:
+  %view.data = load ptr, ptr %view
+  %view.size.at = getelementptr i8, ptr %view, i64 16
+  %view.size = load i64, ptr %view.size.at
+  br label %decode
+decode:
+  %source = phi ptr [ %message.object, %bytes ], [ %memory, %viewed ]
+  %start = phi ptr [ %data, %bytes ], [ %view.data, %viewed ]
+  %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
+  %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
+  %good = icmp sge i64 %result, 0
+  %valid = zext i1 %good to i64
+  store i64 %valid, ptr %state
+  br i1 %is_bytes, label %judge, label %release, !prof !1
+release:
+  call void @PyBuffer_Release(ptr %view)
+  br label %judge
+judge:
+  br i1 %good, label %return, label %failed, !prof !0
+return:
+  %cell.at = getelementptr ptr, ptr %context, i64 3
+  %cell = load ptr, ptr %cell.at
+  %holder.at = getelementptr ptr, ptr %context, i64 1
+  %holder = load ptr, ptr %holder.at
+  call void @Py_IncRef(ptr %holder)
+  %set = call i32 @PyList_SetItem(ptr %cell, i64 0, ptr %source)
+  ret ptr %holder
+failed:
+  call void @note(i64 %result, ptr %state)
+  call void @Py_DecRef(ptr %source)
+  br label %slow
+slow:
+  %answer = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %answer
+drop:
+  call void @Py_DecRef(ptr %memory)
+  br label %raise
+raise:
+  ret ptr null
+}

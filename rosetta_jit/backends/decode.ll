@@ -1,0 +1,65 @@
+; decode(message) -> the program's own holder; decode(message, holder) -> that holder. A message is any bytes-like object.
+define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
+  %view = alloca [80 x i8], align 8
+  %context = call ptr @context(ptr %self)
+  %count = call i64 @positional(i64 %nargsf, ptr %names)
+  switch i64 %count, label %slow [ i64 1, label %own
+                                   i64 2, label %other ]
+own:
+  %own.state = load ptr, ptr %context
+  %own.holder.at = getelementptr ptr, ptr %context, i64 1
+  %own.holder = load ptr, ptr %own.holder.at
+  br label %message
+other:
+  %other.holder.at = getelementptr ptr, ptr %args, i64 1
+  %other.holder = load ptr, ptr %other.holder.at
+  %other.state = call ptr @state_of(ptr %context, ptr %other.holder)
+  %mine = icmp ne ptr %other.state, null
+  br i1 %mine, label %message, label %slow, !prof !0
+message:
+  %state = phi ptr [ %own.state, %own ], [ %other.state, %other ]
+  %holder = phi ptr [ %own.holder, %own ], [ %other.holder, %other ]
+  %message.object = load ptr, ptr %args
+  %type.at = getelementptr i8, ptr %message.object, i64 8
+  %type = load ptr, ptr %type.at
+  %is_bytes = icmp eq ptr %type, @PyBytes_Type
+  br i1 %is_bytes, label %bytes, label %buffer, !prof !1
+bytes:
+  %size.at = getelementptr i8, ptr %message.object, i64 16
+  %size = load i64, ptr %size.at
+  %data = getelementptr i8, ptr %message.object, i64 32
+  br label %decode
+buffer:
+  %got = call i32 @PyObject_GetBuffer(ptr %message.object, ptr %view, i32 0)
+  %has = icmp eq i32 %got, 0
+  br i1 %has, label %viewed, label %raise, !prof !0
+viewed:
+  %view.data = load ptr, ptr %view
+  %view.size.at = getelementptr i8, ptr %view, i64 16
+  %view.size = load i64, ptr %view.size.at
+  br label %decode
+decode:
+  %start = phi ptr [ %data, %bytes ], [ %view.data, %viewed ]
+  %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
+  %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
+  %good = icmp sge i64 %result, 0
+  %valid = zext i1 %good to i64
+  store i64 %valid, ptr %state
+  br i1 %is_bytes, label %judge, label %release, !prof !1
+release:
+  call void @PyBuffer_Release(ptr %view)
+  br label %judge
+judge:
+  br i1 %good, label %return, label %failed, !prof !0
+return:
+  call void @Py_IncRef(ptr %holder)
+  ret ptr %holder
+failed:
+  call void @note(i64 %result, ptr %state)
+  br label %slow
+slow:
+  %answer = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %answer
+raise:
+  ret ptr null
+}

@@ -1,0 +1,117 @@
+; encode(holder) -> bytes; encode(holder, buffer, offset) -> the offset behind what was written. The holder must be of exactly the
+; program's type and valid. The size kernel gives the exact size; an encoder that ends elsewhere has failed.
+define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
+  %view = alloca [80 x i8], align 8
+  %context = call ptr @context(ptr %self)
+  %count = call i64 @positional(i64 %nargsf, ptr %names)
+  %alone = icmp eq i64 %count, 1
+  %three = icmp eq i64 %count, 3
+  %usual = or i1 %alone, %three
+  br i1 %usual, label %holder, label %slow, !prof !0
+holder:
+  %holder.object = load ptr, ptr %args
+  %state = call ptr @state_of(ptr %context, ptr %holder.object)
+  %mine = icmp ne ptr %state, null
+  br i1 %mine, label %check, label %slow, !prof !0
+check:
+  %validity = load i64, ptr %state
+  %valid = icmp eq i64 %validity, 1
+  br i1 %valid, label %choose, label %slow, !prof !0
+choose:
+  br i1 %alone, label %measure, label %into, !prof !1
+
+measure:
+  %size = call i64 @size(ptr null, i64 0, i64 4611686018427387904, ptr %state, i64 0)
+  %measured = icmp sge i64 %size, 0
+  br i1 %measured, label %allocate, label %failed, !prof !0
+allocate:
+  %bytes = call ptr @PyBytes_FromStringAndSize(ptr null, i64 %size)
+  %allocated = icmp ne ptr %bytes, null
+  br i1 %allocated, label %write, label %raise, !prof !0
+write:
+  %data = getelementptr i8, ptr %bytes, i64 32
+  %written = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0)
+  %exact = icmp eq i64 %written, %size
+  br i1 %exact, label %return, label %drop, !prof !0
+return:
+  ret ptr %bytes
+drop:
+  call void @Py_DecRef(ptr %bytes)
+  br label %failed
+
+into:
+  %offset.at = getelementptr ptr, ptr %args, i64 2
+  %offset.object = load ptr, ptr %offset.at
+  %offset = call i64 @PyLong_AsSsize_t(ptr %offset.object)
+  %positive = icmp sge i64 %offset, 0
+  br i1 %positive, label %open, label %negative, !prof !0
+negative:
+  %error = call ptr @PyErr_Occurred()
+  %clean = icmp eq ptr %error, null
+  br i1 %clean, label %slow, label %raise
+open:
+  %target.at = getelementptr ptr, ptr %args, i64 1
+  %target = load ptr, ptr %target.at
+  ; PyBUF_WRITABLE
+  %got = call i32 @PyObject_GetBuffer(ptr %target, ptr %view, i32 1)
+  %has = icmp eq i32 %got, 0
+  br i1 %has, label %opened, label %raise, !prof !0
+opened:
+  %view.data = load ptr, ptr %view
+  %view.size.at = getelementptr i8, ptr %view, i64 16
+  %view.size = load i64, ptr %view.size.at
+  %inside = icmp sle i64 %offset, %view.size
+  br i1 %inside, label %fill, label %beyond, !prof !0
+fill:
+  %end = call i64 @kernel(ptr %view.data, i64 %offset, i64 %view.size, ptr %state, i64 0)
+  call void @PyBuffer_Release(ptr %view)
+  %filled = icmp sge i64 %end, 0
+  br i1 %filled, label %position, label %failed, !prof !0
+position:
+  %end.object = call ptr @PyLong_FromSsize_t(i64 %end)
+  ret ptr %end.object
+beyond:
+  call void @PyBuffer_Release(ptr %view)
+  br label %slow
+
+failed:
+  %result = phi i64 [ %size, %measure ], [ %written, %drop ], [ %end, %fill ]
+  call void @note(i64 %result, ptr %state)
+  br label %slow
+slow:
+  %answer = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %answer
+raise:
+  ret ptr null
+}
+
+; Where messages first to count - 1 end when they are written one behind the other from offsets[first]: fills offsets[first + 1] to offsets[count].
+; Returns like @many.
+define i64 @sizes(ptr %offsets, i64 %first, i64 %count, ptr %state) {
+  br label %head
+head:
+  %index = phi i64 [ %first, %0 ], [ %next, %advance ]
+  %more = icmp slt i64 %index, %count
+  br i1 %more, label %each, label %done
+each:
+  %result = call i64 @size(ptr null, i64 0, i64 4611686018427387904, ptr %state, i64 %index)
+  %good = icmp sge i64 %result, 0
+  br i1 %good, label %place, label %broken, !prof !0
+place:
+  %begin.at = getelementptr i64, ptr %offsets, i64 %index
+  %begin = load i64, ptr %begin.at
+  %end = add i64 %begin, %result
+  %sound = icmp sge i64 %end, %begin
+  br i1 %sound, label %advance, label %broken, !prof !0
+advance:
+  %next = add nsw i64 %index, 1
+  %end.at = getelementptr i64, ptr %offsets, i64 %next
+  store i64 %end, ptr %end.at
+  br label %head
+done:
+  ret i64 %index
+broken:
+  %why = phi i64 [ %result, %each ], [ 0, %place ]
+  call void @note(i64 %why, ptr %state)
+  ret i64 %index
+}

@@ -1,0 +1,112 @@
+"""From kernels to object code: link them with the entries from CPython, optimise once, emit.
+
+The object exports, beside each kernel as `kernel` (and `size`, of an encoder), what the entry's own file defines:
+
+    decode, borrow    call many
+    encode            call many sizes
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from llvmlite import binding, ir
+
+from rosetta_jit.backends import llvm
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.kernel.ir import Kernel
+
+EntryName = Literal["decode", "borrow", "encode"]
+
+TEMPLATES: dict[EntryName, tuple[str, ...]] = {
+    "decode": ("objects.ll", "decode.ll", "many.ll"),
+    "borrow": ("objects.ll", "borrow.ll", "many.ll"),
+    "encode": ("objects.ll", "encode.ll", "many.ll"),
+}
+SYMBOLS: dict[EntryName, tuple[str, ...]] = {
+    "decode": ("kernel", "call", "many"),
+    "borrow": ("kernel", "call", "many"),
+    "encode": ("kernel", "size", "call", "many", "sizes"),
+}
+"""What an object defines for others; everything else in it is private."""
+
+FUNCTIONS = ("kernel", "size")
+"""The names of a program's kernels: what decodes or encodes, and, to encode, what measures."""
+
+
+def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool) -> bytes:
+    """Object code (position-independent, for this machine's CPU).
+
+    Parameters
+    ----------
+    kernels
+        Verified kernels: one, or to encode the encoder and its size kernel.
+    with_numba
+        Whether the first kernel is typed by numba on its way; the code does the same.
+    """
+    machine = target_machine()
+    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba))
+
+
+def llvm_text(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool) -> str:
+    """The optimised LLVM module as text."""
+    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba))
+
+
+def assembly(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool) -> str:
+    """The machine code as assembler text."""
+    machine = target_machine()
+    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba))
+
+
+def target_machine() -> binding.TargetMachine:
+    """The machine that we run on, with all that its CPU can do."""
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    features = binding.get_host_cpu_features().flatten()
+    target = binding.Target.from_default_triple()
+    return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=3, reloc="pic", codemodel="small")
+
+
+def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, *, with_numba: bool) -> binding.ModuleRef:
+    """The program's module after one run of LLVM's O3."""
+    module = _typed(kernels[0]) if with_numba else _emitted(kernels[0], FUNCTIONS[0])
+    for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False):
+        module.link_in(_emitted(kernel, name))
+    module.link_in(binding.parse_assembly("\n".join(map(_template, TEMPLATES[entry]))))
+    _make_private(module, SYMBOLS[entry])
+    options = binding.create_pipeline_tuning_options(speed_level=3)
+    options.loop_vectorization, options.slp_vectorization = True, True
+    passes = binding.create_pass_builder(machine, options)
+    passes.getModulePassManager().run(module, passes)
+    return module
+
+
+def _emitted(kernel: Kernel, name: str) -> binding.ModuleRef:
+    module = ir.Module(name)
+    llvm.emit(module, kernel, name)
+    return binding.parse_assembly(str(module))
+
+
+def _typed(kernel: Kernel) -> binding.ModuleRef:
+    """The library of the typed function, and `kernel` as an adapter to numba's calling convention."""
+    from rosetta_jit.backends.numba import library, typed
+
+    text, name = library(typed(kernel))
+    module = binding.parse_assembly(text)
+    module.link_in(binding.parse_assembly(_template("numba.ll").replace("@typed", f'@"{name}"')))
+    return module
+
+
+def _make_private(module: binding.ModuleRef, exported: Sequence[str]) -> None:
+    for defined in (*module.functions, *module.global_variables):
+        if not defined.is_declaration and defined.name not in exported:
+            defined.linkage = "internal"
+
+
+def _template(file: str) -> str:
+    return Path(__file__).with_name(file).read_text("utf-8")

@@ -1,0 +1,131 @@
+"""A kernel as one LLVM function, printed through llvmlite.ir.
+
+    int64 kernel(uint8 *buffer, int64 begin, int64 end, int64 *state, int64 row)
+
+Statements and expressions have printers of their own (`llvm_stmt`, `llvm_expr`). Here stands what frames them: parameters, the attempts one
+after another, and what a failure and a success write to the holder's state.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+from rosetta_jit.backends import llvm_stmt
+from rosetta_jit.backends.llvm_frame import I64, POINTER, Exit, Frame, Parameters, constant, state_word
+from rosetta_jit.kernel.ir import Block, Expect, For, If, Kernel, Require, Switch, While
+from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, MAX_INDICES, USED, lane_word
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
+
+
+def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
+    """Define the kernel's function in the module.
+
+    The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
+    """
+    function = ir.Function(module, SIGNATURE, name)
+    function.attributes.add("nounwind")
+    function.args[0].add_attribute("noalias")  # the message and the lanes never overlap
+    function.args[3].add_attribute("noalias")
+    for argument, each in zip(function.args, ("buffer", "begin", "end", "state", "row"), strict=True):
+        argument.name = each
+    entry = ir.IRBuilder(function.append_basic_block("entry"))
+    first = function.append_basic_block("body")
+    _attempts(entry, first, Parameters(*function.args), kernel)
+    entry.branch(first)
+    return function
+
+
+def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kernel: Kernel) -> None:
+    """Body after body; each failure but the last starts the next one."""
+    builder = ir.IRBuilder(start)
+    loaded: dict[tuple[int, int], ir.Value] = {}
+    recorded: Sequence[ir.Value] = ()
+    width = min(MAX_INDICES, max((_index_count(body) for body in kernel.bodies), default=0))
+    for body in kernel.bodies:
+        frame = Frame(
+            entry.module, entry, builder, parameters, kernel.strides, loaded, _exit(entry, "done", 1), _exit(entry, "failed", 2 + width)
+        )
+        frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
+        llvm_stmt.block(frame, body)
+        if not builder.block.is_terminated:
+            builder.unreachable()  # verified: every path that gets here has ended in a Return before
+        _finish(frame)
+        if not frame.failed.is_reached:
+            _drop(frame.failed)
+            return
+        builder.position_at_end(frame.failed.block)
+        recorded = _record(builder, recorded, frame.failed.phis)
+    _fail(builder, parameters.state, recorded)
+
+
+def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
+    block = entry.function.append_basic_block(name)
+    builder = ir.IRBuilder(block)
+    return Exit(block, tuple(builder.phi(I64) for _ in range(values)))
+
+
+def _drop(target: Exit) -> None:
+    """A block that no edge leads to cannot have phis."""
+    for phi in target.phis:
+        target.block.instructions.remove(phi)
+    ir.IRBuilder(target.block).unreachable()
+
+
+def _finish(frame: Frame) -> None:
+    """Success: only now do used lengths count."""
+    if not frame.done.is_reached:
+        _drop(frame.done)
+        return
+    builder = ir.IRBuilder(frame.done.block)
+    for lane in sorted(frame.advanced):
+        word = state_word(builder, frame.parameters.state, lane_word(lane, USED))
+        builder.store(builder.load(frame.used[lane], typ=I64), word, align=8)
+    builder.ret(frame.done.phis[0])
+
+
+def _record(builder: ir.IRBuilder, recorded: Sequence[ir.Value], failure: Sequence[ir.Value]) -> Sequence[ir.Value]:
+    """The failure of the attempt that got farther: site, offset, indices; the earlier one of equals."""
+    if not recorded:
+        return failure
+    farther = builder.icmp_signed(">", failure[1], recorded[1])
+    return [builder.select(farther, new, old) for new, old in zip(failure, recorded, strict=True)]
+
+
+def _fail(builder: ir.IRBuilder, state: ir.Value, recorded: Sequence[ir.Value]) -> None:
+    site, offset, *indices = recorded
+    builder.store(offset, state_word(builder, state, ERROR_OFFSET), align=8)
+    builder.store(site, state_word(builder, state, ERROR_SITE), align=8)
+    for number, value in enumerate(indices):
+        builder.store(value, state_word(builder, state, ERROR_INDICES + number), align=8)
+    builder.ret(builder.sub(constant(-1), site))
+
+
+def _index_count(block: Block) -> int:
+    """The most indices that a failure in the block reports."""
+    counts = [0]
+    for statement in block:
+        match statement:
+            case Require(_, _, failure) | Expect(_, failure):
+                counts.append(len(failure.indices))
+            case For() | While() | If() | Switch():
+                counts += map(_index_count, _blocks(statement))
+            case _:
+                pass
+    return max(counts)
+
+
+def _blocks(statement: For | While | If | Switch) -> Iterator[Block]:
+    match statement:
+        case For(_, _, body) | While(_, body, _, _):
+            yield body
+        case If(_, then, otherwise):
+            yield from (then, otherwise)
+        case Switch(_, cases, default):
+            yield from (body for _, body in cases)
+            yield default

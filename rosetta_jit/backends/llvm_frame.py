@@ -1,0 +1,153 @@
+"""What the printers of one kernel body share: its parameters, lanes, locals and the two ways out.
+
+A lane's address, capacity and used length are loaded in the function's entry block, at the first mention, and never again: nothing that a
+kernel stores can then make LLVM load them a second time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, USED, lane_word
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.kernel.ir import Scalar
+
+I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
+F32, F64, POINTER = ir.FloatType(), ir.DoubleType(), ir.PointerType()
+
+LLVM_TYPES: dict[str, ir.Type] = {
+    "bool": I1,
+    "i8": I8,
+    "u8": I8,
+    "i16": I16,
+    "u16": I16,
+    "i32": I32,
+    "u32": I32,
+    "i64": I64,
+    "u64": I64,
+    "f32": F32,
+    "f64": F64,
+}
+
+COLD = (1 << 20, 1)
+"""Branch weights where the second edge is taken for a broken message only."""
+
+
+def is_float(scalar: Scalar) -> bool:
+    """Whether a scalar is one of IEEE 754."""
+    return scalar in ("f32", "f64")
+
+
+def is_signed(scalar: Scalar) -> bool:
+    """Whether a scalar is a signed integer."""
+    return scalar in ("i8", "i16", "i32", "i64")
+
+
+def constant(value: int) -> ir.Constant:
+    """An int64 constant."""
+    return ir.Constant(I64, value)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """The parameters of a kernel function."""
+
+    buffer: ir.Value
+    begin: ir.Value
+    end: ir.Value
+    state: ir.Value
+    row: ir.Value
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """The stack slot of a Var; optimisation turns it into a register."""
+
+    slot: ir.Value
+    type: ir.Type
+
+
+@dataclass(slots=True)
+class Exit:
+    """A block that several edges lead to, with the values that they bring."""
+
+    block: ir.Block
+    phis: tuple[ir.PhiInstr, ...]
+
+    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
+        """End the builder's block with a jump here."""
+        for phi, value in zip(self.phis, values, strict=True):
+            phi.add_incoming(value, builder.block)
+        builder.branch(self.block)
+
+    @property
+    def is_reached(self) -> bool:
+        return bool(self.phis[0].incomings)
+
+
+@dataclass(slots=True)
+class Frame:
+    """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to."""
+
+    module: ir.Module
+    entry: ir.IRBuilder
+    builder: ir.IRBuilder
+    parameters: Parameters
+    strides: tuple[int, ...]
+    loaded: dict[tuple[int, int], ir.Value]
+    done: Exit
+    failed: Exit
+    locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
+    used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
+    advanced: set[int] = field(default_factory=set[int])
+
+    def address(self, lane: int) -> ir.Value:
+        """Where the lane's rows start."""
+        return self._word(lane, ADDRESS, POINTER, f"lane{lane}")
+
+    def capacity(self, lane: int) -> ir.Value:
+        """How many rows the lane has room for."""
+        return self._word(lane, CAPACITY, I64, f"capacity{lane}")
+
+    def used_slot(self, lane: int) -> ir.Value:
+        """The stack slot of the lane's used length; each body starts with what the state says."""
+        if lane not in self.used:
+            start = self._word(lane, USED, I64, f"used{lane}")
+            self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
+            self.entry.store(start, self.used[lane])
+        return self.used[lane]
+
+    def variable(self, name: str, type_: ir.Type) -> Variable:
+        """A stack slot in the entry block, so that a loop does not take more of them."""
+        variable = Variable(self.entry.alloca(type_, name=name), type_)
+        self.locals[name] = variable
+        return variable
+
+    def block(self, name: str) -> ir.Block:
+        return self.builder.append_basic_block(name)
+
+    def _word(self, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        key = (lane, word)
+        if key not in self.loaded:
+            self.loaded[key] = self.entry.load(
+                state_word(self.entry, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name
+            )
+        return self.loaded[key]
+
+
+def state_word(builder: ir.IRBuilder, state: ir.Value, word: int) -> ir.Value:
+    """The address of a word of the holder's state."""
+    return builder.gep(state, [constant(word)], inbounds=True, source_etype=I64)
+
+
+def intrinsic(module: ir.Module, name: str, result: ir.Type, parameters: Sequence[ir.Type]) -> ir.Function:
+    """A function of LLVM or of a module, declared once."""
+    if name in module.globals:
+        return module.globals[name]
+    return ir.Function(module, ir.FunctionType(result, parameters), name)

@@ -1,0 +1,219 @@
+"""Kernel statements as LLVM blocks.
+
+A failing edge leads through a cold block of its own, where the offset and the indices are computed, to the one block of the body that
+takes failures; so the hot path holds compares and branches alone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from llvmlite import ir
+
+from rosetta_jit.backends.llvm_expr import (
+    copy_memory,
+    expression,
+    fill_memory,
+    place_alignment,
+    place_pointer,
+    pointer,
+    store,
+    wire_pointer,
+)
+from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, constant, state_word
+from rosetta_jit.kernel.ir import (
+    BEGIN,
+    GROW,
+    Advance,
+    Assign,
+    Binary,
+    Block,
+    Const,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    For,
+    If,
+    Let,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Stmt,
+    Store,
+    Switch,
+    Var,
+    While,
+    type_of,
+)
+from rosetta_jit.kernel.state import GROW_LANE, GROW_ROWS
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm_frame import Frame
+
+
+def block(frame: Frame, statements: Block) -> None:
+    """Print statements until one ends the block; what follows a Return is never reached."""
+    for statement in statements:
+        if frame.builder.block.is_terminated:
+            return
+        _statement(frame, statement)
+
+
+def _statement(frame: Frame, statement: Stmt) -> None:  # noqa: C901 - one case a statement of the grammar
+    match statement:
+        case Require(at, size, failure):
+            _require(frame, at, size, failure)
+        case Expect(condition, failure):
+            _check(frame, expression(frame, condition), failure)
+        case Let(name, value):
+            frame.locals[name] = expression(frame, value)
+        case Var(name, value):
+            start = expression(frame, value)
+            frame.builder.store(start, frame.variable(name, LLVM_TYPES[type_of(value)]).slot)
+        case Assign(name, value):
+            _assign(frame, name, value)
+        case Store(at, value, order):
+            store(frame, wire_pointer(frame, at), expression(frame, value), type_of(value), alignment=1, order=order)
+        case SetField(place, value):
+            alignment = place_alignment(frame, place, type_of(value))
+            store(frame, place_pointer(frame, place), expression(frame, value), type_of(value), alignment=alignment)
+        case Reserve(lane, count):
+            _reserve(frame, lane, expression(frame, count))
+        case Advance(lane, count):
+            frame.advanced.add(lane)
+            slot = frame.used_slot(lane)
+            rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
+            frame.builder.store(rows, slot)
+        case Copy(target, source, size):
+            copy_memory(frame, pointer(frame, target), pointer(frame, source), expression(frame, size))
+        case Fill(target, size, byte):
+            fill_memory(frame, pointer(frame, target), byte, expression(frame, size))
+        case For(variable, count, body):
+            _for(frame, variable, expression(frame, count), body)
+        case While(condition, body, _, _):
+            _while(frame, condition, body)
+        case If(condition, then, otherwise):
+            _if(frame, expression(frame, condition), then, otherwise)
+        case Switch(value, cases, default):
+            _switch(frame, expression(frame, value), cases, default)
+        case Return(position):
+            frame.done.enter(frame.builder, [expression(frame, position)])
+        case _:
+            assert_never(statement)
+
+
+def _require(frame: Frame, at: Expr, size: Expr, failure: Failure) -> None:
+    """Check ``at >= 0``, ``size >= 0`` and ``size <= end - at``: a difference that cannot wrap where the first holds."""
+    builder = frame.builder
+    start, length = expression(frame, at), expression(frame, size)
+    holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
+    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, Const))):
+        if not is_positive:
+            holds = builder.and_(holds, builder.icmp_signed(">=", value, constant(0)))
+    _check(frame, holds, failure)
+
+
+def _is_behind_begin(at: Expr) -> bool:
+    match at:
+        case Binary("add", base, Const(_, offset)):
+            return base == BEGIN and offset >= 0
+        case _:
+            return at == BEGIN or isinstance(at, Const)
+
+
+def _check(frame: Frame, holds: ir.Value, failure: Failure) -> None:
+    """Go on where the condition holds."""
+    good, cold = frame.block("good"), frame.block("broken")
+    frame.builder.cbranch(holds, good, cold).set_weights(COLD)
+    frame.builder.position_at_end(cold)
+    indices = [expression(frame, each) for each in failure.indices]
+    missing = len(frame.failed.phis) - 2 - len(indices)
+    values = [constant(failure.site), expression(frame, failure.at), *indices, *[constant(0)] * missing]
+    frame.failed.enter(frame.builder, values)
+    frame.builder.position_at_end(good)
+
+
+def _assign(frame: Frame, name: str, value: Expr) -> None:
+    variable = frame.locals[name]
+    if not isinstance(variable, Variable):
+        raise AssertionError(f"{name} is no Var")  # noqa: TRY004 - our bug, not a caller's
+    frame.builder.store(expression(frame, value), variable.slot)
+
+
+def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
+    """Return GROW unless the rows are free; a negative count, seen as unsigned, never is."""
+    builder = frame.builder
+    used = builder.load(frame.used_slot(lane), typ=I64)
+    free = builder.sub(frame.capacity(lane), used, flags=("nsw",))
+    enough, small = frame.block("enough"), frame.block("small")
+    builder.cbranch(builder.icmp_unsigned("<=", count, free), enough, small).set_weights(COLD)
+    builder.position_at_end(small)
+    state = frame.parameters.state
+    builder.store(constant(lane), state_word(builder, state, GROW_LANE), align=8)
+    builder.store(builder.sub(count, free), state_word(builder, state, GROW_ROWS), align=8)
+    builder.ret(constant(GROW))
+    builder.position_at_end(enough)
+
+
+def _for(frame: Frame, variable: str, count: ir.Value, body: Block) -> None:
+    builder = frame.builder
+    before, head, inside, behind = builder.block, frame.block("for"), frame.block("each"), frame.block("after")
+    builder.branch(head)
+    builder.position_at_end(head)
+    index = builder.phi(I64, name=variable)
+    index.add_incoming(constant(0), before)
+    builder.cbranch(builder.icmp_signed("<", index, count), inside, behind)
+    builder.position_at_end(inside)
+    frame.locals[variable] = index
+    block(frame, body)
+    if not builder.block.is_terminated:
+        index.add_incoming(builder.add(index, constant(1), flags=("nsw",)), builder.block)
+        builder.branch(head)
+    builder.position_at_end(behind)
+
+
+def _while(frame: Frame, condition: Expr, body: Block) -> None:
+    builder = frame.builder
+    head, inside, behind = frame.block("while"), frame.block("round"), frame.block("after")
+    builder.branch(head)
+    builder.position_at_end(head)
+    builder.cbranch(expression(frame, condition), inside, behind)
+    builder.position_at_end(inside)
+    _branch(frame, body, head)
+    builder.position_at_end(behind)
+
+
+def _if(frame: Frame, condition: ir.Value, then: Block, otherwise: Block) -> None:
+    builder = frame.builder
+    yes, behind = frame.block("then"), frame.block("after")
+    no = frame.block("else") if otherwise else behind
+    builder.cbranch(condition, yes, no)
+    builder.position_at_end(yes)
+    _branch(frame, then, behind)
+    if otherwise:
+        builder.position_at_end(no)
+        _branch(frame, otherwise, behind)
+    builder.position_at_end(behind)
+
+
+def _switch(frame: Frame, value: ir.Value, cases: tuple[tuple[int, Block], ...], default: Block) -> None:
+    builder = frame.builder
+    other, behind = frame.block("default"), frame.block("after")
+    switch = builder.switch(value, other)
+    for number, body in cases:
+        case = frame.block(f"case{number}")
+        switch.add_case(ir.Constant(value.type, number), case)
+        builder.position_at_end(case)
+        _branch(frame, body, behind)
+    builder.position_at_end(other)
+    _branch(frame, default, behind)
+    builder.position_at_end(behind)
+
+
+def _branch(frame: Frame, body: Block, behind: ir.Block) -> None:
+    block(frame, body)
+    if not frame.builder.block.is_terminated:
+        frame.builder.branch(behind)

@@ -1,0 +1,33 @@
+; Many messages in one call, without the interpreter lock: message i lies at offsets[i] to offsets[i + 1] and is row i of the holder.
+
+; Messages first to count - 1; returns the first that was not done: count, if all were. Then word 9 of the state (`kernel.state.RESULT`) has the
+; kernel's result, or 0 where the offsets fall or leave the buffer.
+define i64 @many(ptr noalias %buffer, i64 %size, ptr %offsets, i64 %first, i64 %count, ptr %state) {
+  br label %head
+head:
+  %index = phi i64 [ %first, %0 ], [ %next, %decode ]
+  %more = icmp slt i64 %index, %count
+  br i1 %more, label %each, label %done
+each:
+  %begin.at = getelementptr i64, ptr %offsets, i64 %index
+  %begin = load i64, ptr %begin.at
+  %next = add nsw i64 %index, 1
+  %end.at = getelementptr i64, ptr %offsets, i64 %next
+  %end = load i64, ptr %end.at
+  %positive = icmp sge i64 %begin, 0
+  %ordered = icmp sle i64 %begin, %end
+  %inside = icmp sle i64 %end, %size
+  %known = and i1 %positive, %ordered
+  %sound = and i1 %known, %inside
+  br i1 %sound, label %decode, label %broken, !prof !0
+decode:
+  %result = call i64 @kernel(ptr %buffer, i64 %begin, i64 %end, ptr %state, i64 %index)
+  %good = icmp sge i64 %result, 0
+  br i1 %good, label %head, label %broken, !prof !0
+done:
+  ret i64 %index
+broken:
+  %why = phi i64 [ 0, %each ], [ %result, %decode ]
+  call void @note(i64 %why, ptr %state)
+  ret i64 %index
+}

@@ -1,0 +1,126 @@
+"""Object code, loaded into this process by llvmlite's linker alone: neither numba nor the compiler is imported.
+
+Code comes from the cache, a trusted folder, yet it is linked only if all that it wants from the process is on a short list.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import count
+from typing import TYPE_CHECKING
+
+from llvmlite import binding
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+ALLOWED = frozenset(
+    [
+        "PyBuffer_Release",
+        "PyBytes_FromStringAndSize",
+        "PyBytes_Type",
+        "PyErr_Occurred",
+        "PyList_SetItem",
+        "PyLong_AsSsize_t",
+        "PyLong_FromSsize_t",
+        "PyMemoryView_FromObject",
+        "PyObject_GetBuffer",
+        "PyObject_Vectorcall",
+        "Py_DecRef",
+        "Py_IncRef",
+        *("memcmp", "memcpy", "memmove", "memset"),
+        *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
+    ]
+)
+"""Everything that object code may take from the process: what the entries call, and what LLVM turns intrinsics into."""
+
+_SYMBOL = struct.Struct("<IBBHQQ")
+_UNDEFINED = 0
+
+
+class ForeignCodeError(ValueError):
+    """Object code that is none of ours."""
+
+
+@dataclass(slots=True)
+class Library:
+    """Loaded code. The addresses are good until `close`, or until the last reference to the library is gone."""
+
+    addresses: Mapping[str, int]
+    _tracker: binding.ResourceTracker | None
+
+    def __getitem__(self, symbol: str) -> int:
+        return self.addresses[symbol]
+
+    def close(self) -> None:
+        """Free the code. Nothing may call it any more."""
+        if self._tracker is not None:
+            self._tracker.close()
+            self._tracker = None
+
+
+def load(image: bytes, symbols: Sequence[str]) -> Library:
+    """Link object code into the process.
+
+    Parameters
+    ----------
+    image
+        An object file, as the compiler made it.
+    symbols
+        What it defines.
+
+    Raises
+    ------
+    ForeignCodeError
+        If it is no object file for this machine, wants a symbol that is not in `ALLOWED`, or lacks one of ``symbols``.
+    """
+    foreign = sorted(undefined_symbols(image) - ALLOWED)
+    if foreign:
+        raise ForeignCodeError(f"the code wants {', '.join(foreign[:3])} from the process")
+    jit, names = _linker()
+    builder = binding.JITLibraryBuilder().add_object_img(image).add_current_process()
+    for symbol in symbols:
+        builder.export_symbol(symbol)
+    try:
+        tracker = builder.link(jit, f"rosetta{next(names)}")
+    except RuntimeError as error:
+        raise ForeignCodeError(str(error)) from error
+    return Library({symbol: tracker[symbol] for symbol in symbols}, tracker)
+
+
+def undefined_symbols(image: bytes) -> frozenset[str]:
+    """The names that an ELF object takes from elsewhere; none of another format, which is not examined."""
+    if not image.startswith(b"\x7fELF"):
+        return frozenset()
+    sections = dict(_sections(image))
+    table, names = sections.get(".symtab", b""), sections.get(".strtab", b"")
+    entries = _SYMBOL.iter_unpack(table[: len(table) // _SYMBOL.size * _SYMBOL.size])
+    return frozenset(_name(names, start) for start, _, _, section, _, _ in entries if section == _UNDEFINED and start)
+
+
+def _sections(image: bytes) -> Iterator[tuple[str, bytes]]:
+    """Name and content of each section (ELF-64 object file format, 4: 64-byte headers, names in the section that e_shstrndx gives)."""
+    try:
+        start = struct.unpack_from("<Q", image, 0x28)[0]
+        number, names_index = struct.unpack_from("<HH", image, 0x3C)
+        headers = [struct.unpack_from("<IIQQQQ", image, start + 64 * index) for index in range(number)]
+        _, _, _, _, names_at, names_size = headers[names_index]
+    except (struct.error, IndexError) as error:
+        raise ForeignCodeError("a damaged object file") from error
+    names = image[names_at : names_at + names_size]
+    for name, _, _, _, at, size in headers:
+        yield _name(names, name), image[at : at + size]
+
+
+def _name(table: bytes, start: int) -> str:
+    return table[start : table.find(b"\0", start)].decode("latin-1")
+
+
+@lru_cache(maxsize=1)
+def _linker() -> tuple[binding.LLJIT, Iterator[int]]:
+    """LLVM's linker, one a process, and numbers for its libraries, whose names are never used again."""
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    return binding.create_lljit_compiler(), count()

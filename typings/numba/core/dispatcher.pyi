@@ -1,0 +1,14 @@
+from collections.abc import Mapping
+
+class Library:
+    def get_llvm_str(self) -> str: ...
+
+class FunctionDescriptor:
+    mangled_name: str
+
+class CompileResult:
+    library: Library
+    fndesc: FunctionDescriptor
+
+class Dispatcher:
+    overloads: Mapping[object, CompileResult]
