@@ -1,0 +1,80 @@
+"""Enums: at least one value, numbers of 32 bits, used once unless aliases are allowed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.check_numbers import check_overlaps, containing, in_order, repeated_names
+from rosetta_jit.frameworks.protobuf.proto.constants import fits
+from rosetta_jit.frameworks.protobuf.proto.options import flag
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredEnum
+    from rosetta_jit.frameworks.protobuf.proto.tree import Enum, EnumValue
+
+
+def check_enums(declared: Declarations) -> Iterator[Diagnostic]:
+    """Every enum."""
+    for entry in declared.enums.values():
+        enum = entry.enum
+        if not enum.values:
+            yield say.empty_enum(enum.name)
+        elif entry.version == "proto3" and enum.values[0].number != 0:
+            yield say.first_not_zero(enum.values[0].number_span, enum.values[0].number)
+        yield from check_overlaps(enum.reserved, -(2**31), 2**31 - 1)
+        yield from repeated_names(enum.reserved_names)
+        yield from _values(entry)
+        yield from _aliases(enum)
+        if entry.version == "proto3":
+            yield from _stripped_names(enum)
+
+
+def _values(entry: DeclaredEnum) -> Iterator[Diagnostic]:
+    reserved = in_order(entry.enum.reserved)
+    names = {name.text for name in entry.enum.reserved_names}
+    for value in entry.enum.values:
+        if not fits(value.number, 32, signed=True):
+            yield say.value_out_of_range(value.number_span, value.number)
+        if containing(reserved, value.number):
+            yield say.reserved_number(value.number_span, value.number, entry.full)
+        if value.name.text in names:
+            yield say.reserved_name(value.name, entry.full)
+
+
+def _aliases(enum: Enum) -> Iterator[Diagnostic]:
+    users: dict[int, EnumValue] = {}
+    aliases = [value for value in enum.values if users.setdefault(value.number, value) is not value]
+    allowed = flag(enum.options, "allow_alias")
+    if allowed is False or (allowed and not aliases):
+        yield say.idle_alias_option(enum.name)
+    if not allowed:
+        for value in aliases:
+            yield say.alias(value.number_span, value.number, users[value.number].name)
+
+
+def _stripped_names(enum: Enum) -> Iterator[Diagnostic]:
+    """Some languages drop the enum's name from its values, and case: the rest must still tell them apart."""
+    seen: dict[str, EnumValue] = {}
+    prefix = enum.name.text.replace("_", "").lower()
+    for value in enum.values:
+        first = seen.setdefault(_stripped(value.name.text, prefix), value)
+        if first is not value and first.number != value.number and first.name.text != value.name.text:
+            yield say.same_stripped_name(value.name, first.name)
+
+
+def _stripped(name: str, prefix: str) -> str:
+    bare = name.lower()
+    taken, index = 0, 0
+    while index < len(bare) and taken < len(prefix):
+        if bare[index] == "_":
+            index += 1
+        elif bare[index] == prefix[taken]:
+            index, taken = index + 1, taken + 1
+        else:
+            return bare.replace("_", "")
+    rest = bare[index:].replace("_", "") if taken == len(prefix) else ""
+    return rest or bare.replace("_", "")

@@ -1,0 +1,103 @@
+"""Numbers and names of fields: in range, used once, and not reserved."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.options import flag
+from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
+from rosetta_jit.frameworks.protobuf.proto.tree import Range
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredMessage
+    from rosetta_jit.frameworks.protobuf.proto.tree import Field, Message, Name
+
+MAX_FIELD_NUMBER = 2**29 - 1
+MAX_MESSAGE_SET_NUMBER = 2**31 - 2
+PROTOBUF_OWN = Range(19000, 19999)
+"""Numbers that the implementation of protobuf keeps for itself."""
+
+
+def check_numbers(declared: Declarations) -> Iterator[Diagnostic]:
+    """The numbers of each message and of its extensions."""
+    for entry in declared.messages.values():
+        yield from _ranges(entry.message)
+        yield from _fields(entry)
+    for extension in declared.extensions.values():
+        target = declared.messages.get(extension.extendee.text[1:])
+        limit = max_number(target.message) if target else MAX_FIELD_NUMBER
+        yield from _number(extension.field, limit)
+
+
+def max_number(message: Message) -> int:
+    """The greatest number that a field or an extension of a message can have."""
+    return MAX_MESSAGE_SET_NUMBER if flag(message.options, "message_set_wire_format") else MAX_FIELD_NUMBER
+
+
+def containing(ranges: Sequence[Range], number: int) -> Range | None:
+    """The range that holds a number, of some in order."""
+    index = bisect_right(ranges, number, key=lambda range_: range_.first)
+    return ranges[index - 1] if index and ranges[index - 1].last >= number else None
+
+
+def in_order(ranges: Sequence[Range]) -> list[Range]:
+    """Ranges by their first number."""
+    return sorted(ranges, key=lambda range_: range_.first)
+
+
+def check_overlaps(ranges: Sequence[Range], low: int, high: int) -> Iterator[Diagnostic]:
+    """Ranges are not empty, hold possible numbers, and share none."""
+    for range_ in ranges:
+        if range_.first > range_.last:
+            yield say.empty_range(range_.span, range_.first, range_.last)
+        elif range_.first < low or range_.last > high:
+            yield say.range_out_of_range(range_.span, low, high)
+    widest = Range(low - 1, low - 1)
+    for range_ in in_order(ranges):
+        if widest.first <= range_.first <= widest.last:
+            yield say.overlap(range_.span, range_, widest)
+        widest = max(widest, range_, key=lambda item: item.last)
+
+
+def repeated_names(names: Sequence[Name]) -> Iterator[Diagnostic]:
+    """Reserved names stand once."""
+    seen: set[str] = set()
+    for name in names:
+        if name.text in seen:
+            yield say.reserved_twice(name)
+        seen.add(name.text)
+
+
+def _ranges(message: Message) -> Iterator[Diagnostic]:
+    yield from check_overlaps((*message.extensions, *message.reserved), 1, max_number(message))
+    yield from repeated_names(message.reserved_names)
+
+
+def _fields(entry: DeclaredMessage) -> Iterator[Diagnostic]:
+    message = entry.message
+    reserved, extensions = in_order(message.reserved), in_order(message.extensions)
+    names = {name.text for name in message.reserved_names}
+    users: dict[int, Field] = {}
+    for field in fields_of(message):
+        yield from _number(field, MAX_FIELD_NUMBER)
+        first = users.setdefault(field.number, field)
+        if first is not field:
+            yield say.repeated_number(field.number_span, field.number, first.name, entry.full)
+        if containing(reserved, field.number):
+            yield say.reserved_number(field.number_span, field.number, entry.full)
+        if containing(extensions, field.number):
+            yield say.extension_number(field.number_span, field.number, entry.full)
+        if field.name.text in names:
+            yield say.reserved_name(field.name, entry.full)
+
+
+def _number(field: Field, limit: int) -> Iterator[Diagnostic]:
+    if not 1 <= field.number <= limit:
+        yield say.number_out_of_range(field.number_span, field.number, limit)
+    elif PROTOBUF_OWN.first <= field.number <= PROTOBUF_OWN.last:
+        yield say.number_of_protobuf(field.number_span, field.number)

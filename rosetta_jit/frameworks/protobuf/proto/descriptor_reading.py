@@ -1,0 +1,204 @@
+"""FileDescriptorProto to `tree.File`: the same file as its text gives, without places and comments.
+
+https://github.com/protocolbuffers/protobuf/blob/main/src/google/protobuf/descriptor.proto says what each field means.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.descriptor_options import Extensions, custom_options, extensions_in, own_options
+from rosetta_jit.frameworks.protobuf.proto.literals import EscapeError, number, unescape
+from rosetta_jit.frameworks.protobuf.proto.tree import (
+    Enum,
+    EnumValue,
+    Extend,
+    Field,
+    File,
+    Import,
+    Label,
+    MapType,
+    Message,
+    Method,
+    Name,
+    Oneof,
+    Option,
+    Range,
+    Service,
+    Value,
+    Version,
+    Word,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from google.protobuf.descriptor_pb2 import (
+        DescriptorProto,
+        EnumDescriptorProto,
+        FieldDescriptorProto,
+        FileDescriptorProto,
+        ServiceDescriptorProto,
+    )
+
+    from rosetta_jit.diagnostics import Diagnostic
+
+TYPE_GROUP = 10
+WORDS: Mapping[int, str] = {
+    1: "double",
+    2: "float",
+    3: "int64",
+    4: "uint64",
+    5: "int32",
+    6: "fixed64",
+    7: "fixed32",
+    8: "bool",
+    9: "string",
+    12: "bytes",
+    13: "uint32",
+    15: "sfixed32",
+    16: "sfixed64",
+    17: "sint32",
+    18: "sint64",
+}
+"""FieldDescriptorProto.Type, where it is a scalar's."""
+LABELS: Mapping[int, Label] = {1: "optional", 2: "required", 3: "repeated"}
+
+
+def read_files(files: Iterable[FileDescriptorProto], problems: list[Diagnostic]) -> list[File]:
+    """The files of a descriptor set; those of an edition are problems."""
+    files = list(files)
+    extensions = extensions_in(files)
+    others = (file for file in files if file.syntax not in ("", "proto2", "proto3"))
+    problems += [say.unsupported_descriptor(file.name, file.syntax) for file in others]
+    return [_Reader(cast("Version", file.syntax or "proto2"), extensions, problems).file(file) for file in files]
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    version: Version
+    extensions: Extensions
+    problems: list[Diagnostic]
+
+    def file(self, file: FileDescriptorProto) -> File:
+        outer = f".{file.package}" if file.package else ""
+        return File(
+            name=file.name,
+            version=self.version,
+            package=Name(file.package) if file.package else None,
+            imports=tuple(Import(path, public=index in file.public_dependency) for index, path in enumerate(file.dependency)),
+            messages=tuple(self.message(outer, message) for message in file.message_type),
+            enums=tuple(_enum(enum) for enum in file.enum_type),
+            extends=tuple(self.extend(field) for field in file.extension),
+            services=tuple(_service(service) for service in file.service),
+            options=own_options("FileOptions", file.options),
+        )
+
+    def message(self, outer: str, message: DescriptorProto) -> Message:
+        path = f"{outer}.{message.name}"
+        entries = {f"{path}.{inner.name}": inner for inner in message.nested_type if _is_entry(inner)}
+        return Message(
+            name=Name(message.name),
+            members=tuple(self.members(message, entries)),
+            messages=tuple(self.message(path, inner) for inner in message.nested_type if not _is_entry(inner)),
+            enums=tuple(_enum(enum) for enum in message.enum_type),
+            extends=tuple(self.extend(field) for field in message.extension),
+            extensions=tuple(Range(range_.start, range_.end - 1) for range_ in message.extension_range),
+            reserved=tuple(Range(range_.start, range_.end - 1) for range_ in message.reserved_range),
+            reserved_names=tuple(Name(name) for name in message.reserved_name),
+            options=own_options("MessageOptions", message.options),
+        )
+
+    def members(self, message: DescriptorProto, entries: Mapping[str, DescriptorProto]) -> list[Field | Oneof]:
+        """Fields in order; those of a oneof together, where its first one stands."""
+        # A proto3 `optional` field stands in a oneof of its own, which exists for old readers alone.
+        synthetic = {field.oneof_index for field in message.field if field.proto3_optional}
+        cases: dict[int, list[Field]] = {index: [] for index in range(len(message.oneof_decl)) if index not in synthetic}
+        order: list[Field | int] = []
+        for field in message.field:
+            read = self.field(field, entries)
+            if not field.HasField("oneof_index") or field.oneof_index not in cases:
+                order.append(read)
+                continue
+            if not cases[field.oneof_index]:
+                order.append(field.oneof_index)
+            cases[field.oneof_index].append(read)
+        order += [index for index, fields in cases.items() if not fields]
+        return [item if isinstance(item, Field) else Oneof(Name(message.oneof_decl[item].name), tuple(cases[item])) for item in order]
+
+    def extend(self, field: FieldDescriptorProto) -> Extend:
+        read = self.field(field, {})
+        return Extend(Name(field.extendee), (replace(read, label=LABELS.get(field.label)),))
+
+    def field(self, field: FieldDescriptorProto, entries: Mapping[str, DescriptorProto]) -> Field:
+        entry = entries.get(field.type_name)
+        default = (Option(("default",), self.default(field)),) if field.HasField("default_value") else ()
+        return Field(
+            name=Name(field.name),
+            type=_type(field) if entry is None else MapType(_type(entry.field[0]), _type(entry.field[1])),
+            number=field.number,
+            label=None if entry else self.label(field),
+            group=field.type == TYPE_GROUP,
+            options=(
+                *default,
+                *own_options("FieldOptions", field.options),
+                *custom_options(field.options, self.extensions),
+            ),
+        )
+
+    def label(self, field: FieldDescriptorProto) -> Label | None:
+        """The label that the text has: an implicit `optional` is none."""
+        label = LABELS.get(field.label)
+        if label != "optional" or field.proto3_optional:
+            return label
+        return None if self.version == "proto3" or field.HasField("oneof_index") else label
+
+    def default(self, field: FieldDescriptorProto) -> Value:
+        """A default, which a descriptor holds as text whatever its type is."""
+        text = field.default_value
+        match WORDS.get(field.type):
+            case "string":
+                return text.encode()
+            case "bytes":
+                try:
+                    return unescape(text)
+                except EscapeError:
+                    self.problems.append(say.bad_descriptor(f"`{field.name}` has a default with a wrong escape"))
+                    return b""
+            case None | "bool":
+                return Word(text)
+            case _:
+                return _signed(text)
+
+
+def _signed(text: str) -> Value:
+    value = number(text.removeprefix("-"))
+    if value is None:
+        return Word(text)
+    return -value if text.startswith("-") else value
+
+
+def _is_entry(message: DescriptorProto) -> bool:
+    """Whether a message stands for the entries of a map."""
+    return message.options.map_entry and len(message.field) == 2
+
+
+def _type(field: FieldDescriptorProto) -> Name:
+    return Name(WORDS.get(field.type, field.type_name))
+
+
+def _enum(enum: EnumDescriptorProto) -> Enum:
+    return Enum(
+        name=Name(enum.name),
+        values=tuple(EnumValue(Name(value.name), value.number) for value in enum.value),
+        reserved=tuple(Range(range_.start, range_.end) for range_ in enum.reserved_range),
+        reserved_names=tuple(Name(name) for name in enum.reserved_name),
+        options=own_options("EnumOptions", enum.options),
+    )
+
+
+def _service(service: ServiceDescriptorProto) -> Service:
+    methods = (Method(Name(method.name), (Name(method.input_type), Name(method.output_type))) for method in service.method)
+    return Service(Name(service.name), tuple(methods))

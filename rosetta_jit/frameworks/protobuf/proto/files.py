@@ -1,0 +1,120 @@
+"""A file and all that it imports, dependencies first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.reading import read
+from rosetta_jit.frameworks.protobuf.proto.wellknown import well_known
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.protobuf.proto.tree import File, Import
+    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.source import Source
+
+MAX_FILES = 4096
+"""Files that one file may import, directly or not."""
+
+Edges = tuple[tuple[str, bool], ...]
+"""What a file imports: names of files, and whether the import is public."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileSet:
+    """Files after those that they import, and who imports whom."""
+
+    files: tuple[File, ...]
+    imports: Mapping[str, Edges]
+
+    def visible_from(self, name: str) -> frozenset[str]:
+        """The files whose names a file can use: itself, its imports, and what these import publicly."""
+        seen = {name}
+        waiting = [target for target, _ in self.imports.get(name, ())]
+        while waiting:
+            target = waiting.pop()
+            if target not in seen:
+                seen.add(target)
+                waiting += [further for further, public in self.imports.get(target, ()) if public]
+        return frozenset(seen)
+
+
+@dataclass(frozen=True, slots=True)
+class _Open:
+    """A file some of whose imports are still to be read."""
+
+    file: File
+    waiting: Iterator[Import]
+    edges: list[tuple[str, bool]]
+
+
+def gather(source: Source, load: Load, problems: list[Diagnostic]) -> FileSet:
+    """Read a source and what it imports; missing files, cycles and repeated imports are problems."""
+    done: dict[str, File] = {}
+    imports: dict[str, Edges] = {}
+    found: dict[str, File | None] = {}
+    root = read(source, problems)
+    stack = [_open(root)] if root else []
+    while stack:
+        top = stack[-1]
+        import_ = next(top.waiting, None)
+        if import_ is None:
+            stack.pop()
+            done[top.file.name], imports[top.file.name] = top.file, tuple(top.edges)
+            continue
+        if import_.path not in found:
+            found[import_.path] = _find(import_, load, problems)
+        file = found[import_.path]
+        if file is not None and _is_new(import_, file, stack, problems):
+            top.edges.append((file.name, import_.public))
+            if file.name not in done and len(found) <= MAX_FILES:
+                stack.append(_open(file))
+    if len(found) > MAX_FILES:
+        problems.append(say.too_many_files(MAX_FILES))
+    return FileSet(tuple(done.values()), imports)
+
+
+def file_set(files: Iterable[File], problems: list[Diagnostic]) -> FileSet:
+    """Files that are at hand already, as those of a descriptor set."""
+    files = list(files)
+    names = {file.name for file in files}
+    imports: dict[str, Edges] = {}
+    kept: list[File] = []
+    for file in files:
+        if file.name in imports:
+            problems.append(say.repeated_file(file.name))
+            continue
+        problems += [say.missing_file(None, import_.path) for import_ in file.imports if import_.path not in names]
+        imports[file.name] = tuple((import_.path, import_.public) for import_ in file.imports)
+        kept.append(file)
+    return FileSet(tuple(kept), imports)
+
+
+def _open(file: File) -> _Open:
+    return _Open(file, iter(file.imports), [])
+
+
+def _find(import_: Import, load: Load, problems: list[Diagnostic]) -> File | None:
+    source = load(import_.path)
+    if source is not None:
+        return read(source, problems)
+    file = well_known(import_.path)
+    if file is None:
+        problems.append(say.missing_file(import_.span, import_.path))
+    return file
+
+
+def _is_new(import_: Import, file: File, stack: list[_Open], problems: list[Diagnostic]) -> bool:
+    """Whether an import neither repeats another one of its file nor leads back to a file that is being read."""
+    names = [entry.file.name for entry in stack]
+    if file.name in names:
+        problems.append(say.import_cycle(import_.span, [*names[names.index(file.name) :], file.name]))
+        return False
+    if any(name == file.name for name, _ in stack[-1].edges):
+        problems.append(say.repeated_import(import_.span, import_.path))
+        return False
+    return True

@@ -1,0 +1,52 @@
+"""The way that text and descriptors share: files to a schema, or to everything that is wrong with them."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.protobuf.proto.check import check
+from rosetta_jit.frameworks.protobuf.proto.declarations import declarations
+from rosetta_jit.frameworks.protobuf.proto.names import absolute
+from rosetta_jit.frameworks.protobuf.proto.schema import build
+from rosetta_jit.frameworks.protobuf.proto.symbols import declare
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.protobuf.proto.files import FileSet
+    from rosetta_jit.model.types import Schema
+
+MAX_REPORTED = 100
+"""Problems that one report lists; who made more reads no further."""
+
+
+def schema_of(files: FileSet) -> Schema:
+    """The schema of files whose imports are all there.
+
+    Raises
+    ------
+    SchemaError
+    """
+    problems: list[Diagnostic] = []
+    symbols = declare(files, problems)
+    declared = declarations(absolute(file, symbols, problems) for file in files.files)
+    problems += islice(check(declared), MAX_REPORTED)
+    refuse(problems)
+    return build(declared)
+
+
+def refuse(problems: list[Diagnostic]) -> None:
+    """Raise what was found, file by file and in the order of the text.
+
+    Raises
+    ------
+    SchemaError
+        Where anything was found.
+    """
+    if problems:
+        raise SchemaError(tuple(sorted(problems[:MAX_REPORTED], key=_place)))
+
+
+def _place(problem: Diagnostic) -> tuple[str, int]:
+    return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)

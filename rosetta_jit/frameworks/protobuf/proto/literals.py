@@ -1,0 +1,78 @@
+"""Numbers and strings as the language writes them.
+
+https://protobuf.dev/reference/protobuf/proto3-spec, "Lexical elements".
+"""
+
+from __future__ import annotations
+
+import re
+
+INTEGER = re.compile(r"0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*")
+FLOAT = re.compile(r"(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][+-]?[0-9]+)?")
+ESCAPE = re.compile(
+    r"\\(?:(?P<octal>[0-7]{1,3})|[xX](?P<hex>[0-9a-fA-F]{1,2})|u(?P<u4>[0-9a-fA-F]{4})|U(?P<u8>[0-9a-fA-F]{8})"
+    r"|(?P<letter>[abfnrtv\\'\"?])|(?P<wrong>(?s:.)?))"
+)
+LETTERS = {"a": 7, "b": 8, "f": 12, "n": 10, "r": 13, "t": 9, "v": 11}
+MAX_DIGITS = 40
+"""No integer of the language has more; Python's own conversion takes quadratic time on long ones."""
+
+
+class EscapeError(ValueError):
+    """A backslash with something behind it that means nothing; ``args[0]`` is the offset."""
+
+
+def number(text: str) -> int | float | None:
+    """The number that a token spells; None where it spells none."""
+    if INTEGER.fullmatch(text):
+        return float(text) if len(text) > MAX_DIGITS and text[0] != "0" else _integer(text)
+    return float(text) if FLOAT.fullmatch(text) else None
+
+
+def string(text: str) -> bytes:
+    """The bytes between the quotes of a string token, escapes replaced.
+
+    Raises
+    ------
+    EscapeError
+    """
+    return unescape(text[1:-1])
+
+
+def unescape(text: str) -> bytes:
+    """Replace C escapes; everything else is UTF-8.
+
+    Raises
+    ------
+    EscapeError
+    """
+    out = bytearray()
+    end = 0
+    for match in ESCAPE.finditer(text):
+        out += text[end : match.start()].encode("utf-8", "surrogatepass")
+        out += _escape(match)
+        end = match.end()
+    out += text[end:].encode("utf-8", "surrogatepass")
+    return bytes(out)
+
+
+def _integer(text: str) -> int:
+    if text[:2] in ("0x", "0X"):
+        return int(text, 16)
+    return int(text, 8) if text[0] == "0" else int(text)
+
+
+def _escape(match: re.Match[str]) -> bytes:
+    kind = match.lastgroup
+    value = match[kind] if kind else ""
+    match kind:
+        case "octal":
+            return bytes([int(value, 8) & 0xFF])
+        case "hex":
+            return bytes([int(value, 16)])
+        case "u4" | "u8" if int(value, 16) <= 0x10FFFF:
+            return chr(int(value, 16)).encode("utf-8", "surrogatepass")
+        case "letter":
+            return bytes([LETTERS.get(value, ord(value))])
+        case _:
+            raise EscapeError(match.start())

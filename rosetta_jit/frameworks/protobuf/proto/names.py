@@ -1,0 +1,145 @@
+"""Make every name of a file absolute: `Image` becomes `.rst.vision.Image`.
+
+Scalar types keep their words. A name that stands for nothing becomes empty, is reported here, and nowhere again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
+from rosetta_jit.frameworks.protobuf.proto.symbols import TYPES, Kind, Symbols, join, package_of
+from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, Field, File, MapType, Message, Method, Name, Oneof, Option, Service
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+
+EXTENSION: frozenset[Kind] = frozenset(("extension",))
+MESSAGE: frozenset[Kind] = frozenset(("message",))
+
+
+MAX_SUGGESTIONS = 100
+"""Problems after which no similar names are looked for: each search reads all names."""
+
+
+def absolute(file: File, symbols: Symbols, problems: list[Diagnostic]) -> File:
+    """The same file with every type and every custom option by its absolute name."""
+    return _Resolver(file.name, symbols, problems).file(file)
+
+
+@dataclass(frozen=True, slots=True)
+class _Resolver:
+    file_name: str
+    symbols: Symbols
+    problems: list[Diagnostic]
+
+    def file(self, file: File) -> File:
+        scope = package_of(file)
+        return replace(
+            file,
+            messages=tuple(self.message(scope, message) for message in file.messages),
+            enums=tuple(self.enum(scope, enum) for enum in file.enums),
+            extends=tuple(self.extend(scope, extend) for extend in file.extends),
+            services=tuple(self.service(scope, service) for service in file.services),
+            options=self.options(scope, file.options),
+        )
+
+    def message(self, outer: str, message: Message) -> Message:
+        scope = join(outer, message.name.text)
+        return replace(
+            message,
+            members=tuple(self.member(scope, member) for member in message.members),
+            messages=tuple(self.message(scope, inner) for inner in message.messages),
+            enums=tuple(self.enum(scope, enum) for enum in message.enums),
+            extends=tuple(self.extend(scope, extend) for extend in message.extends),
+            options=self.options(outer, message.options),
+        )
+
+    def member(self, scope: str, member: Field | Oneof) -> Field | Oneof:
+        match member:
+            case Field():
+                return self.field(scope, member)
+            case Oneof():
+                fields = tuple(self.field(scope, field) for field in member.fields)
+                return replace(member, fields=fields, options=self.options(scope, member.options))
+            case _:
+                assert_never(member)
+
+    def field(self, scope: str, field: Field) -> Field:
+        return replace(field, type=self.type(scope, field.type), options=self.options(scope, field.options))
+
+    def type(self, scope: str, type_: Name | MapType) -> Name | MapType:
+        match type_:
+            case MapType(key, value, span):
+                return MapType(self.reference(scope, key), self.reference(scope, value), span)
+            case Name():
+                return self.reference(scope, type_)
+            case _:
+                assert_never(type_)
+
+    def reference(self, scope: str, name: Name) -> Name:
+        return name if name.text in SCALARS else self.lookup(scope, name, TYPES)
+
+    def extend(self, scope: str, extend: Extend) -> Extend:
+        fields = tuple(self.field(scope, field) for field in extend.fields)
+        return Extend(self.lookup(scope, extend.extendee, MESSAGE), fields)
+
+    def enum(self, outer: str, enum: Enum) -> Enum:
+        values = tuple(replace(value, options=self.options(outer, value.options)) for value in enum.values)
+        return replace(enum, values=values, options=self.options(outer, enum.options))
+
+    def service(self, outer: str, service: Service) -> Service:
+        scope = join(outer, service.name.text)
+        methods = tuple(self.method(scope, method) for method in service.methods)
+        return replace(service, methods=methods, options=self.options(outer, service.options))
+
+    def method(self, scope: str, method: Method) -> Method:
+        types = tuple(self.lookup(scope, name, MESSAGE) for name in method.types)
+        return replace(method, types=types, options=self.options(scope, method.options))
+
+    def options(self, scope: str, options: tuple[Option, ...]) -> tuple[Option, ...]:
+        return tuple(replace(option, parts=(self.part(scope, option), *option.parts[1:])) for option in options)
+
+    def part(self, scope: str, option: Option) -> str:
+        """The first part of an option's name; the others are read in the type of that one."""
+        first = option.parts[0]
+        if not first.startswith("("):
+            return first
+        return f"({self.lookup(scope, Name(first[1:-1], option.span), EXTENSION).text})"
+
+    def lookup(self, scope: str, name: Name, kinds: frozenset[Kind]) -> Name:
+        if not name.text:
+            return name
+        full = self.symbols.find(self.file_name, scope, name.text, kinds)
+        if full is None:
+            self.problems.append(self.unknown(scope, name, kinds))
+            return Name("", name.span)
+        if self.symbols.table[full].kind not in kinds:
+            self.problems.append(say.wrong_kind(name, full, self.symbols.table[full].kind, kinds))
+            return Name("", name.span)
+        return Name(f".{full}", name.span)
+
+    def unknown(self, scope: str, name: Name, kinds: frozenset[Kind]) -> Diagnostic:
+        """Why a name was not found: an inner scope hides it, its file is not imported, or it is nowhere."""
+        bare = name.text.removeprefix(".")
+        inner = self.symbols.scope_of(self.file_name, scope, name.text, kinds)
+        if inner and "." in bare:
+            return say.hidden_name(name, join(inner, bare))
+        scopes = [scope, *(scope[:end] for end in range(len(scope)) if scope[end] == "."), ""]
+        for full in (join(outer, bare) for outer in sorted(scopes, key=len, reverse=True)):
+            symbol = self.symbols.table.get(full)
+            if symbol and symbol.kind in kinds:
+                return say.not_imported(name, full, min(symbol.files))
+        return say.unknown_name(name, kinds, self.elsewhere(bare, kinds) if len(self.problems) < MAX_SUGGESTIONS else None)
+
+    def elsewhere(self, name: str, kinds: frozenset[Kind]) -> str | None:
+        """A declaration whose name ends in the same way, or almost so."""
+        from difflib import get_close_matches
+
+        last = name.rpartition(".")[2]
+        known = [full for full, symbol in self.symbols.table.items() if symbol.kind in kinds]
+        same = [full for full in known if full.rpartition(".")[2] == last]
+        close = same or get_close_matches(name, known[:500], n=1)
+        return close[0] if close else None

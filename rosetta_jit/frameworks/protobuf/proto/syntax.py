@@ -1,0 +1,182 @@
+"""Text to lark tree, with every syntax error of the file.
+
+After an error the parser goes back to where the statement began, skips it, and goes on: the next one is read as if the
+wrong one were not there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Protocol
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.source import Source, Span
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from lark import Token, Tree
+
+    from rosetta_jit.diagnostics import Diagnostic
+
+MAX_NESTING = 32
+"""Messages within messages, and lists and messages within an option's value; protoc stops at the same depth."""
+
+MAX_ERRORS = 20
+"""A file with more syntax errors is no `.proto` file; the rest of it is not read."""
+
+OPENING = frozenset(("LBRACE", "LSQB", "LESSTHAN"))
+CLOSING = frozenset(("RBRACE", "RSQB", "MORETHAN"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Statement:
+    """A statement while it is read: its first token, the height of the parser's stack below it, brackets open in it."""
+
+    start: int
+    base: int | None = None
+    nested: int = 0
+
+
+class _State(Protocol):
+    """The stacks of lark's parser, as far as recovery needs them."""
+
+    state_stack: list[Any]
+    value_stack: list[Any]
+
+
+class _Parser(Protocol):
+    """Lark's interactive parser; its own annotations leave the types of states open."""
+
+    parser_state: _State
+
+    def feed_token(self, token: Token) -> object: ...
+
+    def feed_eof(self) -> Tree[Token]: ...
+
+
+def parse(source: Source, problems: list[Diagnostic]) -> Tree[Token] | None:
+    """The tree of a file; what could be read of it where problems were found, None where nothing could."""
+    tokens = list(_tokens(source))
+    deep = _too_deep(tokens)
+    if deep is not None:
+        problems.append(say.nesting(span_of(source, deep), MAX_NESTING))
+        return None
+    return _feed(source, tokens, problems)
+
+
+def span_of(source: Source, token: Token) -> Span:
+    """The place of a token."""
+    start = token.start_pos or 0
+    return Span(source, start, start + len(token))
+
+
+@cache
+def grammar() -> Any:
+    """The parser. LALR tables take 70 ms, so they are made once a process, at the first file."""
+    from lark import Lark
+    from lark.lark import PostLex
+
+    class KeepWrongTokens(PostLex):
+        always_accept = ("UNCLOSED_STRING", "UNCLOSED_COMMENT", "UNKNOWN")
+
+        def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+            return stream
+
+    text = files("rosetta_jit.frameworks.protobuf.proto").joinpath("proto.lark").read_text("utf-8")
+    return Lark(text, start="file", parser="lalr", lexer="basic", postlex=KeepWrongTokens(), maybe_placeholders=False)
+
+
+def _tokens(source: Source) -> Iterator[Token]:
+    text = source.text
+    # A byte order mark may stand before everything else; blanks keep the offsets right.
+    return grammar().lex(" " + text[1:] if text.startswith("\ufeff") else text)
+
+
+def _too_deep(tokens: list[Token]) -> Token | None:
+    depth = 0
+    for token in tokens:
+        if token.type in OPENING:
+            depth += 1
+        elif token.type in CLOSING:
+            depth -= 1
+        if depth > MAX_NESTING:
+            return token
+    return None
+
+
+def _feed(source: Source, tokens: list[Token], problems: list[Diagnostic]) -> Tree[Token] | None:
+    from lark.exceptions import UnexpectedToken
+
+    parser: _Parser = grammar().parse_interactive()
+    statement = _Statement(0)
+    index = 0
+    for _ in range(MAX_ERRORS):
+        try:
+            while index < len(tokens):
+                parser.feed_token(tokens[index])
+                index += 1
+                statement = _advance(statement, parser, tokens, index)
+            return parser.feed_eof()
+        except UnexpectedToken as error:
+            wrong: Token = error.token
+            problems.append(_unexpected(source, wrong, error.expected))
+            if wrong.type == "$END":
+                break
+            _drop(statement, parser)
+            index = _after(statement, tokens, index)
+            statement = _Statement(index)
+    return None
+
+
+def _advance(statement: _Statement, parser: _Parser, tokens: list[Token], index: int) -> _Statement:
+    """The statement that the parser is in, once it took the token before ``index``."""
+    token = tokens[index - 1]
+    nested = _nested(statement.nested, token, tokens[index - 2])
+    if not nested and token.type in ("SEMICOLON", "LBRACE", "RBRACE") and statement.nested == 0:
+        return _Statement(index)
+    base = len(parser.parser_state.state_stack) - 1 if statement.base is None else statement.base
+    return _Statement(statement.start, base, nested)
+
+
+def _nested(depth: int, token: Token, before: Token) -> int:
+    """How deep in an option's value the parser is: its braces and semicolons end no statement."""
+    if depth or token.type == "LSQB" or (token.type == "LBRACE" and before.type == "EQUAL"):
+        return depth + (token.type in OPENING) - (token.type in CLOSING)
+    return 0
+
+
+def _drop(statement: _Statement, parser: _Parser) -> None:
+    """Take what was read of a statement off the parser's stacks."""
+    if statement.base is not None:
+        del parser.parser_state.state_stack[statement.base :]
+        del parser.parser_state.value_stack[statement.base - 1 :]
+
+
+def _after(statement: _Statement, tokens: list[Token], wrong: int) -> int:
+    """Index of the token behind a statement that went wrong at ``wrong``."""
+    depth = 0
+    for index in range(statement.start, len(tokens)):
+        kind = tokens[index].type
+        depth += (kind == "LBRACE") - (kind == "RBRACE")
+        if depth < 0:
+            return max(index, statement.start + 1)
+        if depth == 0 and kind in ("SEMICOLON", "RBRACE") and index >= wrong:
+            return index + 1
+    return len(tokens)
+
+
+def _unexpected(source: Source, token: Token, expected: set[str]) -> Diagnostic:
+    start = token.start_pos or 0
+    match token.type:
+        case "$END":
+            end = len(source.text)
+            return say.unfinished(Span(source, end, end), expected)
+        case "UNCLOSED_STRING":
+            return say.unclosed_string(span_of(source, token))
+        case "UNCLOSED_COMMENT":
+            return say.unclosed_comment(Span(source, start, start + 2))
+        case _:
+            return say.unexpected(span_of(source, token), str(token), expected)

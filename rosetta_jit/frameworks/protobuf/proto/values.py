@@ -1,0 +1,155 @@
+"""Names, numbers, strings and options: what the statements of a file are made of.
+
+Numbers and strings get their values here, so what is wrong with one of them is found here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, cast
+
+from lark import Token, Tree
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto import literals, syntax
+from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Name, Option, Value, Word
+from rosetta_jit.source import Source, Span
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+
+Node = Tree[Token]
+
+MAX_NAME = 512
+"""Longer names, packages included, are refused: a file of n bytes shall not need more than a small multiple of n."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValueReader:
+    """Reads the parts of one source; what is wrong with them goes to ``problems``."""
+
+    source: Source
+    problems: list[Diagnostic]
+
+    # Options
+
+    def options(self, node: Node) -> tuple[Option, ...]:
+        return tuple(self.option(child) for child in all_of(node, "option"))
+
+    def settings(self, node: Node) -> tuple[Option, ...]:
+        """The options in brackets."""
+        return tuple(option for child in all_of(node, "settings") for option in self.options(child))
+
+    def option(self, node: Node) -> Option:
+        name, value = cast("list[Node]", node.children)
+        parts = tuple(
+            f"({self.path(one(part, 'path')).text})" if isinstance(part, Tree) else str(part)
+            for part in name.children
+            if isinstance(part, Tree) or part.type != "DOT"
+        )
+        return Option(parts, self.option_value(value), self.span(name))
+
+    def option_value(self, node: Node) -> Value:
+        match node.data:
+            case "string":
+                return self.string(node)
+            case "signed":
+                return self.number(node)
+            case "word":
+                return Word("".join(tokens_of(node)))
+            case _:
+                return Aggregate()
+
+    # Words, numbers, strings
+
+    def name(self, token: Token) -> Name:
+        return self.checked(Name(str(token), self.at(token)))
+
+    def path(self, node: Node) -> Name:
+        return self.checked(Name("".join(tokens_of(node)), self.span(node)))
+
+    def checked(self, name: Name) -> Name:
+        if len(name.text) > MAX_NAME:
+            self.problems.append(say.name_too_long(name.span, MAX_NAME))
+        return Name(name.text[:MAX_NAME], name.span)
+
+    def integer(self, token: Token) -> int:
+        """A number that no sign may precede: that of a field."""
+        value = self.unsigned(token)
+        return value if isinstance(value, int) else self.wrong(self.at(token), "an integer")
+
+    def signed(self, node: Node) -> int:
+        value = self.number(node)
+        return value if isinstance(value, int) else self.wrong(self.span(node), "an integer")
+
+    def number(self, node: Node) -> int | float:
+        *minus, digits = tokens_of(node)
+        value = self.unsigned(digits)
+        return -value if minus else value
+
+    def unsigned(self, token: Token) -> int | float:
+        value = literals.number(str(token))
+        return self.wrong(self.at(token), "a number") if value is None else value
+
+    def wrong(self, span: Span, wanted: Literal["an integer", "a number"]) -> int:
+        self.problems.append(say.wrong_number(span, wanted))
+        return 1
+
+    def text(self, node: Node) -> str:
+        try:
+            return self.string(node).decode()
+        except UnicodeDecodeError:
+            self.problems.append(say.not_utf8(self.span(node)))
+            return ""
+
+    def string(self, node: Node) -> bytes:
+        """Adjacent strings are one."""
+        return b"".join(self.bytes(token) for token in tokens_of(node))
+
+    def bytes(self, token: Token) -> bytes:
+        try:
+            return literals.string(str(token))
+        except literals.EscapeError as error:
+            start = self.at(token).start + 1 + cast("int", error.args[0])
+            self.problems.append(say.wrong_escape(Span(self.source, start, start + 2)))
+            return b""
+
+    # Places
+
+    def at(self, token: Token) -> Span:
+        return syntax.span_of(self.source, token)
+
+    def span(self, node: Node) -> Span:
+        first, last = ends(node)
+        return self.at(first).to(self.at(last))
+
+    def doc(self, node: Node) -> str:
+        return leading_comment(self.source.text, ends(node)[0].start_pos or 0)
+
+
+def all_of(node: Node, *rules: str) -> Iterator[Node]:
+    """The children of a node that come from certain rules."""
+    return (child for child in node.children if isinstance(child, Tree) and child.data in rules)
+
+
+def one(node: Node, rule: str) -> Node:
+    """The only child that comes from a rule."""
+    return next(all_of(node, rule))
+
+
+def tokens_of(node: Node) -> list[Token]:
+    """The tokens right under a node."""
+    return [child for child in node.children if isinstance(child, Token)]
+
+
+def ends(node: Node) -> tuple[Token, Token]:
+    """The first and the last token under a node."""
+    first, last = node.children[0], node.children[-1]
+    while isinstance(first, Tree):
+        first = first.children[0]
+    while isinstance(last, Tree):
+        last = last.children[-1]
+    return first, last
