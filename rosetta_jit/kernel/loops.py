@@ -1,0 +1,138 @@
+"""What is true in every round of a loop: guessed at the entry, kept as long as each round keeps it.
+
+The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero. One that a
+round breaks is dropped for good, so that for all its loops together a kernel is walked at most once for each guess.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.arithmetic import FLOATS
+from rosetta_jit.kernel.ir import Advance, Assign
+from rosetta_jit.kernel.linear import Linear, minus, plus, times
+from rosetta_jit.kernel.paths import anchors, from_begin, grown, restore, saved, variable
+from rosetta_jit.kernel.prove import All
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.symbolic import linear
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Block
+    from rosetta_jit.kernel.prove import Formula
+    from rosetta_jit.kernel.symbolic import Scope
+
+MAX_ROUNDS = 1 << 20
+"""A loop that neither the message nor a value bounds runs at most so often."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """A relation that may hold in every round of a loop: ``sign * (variable - anchor) >= 0``."""
+
+    name: str
+    anchor: int
+    sign: int
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """A loop's body and how to walk a round: ``enter`` is told the first atom of the round, ``leave`` checks what a round owes."""
+
+    body: Block
+    enter: Callable[[int], None]
+    walk: Callable[[], bool]
+    leave: Callable[[], None]
+
+
+def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
+    """Walk any round of a loop, and go to the place after it, with the same guesses known."""
+    at_entry = saved(scope)
+    names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
+    kept = [guess for guess in guesses(scope, names) if guess not in dropped]
+    while True:
+        lost = _round(scope, loop, at_entry, kept)
+        restore(scope, at_entry)
+        if not lost:
+            break
+        dropped.update(lost)
+        kept = [guess for guess in kept if guess not in dropped]
+    forget(scope, at_entry, names, lanes, kept)
+
+
+def _round(scope: Scope, loop: Loop, at_entry: Scope, kept: list[Guess]) -> list[Guess]:
+    """Walk one round; returns the guesses that it breaks."""
+    facts = scope.facts
+    mark, first_atom = facts.mark(), len(facts.lows)
+    forget(scope, at_entry, changed_names(loop.body), advanced_lanes(loop.body), kept)
+    loop.enter(first_atom)
+    lost: list[Guess] = []
+    if not loop.walk() and not facts.impossible:
+        loop.leave()
+        lost = [guess for guess in kept if not facts.proves(instance(scope, guess, at_entry, linear(scope.locals[guess.name][1])))]
+    facts.rollback(mark)
+    return lost
+
+
+def is_bounded(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -> bool:
+    """Whether a measure cannot grow for ever: the message's end, the loop's condition or a constant lies above it."""
+    facts = scope.facts
+    if facts.upper(measure) - facts.lower(measure) <= MAX_ROUNDS or facts.proves(minus(linear(scope.locals["end"][1]), measure)):
+        return True
+    return any(all(atom < first_atom for atom, _ in plus(part, measure).terms) for part in _conjuncts(condition))
+
+
+def _conjuncts(formula: Formula) -> list[Linear]:
+    match formula:
+        case Linear():
+            return [formula]
+        case All(parts):
+            return [conjunct for part in parts for conjunct in _conjuncts(part)]
+        case _:
+            return []
+
+
+def changed_names(body: Block) -> set[str]:
+    """The variables that a loop assigns."""
+    return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
+
+
+def advanced_lanes(body: Block) -> set[int]:
+    """The lanes that a loop takes rows of."""
+    return {stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Advance)}
+
+
+def guesses(scope: Scope, names: set[str]) -> list[Guess]:
+    """Relations that hold at the entry: positions stay in the message, and nothing falls below its first value or zero."""
+    found: list[Guess] = []
+    for name in sorted(names & scope.locals.keys()):
+        type_, value = scope.locals[name]
+        if not isinstance(value, Linear):
+            continue
+        wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
+        if type_ == "i64" and from_begin(value):
+            wanted += [Guess(name, 0, 1), Guess(name, 1, -1)]
+        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, scope, value))]
+    return found
+
+
+def instance(scope: Scope, guess: Guess, at_entry: Scope, value: Linear) -> Linear:
+    """A guess about a value, as a fact."""
+    marks = [*anchors(scope, at_entry.locals[guess.name]), Linear(0)]
+    return times(minus(value, marks[guess.anchor]), guess.sign)
+
+
+def forget(scope: Scope, at_entry: Scope, names: set[str], lanes: set[int], kept: list[Guess]) -> None:
+    """Go to the head of some round: what the loop changes is unknown but for the guesses."""
+    for name in sorted(names & scope.locals.keys()):
+        type_, old = at_entry.locals[name]
+        if type_ == "bool" or type_ in FLOATS:
+            scope.locals[name] = type_, None
+        else:
+            scope.locals[name] = type_, variable(scope, type_, relative=from_begin(linear(old)))
+    for guess in kept:
+        scope.facts.assume(instance(scope, guess, at_entry, linear(scope.locals[guess.name][1])))
+    for lane in sorted(lanes):
+        scope.used[lane] = grown(scope, lane, at_entry.used[lane])

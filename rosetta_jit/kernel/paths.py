@@ -1,0 +1,159 @@
+"""Where the branches of a kernel meet again, and what is known there.
+
+A variable that differs between paths becomes a new unknown. What is kept about it: its distances from a few *anchors* (the ends of
+the message, its value before), as far as every path shows them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.linear import Linear, coefficient_of, minus, plus, shifted, times
+from rosetta_jit.kernel.symbolic import MAX_ROWS, Scope, linear
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Scalar
+    from rosetta_jit.kernel.linear import Terms
+    from rosetta_jit.kernel.prove import Formula
+    from rosetta_jit.kernel.symbolic import Typed
+
+BEGIN_ATOM = 0
+"""The first atom of every scope."""
+
+FAR = 1 << 32
+"""A distance that says nothing worth keeping."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """What one path brings to a meeting point."""
+
+    locals: dict[str, Typed]
+    used: list[Linear]
+    gained: dict[Terms, int]
+    distances: dict[str, list[tuple[int, int]]]
+
+
+def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool:
+    """Walk each way under its condition, and go on with what all that arrive have in common; True where all have returned."""
+    before = saved(scope)
+    arrivals: list[Arrival] = []
+    returned = False
+    for formula, walk in ways:
+        mark = scope.facts.mark()
+        scope.facts.assume(formula)
+        if walk():
+            returned = True
+            scope.facts.rollback(mark)
+        elif scope.facts.impossible:
+            scope.facts.rollback(mark)
+        else:
+            arrivals.append(_arrive(scope, before, mark))
+        restore(scope, before)
+    if arrivals:
+        _meet(scope, before, arrivals)
+    elif not returned:
+        scope.facts.assume(formula=False)
+    return returned and not arrivals
+
+
+def saved(scope: Scope) -> Scope:
+    """The scope as it is now, to be compared with and restored; facts are shared."""
+    return Scope(scope.strides, scope.facts, dict(scope.locals), list(scope.used), scope.capacity)
+
+
+def restore(scope: Scope, before: Scope) -> None:
+    """Go back to locals and used lengths as they were."""
+    scope.locals, scope.used = dict(before.locals), list(before.used)
+
+
+def _arrive(scope: Scope, before: Scope, mark: int) -> Arrival:
+    """End a path: give up its facts, and keep what a meeting point needs."""
+    distances: dict[str, list[tuple[int, int]]] = {}
+    for name, old in before.locals.items():
+        new = scope.locals[name]
+        if new is not old and isinstance(new[1], Linear):
+            distances[name] = _distances(scope, new[1], anchors(before, old))
+    visible = {name: scope.locals[name] for name in before.locals}
+    return Arrival(visible, list(scope.used), scope.facts.rollback(mark), distances)
+
+
+def anchors(scope: Scope, old: Typed) -> list[Linear]:
+    """What the values of a variable are compared with."""
+    return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1])]
+
+
+def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[int, int]]:
+    """For each anchor the least of ``value - anchor`` and of ``anchor - value``."""
+    return [(_least(scope, minus(value, mark)), _least(scope, minus(mark, value))) for mark in marks]
+
+
+def _least(scope: Scope, distance: Linear) -> int:
+    low = scope.facts.lower(distance)
+    return 0 if low < 0 and coefficient_of(distance, BEGIN_ATOM) == 0 and scope.facts.proves(distance) else low
+
+
+def _meet(scope: Scope, before: Scope, arrivals: list[Arrival]) -> None:
+    """Go on with what is true on all paths that arrive (at least one)."""
+    first = arrivals[0]
+    for terms, bound in first.gained.items():
+        shared = [arrival.gained.get(terms) for arrival in arrivals]
+        scope.facts.assume(Linear(-min([bound, *(b for b in shared if b is not None)]), terms) if None not in shared else None)
+    scope.locals = {name: _met(scope, before, arrivals, name) for name in before.locals}
+    scope.used = [
+        first.used[lane] if all(a.used[lane] == first.used[lane] for a in arrivals) else grown(scope, lane, before.used[lane])
+        for lane in range(len(scope.strides))
+    ]
+
+
+def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typed:
+    old = before.locals[name]
+    values = [arrival.locals[name] for arrival in arrivals]
+    if all(value[1] == values[0][1] for value in values):
+        return values[0]
+    if not isinstance(old[1], Linear):
+        return old[0], None
+    met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
+    marks = anchors(before, old)
+    own = _distances(scope, old[1], marks)
+    for k, mark in enumerate(marks):
+        ways = [arrival.distances.get(name, own)[k] for arrival in arrivals]
+        learn_distance(scope, minus(met, mark), min(way[0] for way in ways))
+        learn_distance(scope, minus(mark, met), min(way[1] for way in ways))
+    return old[0], met
+
+
+def learn_distance(scope: Scope, distance: Linear, least: int) -> None:
+    """Keep a lower bound of a distance, if it says anything."""
+    if least > -FAR:
+        scope.facts.assume(shifted(distance, -least))
+
+
+# --- unknowns ----------------------------------------------------------------------------------------------------------
+
+
+def variable(scope: Scope, type_: Scalar, *, relative: bool) -> Linear:
+    """Any integer of a type; one that is a position is kept as a distance from `begin`."""
+    low, high = limits(type_)
+    if not relative:
+        return scope.facts.fresh(low, high)
+    value = plus(linear(scope.locals["begin"][1]), scope.facts.fresh(low, high))
+    scope.facts.assume(shifted(times(value, -1), high))
+    return value
+
+
+def grown(scope: Scope, lane: int, before: Linear) -> Linear:
+    """The used length of a lane some time later: it never shrinks."""
+    rows = scope.facts.fresh(0, MAX_ROWS)
+    scope.facts.assume(minus(scope.capacity[lane], rows))
+    scope.facts.assume(minus(rows, before))
+    return rows
+
+
+def from_begin(value: Linear) -> bool:
+    """Whether a value is a distance from `begin`: a position."""
+    return coefficient_of(value, BEGIN_ATOM) == 1

@@ -1,0 +1,311 @@
+r"""What is known at one place of a kernel, and what follows from it.
+
+    Formula = True | False | None | Linear | All(Formula*) | Any(Formula*)
+
+A `Linear` as a formula says that it is >= 0; None says nothing. `Facts` keeps, for each sum of atoms, the greatest lower bound that
+is known. Most questions are answered by a look at that table or by the bounds of single atoms; the rest by
+Fourier-Motzkin elimination on the facts around the question, within a budget. A No means "not proven".
+
+Facts are gained along a path and given up at its end (`mark`, `rollback`), so that the two branches of an If share one table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass, field
+from typing import assert_never
+
+from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
+
+NEARBY_FACTS = 48
+ELIMINATION_BUDGET = 600
+CASE_DEPTH = 2
+MAX_FORMULA = 64
+
+
+@dataclass(frozen=True, slots=True)
+class All:
+    """Every part holds."""
+
+    parts: tuple[Formula, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Any:
+    """One part at least holds."""
+
+    parts: tuple[Formula, ...]
+
+
+Formula = bool | None | Linear | All | Any
+
+
+def negated(formula: Formula) -> Formula:
+    """The opposite; over integers ``not (l >= 0)`` is ``-l - 1 >= 0``."""
+    match formula:
+        case bool():
+            return not formula
+        case None:
+            return None
+        case Linear():
+            return shifted(times(formula, -1), -1)
+        case All(parts):
+            return Any(tuple(map(negated, parts)))
+        case Any(parts):
+            return All(tuple(map(negated, parts)))
+        case _:
+            assert_never(formula)
+
+
+def bounded(formula: Formula) -> Formula:
+    """The formula, or None where it is so large that taking it apart again and again would cost too much."""
+    return formula if _size(formula) <= MAX_FORMULA else None
+
+
+def _size(formula: Formula) -> int:
+    match formula:
+        case All(parts) | Any(parts):
+            return sum(map(_size, parts))
+        case _:
+            return 1
+
+
+def equal(left: Linear, right: Linear) -> Formula:
+    """``left == right``."""
+    difference = minus(left, right)
+    return All((difference, times(difference, -1)))
+
+
+@dataclass(slots=True)
+class Facts:
+    """Bounds of atoms and of sums of atoms."""
+
+    lows: list[int] = field(default_factory=list[int])
+    highs: list[int] = field(default_factory=list[int])
+    impossible: bool = False
+    _bounds: dict[Terms, int] = field(default_factory=dict[Terms, int])
+    _about: dict[int, list[Terms]] = field(default_factory=dict[int, list[Terms]])
+    _cases: dict[int, tuple[tuple[Formula, Linear], ...]] = field(default_factory=dict[int, tuple[tuple[Formula, Linear], ...]])
+    _named: dict[Hashable, Linear] = field(default_factory=dict[Hashable, Linear])
+    _born: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    _trail: list[tuple[str, int | Terms, int | None]] = field(default_factory=list[tuple[str, "int | Terms", "int | None"]])
+
+    # --- atoms -------------------------------------------------------------------------------------------------------
+
+    def fresh(self, low: int, high: int) -> Linear:
+        """A new atom between two bounds."""
+        self.lows.append(low)
+        self.highs.append(high)
+        self._born.append((low, high))
+        return Linear(0, ((len(self.lows) - 1, 1),))
+
+    def named(self, key: Hashable, low: int, high: int) -> Linear:
+        """The atom of a term that linear reasoning cannot look into; the same term is the same atom. The bounds hold on every path."""
+        atom = self._named.get(key)
+        if atom is None:
+            atom = self._named[key] = self.fresh(low, high)
+        return atom
+
+    def has(self, key: Hashable) -> bool:
+        """Whether a term has an atom."""
+        return key in self._named
+
+    def born(self, atom: int) -> tuple[int, int]:
+        """Bounds of an atom on every path where it exists."""
+        return self._born[atom]
+
+    def chosen(self, cases: tuple[tuple[Formula, Linear], ...]) -> Linear:
+        """The atom that is equal to one of some values, each under a condition; together they cover everything."""
+        widest = [self._widest(value) for _, value in cases]
+        atom = self.named(cases, min(low for low, _ in widest), max(high for _, high in widest))
+        self._cases[atom.terms[0][0]] = cases
+        self.assume(shifted(atom, -min(self.lower(value) for _, value in cases)))
+        self.assume(shifted(times(atom, -1), max(self.upper(value) for _, value in cases)))
+        return atom
+
+    def _widest(self, linear: Linear) -> tuple[int, int]:
+        """Bounds of a sum on every path."""
+        low = high = linear.constant
+        for atom, coefficient in linear.terms:
+            ends = [coefficient * end for end in self._born[atom]]
+            low, high = low + min(ends), high + max(ends)
+        return low, high
+
+    # --- learning ----------------------------------------------------------------------------------------------------
+
+    def assume(self, formula: Formula) -> None:
+        """Take a formula as known."""
+        match formula:
+            case Linear():
+                self._learn(formula)
+            case All(parts):
+                for part in parts:
+                    self.assume(part)
+            case Any(parts):
+                open_parts = [part for part in parts if not self.refutes(part)]
+                if len(open_parts) == 1:
+                    self.assume(open_parts[0])
+                elif not open_parts:
+                    self._contradiction()
+            case False:
+                self._contradiction()
+            case True | None:
+                pass
+            case _:
+                assert_never(formula)
+
+    def _learn(self, fact: Linear) -> None:
+        constant, terms = fact
+        if len(terms) == 1:
+            self._learn_bound(constant, *terms[0])
+        elif terms:
+            constant, terms = tightened(fact)
+            known = self._bounds.get(terms)
+            if known is None or known < -constant:
+                self._trail.append(("sum", terms, known))
+                self._bounds[terms] = -constant
+                if known is None:
+                    for atom, _ in terms:
+                        self._about.setdefault(atom, []).append(terms)
+        elif constant < 0:
+            self._contradiction()
+
+    def _learn_bound(self, constant: int, atom: int, coefficient: int) -> None:
+        if coefficient > 0:
+            low = -(constant // coefficient)
+            if low > self.lows[atom]:
+                self._trail.append(("low", atom, self.lows[atom]))
+                self.lows[atom] = low
+        else:
+            high = constant // -coefficient
+            if high < self.highs[atom]:
+                self._trail.append(("high", atom, self.highs[atom]))
+                self.highs[atom] = high
+        if self.lows[atom] > self.highs[atom]:
+            self._contradiction()
+
+    def _contradiction(self) -> None:
+        if not self.impossible:
+            self._trail.append(("impossible", 0, None))
+            self.impossible = True
+
+    # --- paths -------------------------------------------------------------------------------------------------------
+
+    def mark(self) -> int:
+        """A point to roll back to."""
+        return len(self._trail)
+
+    def rollback(self, mark: int) -> dict[Terms, int]:
+        """Give up what was learnt since a mark; returns it, as lower bounds of sums."""
+        gained: dict[Terms, int] = {}
+        while len(self._trail) > mark:
+            kind, key, old = self._trail.pop()
+            if isinstance(key, tuple):
+                gained.setdefault(key, self._bounds[key])
+                self._forget(key, old)
+            elif kind == "impossible":
+                self.impossible = False
+            elif kind == "low" and old is not None:
+                gained.setdefault(((key, 1),), self.lows[key])
+                self.lows[key] = old
+            elif old is not None:
+                gained.setdefault(((key, -1),), -self.highs[key])
+                self.highs[key] = old
+        return gained
+
+    def _forget(self, key: Terms, old: int | None) -> None:
+        if old is not None:
+            self._bounds[key] = old
+            return
+        del self._bounds[key]
+        for atom, _ in key:
+            self._about[atom].pop()
+
+    # --- asking ------------------------------------------------------------------------------------------------------
+
+    def lower(self, linear: Linear) -> int:
+        """A lower bound, by a look at the table."""
+        total = linear.constant
+        for atom, coefficient in linear.terms:
+            total += coefficient * (self.lows[atom] if coefficient > 0 else self.highs[atom])
+        known = self._bounds.get(linear.terms)
+        return total if known is None else max(total, known + linear.constant)
+
+    def upper(self, linear: Linear) -> int:
+        """An upper bound, by a look at the table."""
+        return -self.lower(times(linear, -1))
+
+    def sums_about(self, atom: int, most: int) -> list[Linear]:
+        """Some facts (each >= 0) that name an atom among others."""
+        return [Linear(-self._bounds[terms], terms) for terms in self._about.get(atom, ())[:most]]
+
+    def proves(self, formula: Formula) -> bool:
+        """Whether a formula follows from what is known."""
+        return self.impossible or self._proves(formula, CASE_DEPTH)
+
+    def refutes(self, formula: Formula) -> bool:
+        """Whether the opposite of a formula follows."""
+        return self.proves(negated(formula))
+
+    def _proves(self, formula: Formula, depth: int) -> bool:
+        match formula:
+            case Linear():
+                return self.lower(formula) >= 0 or self._follows(formula) or (depth > 0 and self._by_cases(formula, depth))
+            case All(parts):
+                return all(self._proves(part, depth) for part in parts)
+            case Any(parts):
+                return any(self._proves(part, depth) for part in parts) or self._proves_one(parts, depth)
+            case bool():
+                return formula
+            case None:
+                return False
+            case _:
+                assert_never(formula)
+
+    def _proves_one(self, parts: tuple[Formula, ...], depth: int) -> bool:
+        """Whether the last part holds where all others do not."""
+        if depth == 0 or len(parts) < 2:
+            return False
+        mark = self.mark()
+        for part in parts[:-1]:
+            self.assume(negated(part))
+        proven = self.impossible or self._proves(parts[-1], depth - 1)
+        self.rollback(mark)
+        return proven
+
+    def _by_cases(self, goal: Linear, depth: int) -> bool:
+        """Whether a goal holds in each case of an atom that is chosen among values."""
+        atom = next((a for a, _ in goal.terms if a in self._cases), None)
+        return atom is not None and all(self._in_case(goal, atom, *case, depth) for case in self._cases[atom])
+
+    def _in_case(self, goal: Linear, atom: int, condition: Formula, value: Linear, depth: int) -> bool:
+        mark = self.mark()
+        self.assume(condition)
+        proven = self.impossible or self._proves(replaced(goal, atom, value), depth - 1)
+        self.rollback(mark)
+        return proven
+
+    def _follows(self, goal: Linear) -> bool:
+        """Whether the facts around a goal contradict its opposite."""
+        nearby = self._nearby(goal)
+        return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], ELIMINATION_BUDGET)
+
+    def _nearby(self, goal: Linear) -> list[Linear]:
+        """Facts that share atoms with a goal, and facts that share atoms with those."""
+        sums: dict[Terms, None] = {}
+        atoms = dict.fromkeys(atom for atom, _ in goal.terms)
+        queue = list(atoms)
+        while queue and len(sums) < NEARBY_FACTS:
+            for terms in reversed(self._about.get(queue.pop(0), ())):
+                if terms in sums:
+                    continue
+                sums[terms] = None
+                queue.extend(a for a, _ in terms if a not in atoms)
+                atoms.update(dict.fromkeys(a for a, _ in terms))
+                if len(sums) >= NEARBY_FACTS:
+                    break
+        if not sums:
+            return []
+        known = [Linear(-self._bounds[terms], terms) for terms in sums]
+        lows = [Linear(-self.lows[atom], ((atom, 1),)) for atom in atoms]
+        return known + lows + [Linear(self.highs[atom], ((atom, -1),)) for atom in atoms]

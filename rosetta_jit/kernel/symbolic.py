@@ -1,0 +1,381 @@
+"""Expressions of a kernel, evaluated over what is known: each value is a linear sum, a formula, or unknown.
+
+Evaluating an expression proves the obligations that lie in it (bounds of loads, no wrapping, no division by zero, types), so that
+whoever has a value has the proof too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel import integers
+from rosetta_jit.kernel.arithmetic import FLOATS, limits
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Binary,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Fits,
+    Get,
+    IsText,
+    Load,
+    Local,
+    Place,
+    Select,
+    Unary,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.linear import Linear, minus, plus, shifted, times
+from rosetta_jit.kernel.prove import All, Any, Facts, bounded, equal, negated
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Kernel, Scalar
+    from rosetta_jit.kernel.prove import Formula
+
+MAX_POSITION = 1 << 60
+"""The end of any buffer: a quarter of all memory that 64 bits can address, and more than any machine has."""
+
+MAX_ROWS = 1 << 48
+"""The capacity of any lane."""
+
+Value = Linear | bool | None | All | Any
+"""An integer, or a formula for a bool; None is a value of which nothing is known (every float)."""
+
+Typed = tuple["Scalar", Value]
+
+
+class UnprovenError(AssertionError):
+    """An obligation that does not follow from what is known."""
+
+
+@dataclass(slots=True)
+class Scope:
+    """What a place of a kernel can see: its locals, the lanes, and the facts about them."""
+
+    strides: tuple[int, ...]
+    facts: Facts = field(default_factory=Facts)
+    locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
+    used: list[Linear] = field(default_factory=list[Linear])
+    capacity: list[Linear] = field(default_factory=list[Linear])
+
+
+def entry(kernel: Kernel) -> Scope:
+    """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
+    scope = Scope(kernel.strides)
+    facts = scope.facts
+    begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
+    end = plus(begin, length)
+    facts.assume(shifted(times(end, -1), MAX_POSITION))
+    scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
+    for _ in kernel.strides:
+        capacity, used = facts.fresh(0, MAX_ROWS), facts.fresh(0, MAX_ROWS)
+        facts.assume(minus(capacity, used))
+        scope.capacity.append(capacity)
+        scope.used.append(used)
+    return scope
+
+
+# --- obligations -------------------------------------------------------------------------------------------------------
+
+
+def oblige(scope: Scope, formula: Formula, otherwise: str) -> None:
+    """Demand a proof."""
+    if not scope.facts.proves(formula):
+        raise UnprovenError(otherwise)
+
+
+def demand(holds: bool, otherwise: str) -> None:
+    """Demand what shows without a proof."""
+    if not holds:
+        raise UnprovenError(otherwise)
+
+
+def integer(scope: Scope, expr: Expr, type_: Scalar = "i64") -> Linear:
+    """Value of an expression that must be an integer of a type."""
+    found, value = evaluate(scope, expr)
+    demand(found == type_, f"{found} where {type_} belongs")
+    return linear(value)
+
+
+def linear(value: Value) -> Linear:
+    """A value that is an integer by its type."""
+    if not isinstance(value, Linear):
+        raise UnprovenError("no integer")
+    return value
+
+
+def condition(scope: Scope, expr: Expr) -> Formula:
+    """Value of an expression that must be a bool."""
+    found, value = evaluate(scope, expr)
+    demand(found == "bool", f"{found} where bool belongs")
+    return value
+
+
+def check_extent(scope: Scope, address: Address, size: Linear) -> Linear:
+    """``size >= 0`` bytes from an address lie in the message, or in a lane; returns the first byte's offset there."""
+    oblige(scope, size, "a size that may be negative")
+    match address:
+        case Wire(at):
+            start = integer(scope, at)
+            check_wire(scope, start, size)
+            return start
+        case Place():
+            row = _row(scope, address)
+            stride = scope.strides[address.lane]
+            start = shifted(times(row, stride), address.offset)
+            oblige(scope, minus(minus(times(scope.capacity[address.lane], stride), start), size), "bytes outside the lane")
+            return start
+        case _:
+            assert_never(address)
+
+
+def check_wire(scope: Scope, start: Linear, size: Linear) -> None:
+    """``size`` bytes from ``start`` lie in the message."""
+    begin, end = linear(scope.locals["begin"][1]), linear(scope.locals["end"][1])
+    oblige(scope, minus(minus(end, start), size), "bytes beyond the end of the message")
+    oblige(scope, minus(start, begin), "bytes before the begin of the message")
+
+
+def check_field(scope: Scope, place: Place, type_: Scalar) -> None:
+    """A scalar lies in a row of a lane, aligned."""
+    row = _row(scope, place)
+    width, stride = WIDTH[type_], scope.strides[place.lane]
+    demand(place.offset + width <= stride, "a field outside its row")
+    demand(place.offset % width == 0 and stride % width == 0, "a field that is not aligned")
+    oblige(scope, shifted(minus(scope.capacity[place.lane], row), -1), "a row outside its lane")
+
+
+def _row(scope: Scope, place: Place) -> Linear:
+    check_lane(scope, place.lane)
+    demand(place.offset >= 0, "a negative offset")
+    row = integer(scope, place.row)
+    oblige(scope, row, "a row that may be negative")
+    return row
+
+
+def check_lane(scope: Scope, lane: int) -> None:
+    """The lane exists."""
+    demand(0 <= lane < len(scope.strides), "no such lane")
+
+
+def in_range(scope: Scope, value: Linear, type_: Scalar) -> Linear:
+    """``value``, proven to be in its type's range: the operation that made it did not wrap."""
+    low, high = limits(type_)
+    oblige(scope, shifted(times(value, -1), high), f"{type_} arithmetic that may wrap")
+    oblige(scope, shifted(value, -low), f"{type_} arithmetic that may wrap")
+    return value
+
+
+def unknown(scope: Scope, type_: Scalar) -> Value:
+    """Any value of a type."""
+    return None if type_ == "bool" or type_ in FLOATS else scope.facts.fresh(*limits(type_))
+
+
+# --- expressions -------------------------------------------------------------------------------------------------------
+
+
+def evaluate(scope: Scope, expr: Expr) -> Typed:
+    """Type and value of an expression.
+
+    Raises
+    ------
+    UnprovenError
+        An obligation in it cannot be shown.
+    """
+    match expr:
+        case Local(type_, name):
+            demand(name in scope.locals, f"{name} is not visible here")
+            demand(scope.locals[name][0] == type_, f"{name} is no {type_}")
+            return scope.locals[name]
+        case Const(type_, value):
+            return type_, _constant(type_, value)
+        case Binary(op, left, right):
+            return _binary(scope, op, evaluate(scope, left), evaluate(scope, right))
+        case Load(type_, at, _):
+            check_wire(scope, integer(scope, at), Linear(WIDTH[type_]))
+            return type_, unknown(scope, type_)
+        case Get(type_, place):
+            check_field(scope, place, type_)
+            return type_, unknown(scope, type_)
+        case Convert(type_, operand):
+            return type_, _convert(scope, type_, *evaluate(scope, operand))
+        case Compare(op, left, right):
+            return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
+        case Used(lane):
+            check_lane(scope, lane)
+            return "i64", scope.used[lane]
+        case Capacity(lane):
+            check_lane(scope, lane)
+            return "i64", scope.capacity[lane]
+        case Unary():
+            return _unary(scope, expr)
+        case Fits(op, left, right):
+            low, high = limits("i64")
+            result = _integer_binary(scope, op, "i64", integer(scope, left), integer(scope, right))
+            return "bool", All((shifted(result, -low), shifted(times(result, -1), high)))
+        case Select():
+            return _select(scope, expr)
+        case IsText(address, size):
+            check_extent(scope, address, integer(scope, size))
+            return "bool", None
+        case _:
+            assert_never(expr)
+
+
+def _constant(type_: Scalar, value: float) -> Value:
+    if type_ in FLOATS:
+        return None
+    if type_ == "bool":
+        return bool(value)
+    low, high = limits(type_)
+    demand(isinstance(value, int) and low <= value <= high, f"{value} is no {type_}")
+    return Linear(int(value))
+
+
+def _binary(scope: Scope, op: Arithmetic, left: Typed, right: Typed) -> Typed:
+    type_ = left[0]
+    demand(type_ == right[0], f"{op} of {type_} and {right[0]}")
+    if type_ in FLOATS:
+        demand(op in {"add", "sub", "mul", "div", "rem", "min", "max"}, f"{op} of floats")
+        return type_, None
+    if type_ == "bool":
+        return type_, _logical(op, left[1], right[1])
+    return type_, _checked_binary(scope, op, type_, linear(left[1]), linear(right[1]))
+
+
+def _logical(op: Arithmetic, left: Formula, right: Formula) -> Formula:
+    match op:
+        case "and":
+            return bounded(All((left, right)))
+        case "or":
+            return bounded(Any((left, right)))
+        case "xor":
+            return None
+        case _:
+            raise UnprovenError(f"{op} of bools")
+
+
+def _checked_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, right: Linear) -> Linear:
+    """``left op right``, with its obligations."""
+    match op:
+        case "add" | "sub" | "mul":
+            return in_range(scope, _integer_binary(scope, op, type_, left, right), type_)
+        case "div" | "rem":
+            oblige(scope, negated(equal(right, Linear(0))), "a division that may be by zero")
+            low = limits(type_)[0]
+            overflows = All((equal(left, Linear(low)), equal(right, Linear(-1))))
+            demand(low == 0 or scope.facts.refutes(overflows), "a division that may overflow")
+        case "shl" | "shr":
+            oblige(scope, All((right, shifted(times(right, -1), 8 * WIDTH[type_] - 1))), "a shift by the width or more")
+        case _:
+            pass
+    return _integer_binary(scope, op, type_, left, right)
+
+
+def _integer_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, right: Linear) -> Linear:
+    """The mathematical result of ``left op right``."""
+    facts = scope.facts
+    match op:
+        case "add":
+            return plus(left, right)
+        case "sub":
+            return minus(left, right)
+        case "mul":
+            return integers.product(facts, left, right)
+        case "div":
+            return integers.quotient(facts, left, right)
+        case "rem":
+            return integers.remainder(facts, left, right)
+        case "and":
+            return integers.bits_and(facts, left, right, limits(type_))
+        case "or" | "xor":
+            return integers.bits_or(facts, left, right, limits(type_), exclusive=op == "xor")
+        case "shl":
+            return integers.shift_left(facts, left, right, limits(type_))
+        case "shr":
+            return integers.shift_right(facts, left, right, limits(type_))
+        case "min" | "max":
+            return _extreme(facts, left, right, 1 if op == "max" else -1)
+        case _:
+            assert_never(op)
+
+
+def _extreme(facts: Facts, left: Linear, right: Linear, sign: int) -> Linear:
+    """The greater of two, or with ``sign`` -1 the lesser."""
+    above = times(minus(left, right), sign)
+    result = facts.chosen(((above, left), (negated(above), right)))
+    facts.assume(All((times(minus(result, left), sign), times(minus(result, right), sign))))
+    return result
+
+
+def _unary(scope: Scope, expr: Unary) -> Typed:
+    type_, value = evaluate(scope, expr.operand)
+    match expr.function:
+        case "not" if type_ == "bool":
+            return type_, negated(value)
+        case "neg" | "abs" if type_ in FLOATS:
+            return type_, None
+        case "not":
+            flipped = shifted(times(linear(value), -1), -1)
+            return type_, flipped if limits(type_)[0] < 0 else shifted(flipped, limits(type_)[1] + 1)
+        case "neg":
+            return type_, in_range(scope, times(linear(value), -1), type_)
+        case "abs":
+            number = linear(value)
+            opposite = times(number, -1)
+            return type_, in_range(scope, scope.facts.chosen(((number, number), (negated(number), opposite))), type_)
+        case _:
+            demand(type_ in FLOATS, f"{expr.function} of {type_}")
+            return type_, None
+
+
+def _compare(op: Comparison, left: Typed, right: Typed) -> Formula:
+    demand(left[0] == right[0], f"{op} of {left[0]} and {right[0]}")
+    if left[0] == "bool" or left[0] in FLOATS:
+        return None
+    a, b = linear(left[1]), linear(right[1])
+    match op:
+        case "le":
+            return minus(b, a)
+        case "lt":
+            return shifted(minus(b, a), -1)
+        case "ge":
+            return minus(a, b)
+        case "gt":
+            return shifted(minus(a, b), -1)
+        case "eq":
+            return equal(a, b)
+        case "ne":
+            return negated(equal(a, b))
+        case _:
+            assert_never(op)
+
+
+def _convert(scope: Scope, target: Scalar, source: Scalar, value: Value) -> Value:
+    if target in FLOATS:
+        return None
+    if source == "bool":
+        return value if target == "bool" else scope.facts.fresh(0, 1)
+    if source in FLOATS:
+        return unknown(scope, target)
+    if target == "bool":
+        return negated(equal(linear(value), Linear(0)))
+    low, high = limits(target)
+    same = All((shifted(linear(value), -low), shifted(times(linear(value), -1), high)))
+    if limits(source)[0] >= low and limits(source)[1] <= high:
+        return value
+    return value if scope.facts.proves(same) else unknown(scope, target)
+
+
+def _select(scope: Scope, expr: Select) -> Typed:
+    chosen = condition(scope, expr.condition)
+    type_, then = evaluate(scope, expr.then)
+    other_type, otherwise = evaluate(scope, expr.otherwise)
+    demand(type_ == other_type, f"a choice between {type_} and {other_type}")
+    if type_ == "bool" or type_ in FLOATS:
+        return type_, None
+    return type_, scope.facts.chosen(((chosen, linear(then)), (negated(chosen), linear(otherwise))))

@@ -1,0 +1,253 @@
+"""Canaries: good kernels verify, and a kernel with one thing planted in it or taken out of it does not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from rosetta_jit.kernel.ir import (
+    BEGIN,
+    END,
+    ROW,
+    Advance,
+    Binary,
+    Const,
+    Copy,
+    Expect,
+    Fill,
+    For,
+    If,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Switch,
+    Used,
+    Var,
+    While,
+    Wire,
+    add,
+    index,
+    mul,
+)
+from rosetta_jit.kernel.verify import VerificationError, redundant_checks, verify
+from tests.kernel import kernels
+from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+def test_good_kernels_verify(name):
+    verify(kernels.ALL[name])
+
+
+# --- mutants ---
+
+
+def without(block, target):
+    """The block without one statement, wherever it stands."""
+    return rewritten(block, lambda stmt: () if stmt is target else (stmt,))
+
+
+def rewritten(block, change):
+    result = []
+    for stmt in block:
+        match stmt:
+            case For(_, _, body):
+                changed = replace(stmt, body=rewritten(body, change))
+            case While(_, body, _, _):
+                changed = replace(stmt, body=rewritten(body, change))
+            case If(_, then, otherwise):
+                changed = replace(stmt, then=rewritten(then, change), otherwise=rewritten(otherwise, change))
+            case Switch(_, cases, default):
+                inner = tuple((n, rewritten(b, change)) for n, b in cases)
+                changed = replace(stmt, cases=inner, default=rewritten(default, change))
+            case _:
+                result += change(stmt)
+                continue
+        result.append(changed)
+    return tuple(result)
+
+
+def mutants(original):
+    """Each kernel that differs in one check: left out, or off by one."""
+    for number, body in enumerate(original.bodies):
+        found = []
+        rewritten(body, lambda stmt: (found.append(stmt), (stmt,))[1])  # noqa: B023  # called at once
+        for stmt in found:
+            if isinstance(stmt, Require | Expect | Reserve):
+                yield f"without {stmt}", number, without(body, stmt), stmt
+            if isinstance(stmt, Require):
+                smaller = replace(stmt, size=Binary("sub", stmt.size, index(1)))
+                yield f"smaller {stmt}", number, rewritten(body, lambda s: (smaller,) if s is stmt else (s,)), stmt  # noqa: B023  # called at once
+            if isinstance(stmt, Reserve):
+                fewer = replace(stmt, count=Binary("sub", stmt.count, index(1)))
+                yield f"fewer {stmt}", number, rewritten(body, lambda s: (fewer,) if s is stmt else (s,)), stmt  # noqa: B023  # called at once
+
+
+HARMLESS = {
+    "tagged_doubles": {2},
+    "counted_list": set(),
+    "strings": {2},
+    "varints": set(),
+    "image": set(),
+    "choice": {2},
+    "encode_list": set(),
+    "attempts": {2},
+}
+"""Sites whose check is about values and not about safety."""
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+def test_every_check_is_missed(name):
+    original = kernels.ALL[name]
+    redundant = redundant_checks(original)
+    count = 0
+    for what, number, body, stmt in mutants(original):
+        site = stmt.failure.site if isinstance(stmt, Require | Expect) else 0
+        is_harmless = isinstance(stmt, Expect) and (site in HARMLESS[name] or id(stmt) in redundant)
+        if is_harmless and not (name == "choice" and isinstance(stmt.condition, Const)):
+            continue
+        bodies = (*original.bodies[:number], body, *original.bodies[number + 1 :])
+        count += 1
+        try:
+            verify(replace(original, bodies=bodies))
+        except VerificationError:
+            continue
+        pytest.fail(what)
+    assert count
+
+
+def test_smaller_strides_are_refused():
+    for name, original in kernels.ALL.items():
+        for lane, stride in enumerate(original.strides):
+            if name in {"choice", "attempts"} or (name in {"counted_list", "encode_list"} and lane == 0) or (name, lane) in WIDE:
+                continue
+            strides = (*original.strides[:lane], stride - 1, *original.strides[lane + 1 :])
+            with pytest.raises(VerificationError):
+                verify(replace(original, strides=strides))
+
+
+WIDE = {("strings", 0), ("image", 0)}
+"""Lanes whose rows hold more than the kernel uses."""
+
+
+# --- one refusal a rule ---
+
+
+def refused(*body, match, **options):
+    with pytest.raises(VerificationError, match=match):
+        verify(kernel(body, **options))
+
+
+DONE = Return(index(0))
+
+
+def test_locals():
+    refused(Let("x", i64("y")), DONE, match="y is not visible")
+    refused(Let("x", index(1)), Let("x", index(2)), DONE, match="bound twice")
+    refused(Let("end", index(1)), DONE, match="bound twice")
+    refused(If(compare("gt", END, 0), (Let("x", index(1)),)), Return(i64("x")), match="x is not visible")
+    refused(Let("x", index(1)), kernels.Assign("x", index(2)), DONE, match="no variable")
+    refused(Var("x", index(1)), kernels.Assign("x", Const("i32", 2)), DONE, match="no i32")
+
+
+def test_types():
+    refused(Let("x", Binary("add", index(1), Const("i32", 1))), DONE, match="add of i64 and i32")
+    refused(Let("x", Const("u8", 256)), DONE, match="no u8")
+    refused(Expect(index(1), kernels.fail(1)), DONE, match="where bool belongs")
+    refused(Let("x", Load("i64", Const("i32", 0))), DONE, match="where i64 belongs")
+
+
+def test_arithmetic():
+    n = i64("n")
+    load = (need(BEGIN, 8), Let("n", Load("i64", BEGIN)))
+    for op in ("add", "sub", "mul"):
+        refused(*load, Let("x", Binary(op, n, index(7))), DONE, match="may wrap")
+        refused(*load, Let("x", Binary(op, n, n)), *((DONE,) if op != "sub" else (Return(n),)), match="may" if op != "sub" else "negative")
+    refused(*load, Let("x", Binary("div", index(1), n)), DONE, match="by zero")
+    refused(*load, expect(compare("ne", n, 0)), Let("x", Binary("div", n, index(-1))), DONE, match="overflow")
+    refused(*load, Let("x", Binary("shl", index(1), n)), DONE, match="shift")
+    verify(kernel((*load, expect(compare("gt", n, 0)), Let("x", Binary("rem", END, n)), DONE)))
+    verify(kernel((*load, expect(compare("ne", n, 0)), expect(compare("gt", n, -2)), Let("x", Binary("div", END, n)), DONE)))
+
+
+def test_paths():
+    refused(Let("x", index(1)), match="without Return")
+    refused(DONE, Let("x", index(1)), match="after the end")
+    refused(If(compare("gt", END, 0), (DONE,)), match="without Return")
+    refused(Return(Binary("sub", BEGIN, index(1))), match="negative")
+    verify(kernel((If(compare("gt", END, 0), (DONE,), (expect(Const("bool", value=False)),)),)))
+    refused(Switch(BEGIN, ((1, ()), (1, ())), ()), DONE, match="stands twice")
+    refused(match="without Return")
+
+
+def test_sites():
+    refused(need(BEGIN, 4, 99), DONE, match="no site 99")
+    refused(need(BEGIN, 4, 0), DONE, match="no site 0")
+
+
+def test_copies():
+    n = i64("n")
+    load = (ROW_EXISTS, need(BEGIN, 8), Let("n", Load("i64", BEGIN)))
+    rows = (expect(compare("ge", n, 0)), Reserve(1, n), Let("start", Used(1)), Advance(1, n))
+    to_lane = Copy(Place(1, i64("start")), Wire(BEGIN), mul(n, 8))
+    refused(*load, *rows, to_lane, DONE, match="beyond the end")
+    refused(
+        *load, need(BEGIN, n), *rows, Copy(Place(1, i64("start")), Wire(BEGIN), n), Fill(Place(1, i64("start")), END), DONE, match="lane"
+    )
+    verify(kernel((*load, *rows, Require(BEGIN, mul(n, 8), kernels.fail(1)), to_lane, DONE)))
+    refused(need(BEGIN, 8), Copy(Wire(BEGIN), Wire(BEGIN), index(8)), DONE, match="within the message")
+    refused(ROW_EXISTS, Copy(Place(0, ROW), Place(0, ROW, 4), index(8)), DONE, match="onto itself")
+    verify(kernel((ROW_EXISTS, Copy(Place(0, ROW), Place(0, ROW, 8), index(8)), DONE)))
+    refused(ROW_EXISTS, SetField(Place(0, ROW, 4), index(8)), DONE, match="aligned")
+    refused(ROW_EXISTS, SetField(Place(2, ROW, 4), index(8)), DONE, match="no such lane")
+
+
+def test_loops():
+    at = i64("at")
+    start = Var("at", BEGIN)
+    inside = (compare("le", at, END), compare("ge", at, BEGIN))
+    step = kernels.Assign("at", add(at, 1))
+    verify(kernel((start, While(compare("lt", at, END), (step,), inside, at), DONE)))
+    refused(start, While(compare("lt", at, END), (), inside, at), DONE, match="no progress")
+    refused(start, While(compare("lt", at, END), (kernels.Assign("at", add(at, 2)),), inside, at), DONE, match="a round breaks")
+    refused(start, While(compare("gt", at, END), (step,), (compare("ge", at, END),), at), DONE, match="at first")
+    refused(start, While(compare("ge", at, 0), (step,), (compare("ge", at, 0),), at), DONE, match="bounds")
+    body = (need(at, 1), step)
+    verify(kernel((start, For("i", END, body), need(at, 1), Let("x", Load("u8", at)), DONE)))
+    refused(start, For("i", END, body), Let("x", Load("u8", at)), DONE, match="beyond the end")
+
+
+def test_memory_is_read_once():
+    length = Load("i32", BEGIN)
+    size = kernels.Convert("i64", length)
+    refused(need(BEGIN, 4), need(add(BEGIN, 4), size), Fill(Wire(add(BEGIN, 4)), size), DONE, match="negative|beyond")
+
+
+def test_deep_kernels_are_refused_and_do_not_overflow_the_stack():
+    expr = BEGIN
+    for _ in range(99):
+        expr = Binary("min", expr, END)
+    block = (Let("x", expr),)
+    for _ in range(98):
+        block = (If(compare("gt", END, 0), block),)
+    verify(kernel((*block, DONE)))
+    for _ in range(2000):
+        expr = Binary("min", expr, END)
+    refused(Let("x", expr), DONE, match="too deep")
+    for _ in range(2000):
+        block = (If(compare("gt", END, 0), block),)
+    refused(*block, DONE, match="too deep")
+
+
+def test_boolean_towers_cost_little():
+    body = [Let("b_0", compare("gt", END, 0))]
+    for k in range(80):
+        b = Local("bool", f"b_{k}")
+        body.append(Let(f"b_{k + 1}", Binary("and", b, Binary("or", b, b))))
+    verify(kernel((*body, expect(Local("bool", "b_80")), DONE)))
