@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -10,15 +10,24 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from rosetta_jit.runtime.holder import Holder
-
     Angles = np.ndarray[tuple[int, ...], np.dtype[np.float32]]
     Pixels = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
 
 DATA_SEPARATE, COLOR_BGR = 0, 2  # of rst.vision.Image
 
 
-def draw_frame(image: Holder, path: Path) -> Path:
+class RstImage(Protocol):
+    """What is drawn of an `rst.vision.Image`; any holder of that type has it."""
+
+    data: bytes
+    width: int
+    height: int
+    channels: int
+    color_mode: int
+    data_order: int
+
+
+def draw_frame(image: RstImage, path: Path) -> Path:
     """Write an `rst.vision.Image` as PNG."""
     from PIL import Image
 
@@ -26,7 +35,7 @@ def draw_frame(image: Holder, path: Path) -> Path:
     return path
 
 
-def pixels(image: Holder) -> Pixels:
+def pixels(image: RstImage) -> Pixels:
     """The pixels of an `rst.vision.Image`, shape (height, width, 3), red first."""
     data = np.frombuffer(image.data, np.uint8)
     if image.data_order == DATA_SEPARATE:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from tqdm import tqdm
@@ -18,10 +18,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from rosetta_jit.demo.pictures import Angles, RstImage
     from rosetta_jit.runtime.holder import Holder
 
 DRAWN_JOINTS, DRAWN_FRAME = "left_arm_state", "cam_left"
 ROUNDS = 5
+
+
+class JointAngles(Protocol):
+    """What is drawn of an `rst.kinematics.JointAngles`."""
+
+    angles: Angles
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,18 +70,18 @@ def _draw(stream: Stream, decode: Callable[[bytes], Holder], output: Path, advan
     """Decode a stream once, and draw it if it is one of those that are drawn."""
     from rosetta_jit.demo.pictures import draw_frame, draw_joints
 
-    rows: list[np.ndarray[tuple[int, ...], np.dtype[np.float32]]] = []
+    rows: list[Angles] = []
     for message in stream.messages:
         holder = decode(message.data)
         if stream.name == DRAWN_JOINTS:
-            rows.append(np.array(holder.angles))
+            rows.append(np.array(cast("JointAngles", holder).angles))
         advance()
     match stream.name:
         case name if name == DRAWN_JOINTS:
             times = [message.time_s - stream.messages[0].time_s for message in stream.messages]
             return [draw_joints(times, np.stack(rows), output / f"{stream.dialect}-{name}.png")]
         case name if name == DRAWN_FRAME:
-            return [draw_frame(decode(stream.messages[0].data), output / f"{stream.dialect}-{name}.png")]
+            return [draw_frame(cast("RstImage", decode(stream.messages[0].data)), output / f"{stream.dialect}-{name}.png")]
         case _:
             return []
 
