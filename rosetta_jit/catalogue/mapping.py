@@ -42,6 +42,7 @@ STARTS_RULE = frozenset({"START"})
 
 
 def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
+    """A token that the grammar does not have there."""
     found = span.source.text[span.start : span.end]
     name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
     message = f"expected {_listed(_expected(expected))}, found {name}"
@@ -58,7 +59,7 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
         return f"write the plain character `{TYPESET[found]}`"
     if kind == "UNCLOSED":
         return 'close the text with `"` on the same line'
-    if kind == "MEMBER":
+    if kind == "MEMBER" or found == ".":
         return "a path is written without blanks and begins with a dot: `.a.b[0]`"
     if kind == "END":
         return "every `end` closes one `for`"
@@ -70,6 +71,7 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
 
 
 def nesting(span: Span, limit: int) -> Diagnostic:
+    """Brackets, loops, operators or path steps beyond the limit."""
     return error(
         "nesting",
         f"nested deeper than {limit} levels",
@@ -80,22 +82,27 @@ def nesting(span: Span, limit: int) -> Diagnostic:
 
 
 def escape(span: Span, text: str) -> Diagnostic:
+    """A backslash before a character that it gives no meaning."""
     return error("escape", f"unknown escape `{text}`", span, help_=r"known are \" \\ \n \t \r")
 
 
 def number(span: Span, target: str) -> Diagnostic:
+    """A number that no type of the language holds."""
     return error("number", f"the number does not fit {target}", span, "too large")
 
 
 def missing_statement(span: Span, keyword: str) -> Diagnostic:
+    """No `data-holder:` or no `wire-schema:`."""
     return error("missing-statement", f"the mapping has no `{keyword}:`", span, help_=f"add `{keyword}: type.name`")
 
 
 def repeated_statement(span: Span, keyword: str) -> Diagnostic:
+    """A statement or block that may stand once."""
     return error("repeated-statement", f"`{keyword}:` stands twice", span, "again here", help_="merge the two")
 
 
 def no_rules(span: Span | None) -> Diagnostic:
+    """Neither block of rules."""
     return error(
         "no-rules",
         "the mapping has no rules for either direction",
@@ -105,6 +112,7 @@ def no_rules(span: Span | None) -> Diagnostic:
 
 
 def import_not_found(span: Span | None, name: str, folders: Iterable[str]) -> Diagnostic:
+    """An imported file that is nowhere on the search path."""
     searched = tuple(f"searched {folder}" for folder in folders)
     return error(
         "import-not-found",
@@ -117,6 +125,7 @@ def import_not_found(span: Span | None, name: str, folders: Iterable[str]) -> Di
 
 
 def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
+    """An import that is not a relative name within the search path."""
     return error(
         "import-name",
         f'"{shorten(name)}" cannot be imported: {why}',
@@ -126,19 +135,23 @@ def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
 
 
 def import_suffix(span: Span | None, name: str, suffixes: Iterable[str]) -> Diagnostic:
+    """An imported file that no framework reads."""
     known = ", ".join(sorted(suffixes)) or "none"
     return error("import-suffix", f'no front end reads "{shorten(name)}"', span, notes=(f"known suffixes: {known}",))
 
 
 def import_repeated(span: Span | None, name: str) -> Diagnostic:
+    """The same import once more."""
     return warning("import-repeated", f'"{shorten(name)}" is imported twice', span, help_="remove one of the two")
 
 
 def import_unused(span: Span | None, name: str) -> Diagnostic:
+    """An import without any type or constant that the mapping names."""
     return warning("import-unused", f'nothing of "{shorten(name)}" is used', span, help_="remove the import")
 
 
 def conflicting_type(span: Span | None, name: str, first: str, second: str) -> Diagnostic:
+    """Two imports that declare one name differently."""
     return error(
         "conflicting-type",
         f"`{shorten(name)}` is declared twice, differently",
@@ -149,18 +162,22 @@ def conflicting_type(span: Span | None, name: str, first: str, second: str) -> D
 
 
 def file_too_large(name: str, limit: int) -> Diagnostic:
+    """A file beyond the size limit."""
     return error("file-too-large", f"{name} is larger than {limit >> 20} MiB", None)
 
 
 def file_not_text(name: str) -> Diagnostic:
+    """A file that is not UTF-8."""
     return error("file-not-text", f"{name} is not UTF-8 text", None)
 
 
 def file_unreadable(name: str, why: str) -> Diagnostic:
+    """A file that the system does not let us read."""
     return error("file-unreadable", f"{name} cannot be read: {why}", None)
 
 
 def mapping_not_found(name: str, folders: Iterable[str]) -> Diagnostic:
+    """A mapping that is neither a file nor on the search path."""
     searched = tuple(f"searched {folder}" for folder in folders)
     return error("mapping-not-found", f'there is no mapping "{shorten(name)}"', None, notes=searched)
 
@@ -171,10 +188,12 @@ def placed(problem: Diagnostic, span: Span | None) -> Diagnostic:
 
 
 def error(code: str, message: str, span: Span | None, label: str = "", *, notes: tuple[str, ...] = (), help_: str = "") -> Diagnostic:
+    """An error, with the parts that most reports have."""
     return Diagnostic("error", code, message, span, label, notes, help_)
 
 
 def warning(code: str, message: str, span: Span | None, label: str = "", *, help_: str = "") -> Diagnostic:
+    """The same for what is suspect and not wrong."""
     return Diagnostic("warning", code, message, span, label, (), help_)
 
 

@@ -37,6 +37,7 @@ def _there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
 
 
 def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
+    """A message type that no import declares."""
     return error(
         "unknown-type",
         f"no import declares a type `{shorten(name)}`",
@@ -48,10 +49,12 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
 
 
 def not_a_message(span: Span | None, name: str) -> Diagnostic:
+    """An enum where a message is meant."""
     return error("not-a-message", f"`{shorten(name)}` is an enum, not a message", span, help_="name a message type")
 
 
 def unknown_field(step: Member, side: str, owner: str, known: Collection[str], elsewhere: str) -> Diagnostic:
+    """A field that the message does not have."""
     return error(
         "unknown-field",
         f"`{shorten(owner)}` has no field `{shorten(step.name)}`",
@@ -63,27 +66,33 @@ def unknown_field(step: Member, side: str, owner: str, known: Collection[str], e
 
 
 def other_side(name: str, origin: str) -> str:
+    """A hint: the field exists on the side that the rule writes."""
     return f"`{shorten(name)}` is a field of the target; what a rule reads, indices included, is on the {origin} side"
 
 
 def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
+    """A field of something that has none."""
     hint = "index it first: `[i]`" if found.startswith("an array") else ""
     return error("no-fields", f"`.{shorten(name)}` of {found}, which has no fields", span, f"this is {found}", help_=hint)
 
 
 def not_indexable(span: Span | None, found: str) -> Diagnostic:
+    """An element of something that has none."""
     return error("not-indexable", f"{found} cannot be indexed", span, help_="only arrays and bytes have elements")
 
 
 def no_length(span: Span | None, found: str) -> Diagnostic:
+    """`len()` of something that has none."""
     return error("no-length", f"{found} has no length", span, "here", help_="only arrays, bytes and text have one")
 
 
 def length_not_settable(span: Span | None, found: str) -> Diagnostic:
+    """A length that the schema or the type fixes."""
     return error("length-fixed", f"the length of {found} cannot be set", span, "here", help_="assign it as a whole, or remove the rule")
 
 
 def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
+    """A name that is no loop variable and no constant."""
     return error(
         "unknown-name",
         f"there is no loop variable or constant `{shorten(name)}`",
@@ -95,6 +104,7 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
 
 
 def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
+    """A call of nothing that is known."""
     return error(
         "unknown-function",
         f"there is no function `{shorten(name)}`",
@@ -105,19 +115,23 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
 
 
 def arguments(span: Span | None, function: str, expected: str, found: int) -> Diagnostic:
+    """A wrong number of arguments."""
     return error("arguments", f"`{function}` takes {expected}, not {found}", span)
 
 
 def conversion_rule(span: Span | None, function: str, allowed: Collection[str]) -> Diagnostic:
+    """A second argument of a conversion that is none of its rules."""
     names = ", ".join(f"`{name}`" for name in sorted(allowed)) or "none"
     return error("conversion-rule", f"`{function}` has no such rule here", span, "not a rule", notes=(f"rules: {names}",))
 
 
 def shadowed(span: Span | None, name: str) -> Diagnostic:
+    """A loop variable that an outer loop has too."""
     return error("shadowed", f"an outer loop already counts with `{name}`", span, help_="choose another variable")
 
 
 def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
+    """A conversion that can change a value, without the word that allows it."""
     return error(
         "lossy-conversion",
         f"{source} does not always fit {target}",
@@ -128,31 +142,38 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
 
 
 def type_clash(span: Span | None, source: str, target: str, how: str = "") -> Diagnostic:
+    """A value that no conversion makes fit."""
     return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=how)
 
 
 def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
+    """A known value outside the range of its target."""
     return error("constant-range", f"{shorten(value)} does not fit {target}", span, "known to be out of range")
 
 
 def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
+    """Arithmetic with something that is not a number."""
     hint = "convert it first: `int64(...)`" if found == "uint64" else "only numbers can be computed with"
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
 
 
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
+    """A length, index or loop bound that is not an integer."""
     hint = "convert it: `int64(...)`" if found in {"uint64", "float32", "float64"} else ""
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
 def zero_division(span: Span | None) -> Diagnostic:
+    """A divisor that is known to be zero."""
     return error("zero-division", "division by zero", span, "this is zero")
 
 
 def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic:
+    """An index that is known to be out of range."""
     has = "indices count from 0" if length is None else f"there are {length} elements, counted from 0"
     return error("index-range", f"index {index} is out of range", span, has)
 
 
 def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
+    """A loop that is known to end below its start."""
     return error("loop-range", f"the loop ends at {stop}, below its start {start}", span, help_="`to` is exclusive and not below `from`")

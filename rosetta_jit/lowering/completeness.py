@@ -31,8 +31,9 @@ if TYPE_CHECKING:
 def check_complete(rules: TypedRules, target: Message, side: str, span: Span | None) -> list[Diagnostic]:
     """What is wrong with a block as a whole; ``span`` is where missing rules are reported."""
     problems: list[Diagnostic] = []
-    writes = writes_of(rules.rules, problems)
-    checker = _Checker(target, side, span, set(rules.broken), problems)
+    broken = set(rules.broken)
+    writes = writes_of(rules.rules, problems, broken)
+    checker = _Checker(target, side, span, broken, problems)
     checker.struct(_Where("", (), 0), target.root, writes)
     return list(dict.fromkeys(problems))
 

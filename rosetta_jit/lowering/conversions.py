@@ -38,10 +38,8 @@ def describe(type_: Type) -> str:
             return "bytes"
         case Enum(name=name):
             return f"enum {name}"
-        case Array(length=None):
-            return "an array"
-        case Array(length=length):
-            return f"an array of {length}"
+        case Array(element, length):
+            return f"an array of {'' if length is None else f'{length} '}{describe(element)}"
         case Struct(name=name) | Union(name=name) | Ref(name=name):
             return name
         case Optional(value):
@@ -150,6 +148,17 @@ def word_for(source: Type, target: Type) -> str:
             return f"`{enum}(...)` refuses a number that it does not name"
         case Int(), Bool():
             return "`bool(...)` refuses all but 0 and 1"
+        case _:
+            return ""
+
+
+def other_way(source: Type, target: Type) -> str:
+    """What to do where a whole value has another type; empty where nothing helps."""
+    match source, target:
+        case Array(), Array():
+            return "assign its elements in a loop, and convert each"
+        case Struct(), Struct():
+            return "assign its fields one by one"
         case _:
             return ""
 

@@ -34,9 +34,11 @@ def coverage(path: str, runs: list[Run], length: Polynomial, span: Span | None, 
     size = length.constant()
     if not joined and size == 0:
         return []
+    if size is not None and (beyond := _beyond(path, [single for run in runs for single in join([run])], size)):
+        return beyond
     intervals = [known for run in joined if (known := interval(run)) is not None]
     if size is not None and len(intervals) == len(joined):
-        return _beyond(path, joined, size) or ([] if optional else _missing(path, intervals, size, span))
+        return [] if optional else _missing(path, intervals, size, span)
     if optional or _is_whole(joined, length):
         return []
     place = joined[0].span if joined else span
@@ -47,8 +49,8 @@ def _is_whole(joined: list[Run], length: Polynomial) -> bool:
     return len(joined) == 1 and not joined[0].dimensions and joined[0].start == number(0) and joined[0].length == length
 
 
-def _beyond(path: str, joined: list[Run], size: int) -> list[Diagnostic]:
-    wrong = [(run, known) for run in joined if (known := interval(run)) is not None and (known[0] < 0 or known[1] > size)]
+def _beyond(path: str, singles: list[Run], size: int) -> list[Diagnostic]:
+    wrong = [(run, known) for run in singles if (known := interval(run)) is not None and (known[0] < 0 or known[1] > size)]
     return [words.element_beyond(run.span, path, start if start < 0 else max(start, size), size) for run, (start, _) in wrong]
 
 

@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Access, Binary, Call, Const, Convert, FieldStep, LenOf, Local, Unary
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
@@ -19,12 +20,15 @@ from rosetta_jit.model.types import Int
 if TYPE_CHECKING:
     from rosetta_jit.lowering.typed import Expr, Place
 
-MAX_SIZE = 2000
+MAX_SIZE = 1000
 """Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
+
+MAX_DEPTH = 40
+"""Atoms within arguments of atoms: substitutions nest them, and every walk is recursive."""
 
 
 class TooComplexError(Exception):
-    """An expression whose normal form is larger than `MAX_SIZE`; never leaves the checker."""
+    """An expression whose normal form is larger than `MAX_SIZE` or deeper than `MAX_DEPTH`; never leaves the checker."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +49,7 @@ class Polynomial:
 
     terms: frozenset[tuple[Monomial, int]]
     size: int = field(compare=False, repr=False)
+    depth: int = field(compare=False, repr=False)
 
     def constant(self) -> int | None:
         """The number that it is, or None."""
@@ -145,7 +150,7 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return _arithmetic(operator, polynomial_of(left), polynomial_of(right))
         case Convert(operand, _, rule):
             keeps = isinstance(operand.type, Int) and rule in {"widen", "exact"}
-            return polynomial_of(operand) if keeps else atom(f"{rule} {expr.type}", polynomial_of(operand))
+            return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
         case Call(function, arguments):
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case Const(value=value):
@@ -186,14 +191,12 @@ def _indices(place: Place) -> list[Polynomial]:
 
 def _of(terms: Counter[Monomial]) -> Polynomial:
     kept = frozenset((monomial, coefficient) for monomial, coefficient in terms.items() if coefficient)
-    size = sum(1 + sum(_size(factor) for factor, _ in monomial) for monomial, _ in kept)
-    if size > MAX_SIZE:
+    arguments = [argument for monomial, _ in kept for factor, _ in monomial for argument in factor.arguments]
+    size = sum(1 + len(monomial) for monomial, _ in kept) + sum(argument.size for argument in arguments)
+    depth = 1 + max((argument.depth for argument in arguments), default=0)
+    if size > MAX_SIZE or depth > MAX_DEPTH:
         raise TooComplexError
-    return Polynomial(kept, size)
-
-
-def _size(factor: Atom) -> int:
-    return 1 + sum(argument.size for argument in factor.arguments)
+    return Polynomial(kept, size, depth)
 
 
 def _product(left: Monomial, right: Monomial) -> Monomial:

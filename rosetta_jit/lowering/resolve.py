@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.lowering.conversions import convert, describe, same, widens, word_for
+from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import Access, Assign, Const, FieldStep, For, Local, SetLength
@@ -101,7 +101,7 @@ class _Block:
             return None
         fitting = None if value is None else _fit(value, place, scope)
         if fitting is None:
-            self.broken.append(_fields(place))
+            self.broken.append(field_names(place))
             return None
         return Assign(place, fitting, rule.span)
 
@@ -111,7 +111,7 @@ class _Block:
         if place is None:
             return None
         if value is None or not _length_can_be(value, place, scope):
-            self.broken.append(_fields(place))
+            self.broken.append(field_names(place))
             return None
         return SetLength(place, value, rule.span)
 
@@ -129,10 +129,12 @@ class _Block:
         stop = type_integer(rule.stop, scope, "where a loop ends")
         body = self.rules(rule.body, scope.inside(rule.variable))
         if start is None or stop is None:
-            self.broken.extend(_fields(place) for place in _places(body))
+            self.broken.extend(field_names(place) for place in places_in(body))
             return None
         if isinstance(start, Const) and isinstance(stop, Const) and int(stop.value) < int(start.value):
             scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
+            self.broken.extend(field_names(place) for place in places_in(body))
+            return None
         return For(Local(rule.variable), start, stop, body, rule.span)
 
 
@@ -144,13 +146,14 @@ def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | N
     return TypedRules(typed, tuple(block.broken))
 
 
-def _fields(place: Place) -> tuple[str, ...]:
+def field_names(place: Place) -> tuple[str, ...]:
+    """The fields on the way to a place, without indices."""
     return tuple(step.field.name for step in place.steps if isinstance(step, FieldStep))
 
 
-def _places(rules: tuple[Rule, ...]) -> list[Place]:
+def places_in(rules: tuple[Rule, ...]) -> list[Place]:
     """All places that rules set, those within loops included."""
-    return [place for rule in rules for place in (_places(rule.body) if isinstance(rule, For) else [rule.place])]
+    return [place for rule in rules for place in (places_in(rule.body) if isinstance(rule, For) else [rule.place])]
 
 
 def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
@@ -195,7 +198,11 @@ def _mismatch(value: Expr, target: Type) -> Diagnostic:
             return words.constant_range(value.span, repr(number), aim)
         case _:
             how = word_for(value.type, target)
-            return words.needs_word(value.span, source, aim, how) if how else words.type_clash(value.span, source, aim)
+            return (
+                words.needs_word(value.span, source, aim, how)
+                if how
+                else words.type_clash(value.span, source, aim, other_way(value.type, target))
+            )
 
 
 def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:

@@ -3,7 +3,7 @@
 A write in loops covers a run of adjacent elements, repeated along dimensions: `(y*w + x)*3 + c` with `c` to 3, `x` to
 `w`, `y` to `h` is a run of 1 along strides 1, 3 and 3w. Two rules join runs until one is left or nothing fits:
 
-- a dimension whose stride is the run's length makes the run longer (mixed radix);
+- a dimension whose stride is the run's length, up or down, makes the run longer (mixed radix);
 - two runs with the same dimensions, one starting where the other ends, are one (channels one by one; padded rows).
 
 Lengths and counts are never negative: a loop that ends below its start is an error when it runs.
@@ -80,6 +80,9 @@ def _absorb(run: Run) -> Run:
             return _absorb(replace(run, dimensions=rest))
         if stride == run.length:
             return _absorb(replace(run, length=multiply(run.length, count), dimensions=rest))
+        if add(stride, run.length) == number(0):  # counting down: the last round is the first element
+            first = add(run.start, multiply(stride, add(count, number(-1))))
+            return _absorb(replace(run, start=first, length=multiply(run.length, count), dimensions=rest))
     return run
 
 

@@ -18,6 +18,7 @@ from rosetta_jit.lowering.polynomial import (
     substitute,
     subtract,
 )
+from rosetta_jit.lowering.resolve import field_names, places_in
 from rosetta_jit.lowering.tiling import Run
 from rosetta_jit.lowering.typed import Assign, FieldStep, For, SetLength
 
@@ -56,8 +57,10 @@ class Write:
         return replace(self, steps=self.steps[1:])
 
 
-def writes_of(rules: tuple[Rule, ...], problems: list[Diagnostic], loops: tuple[Loop, ...] = ()) -> list[Write]:
-    """All writes of a block, in order."""
+def writes_of(
+    rules: tuple[Rule, ...], problems: list[Diagnostic], broken: set[tuple[str, ...]], loops: tuple[Loop, ...] = ()
+) -> list[Write]:
+    """All writes of a block, in order; a rule that is too complex is reported, and what it sets is ``broken``."""
     found: list[Write] = []
     for rule in rules:
         try:
@@ -69,11 +72,12 @@ def writes_of(rules: tuple[Rule, ...], problems: list[Diagnostic], loops: tuple[
                 case For(variable, start, stop, body):
                     first = polynomial_of(start)
                     loop = Loop(variable.name, first, subtract(polynomial_of(stop), first))
-                    found += writes_of(body, problems, (*loops, loop))
+                    found += writes_of(body, problems, broken, (*loops, loop))
                 case _:
                     assert_never(rule)
         except TooComplexError:
             problems.append(words.too_complex(rule.span))
+            broken.update(field_names(place) for place in places_in((rule,)))
     return found
 
 
