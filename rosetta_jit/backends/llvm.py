@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends import llvm_stmt
+from rosetta_jit.backends.base import statements
 from rosetta_jit.backends.llvm_frame import I64, POINTER, Exit, Frame, Parameters, constant, state_word
-from rosetta_jit.kernel.ir import Block, Expect, For, If, Kernel, Require, Switch, While
+from rosetta_jit.kernel.ir import Block, Expect, Kernel, Require
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, MAX_INDICES, USED, lane_word
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 
@@ -106,26 +107,6 @@ def _fail(builder: ir.IRBuilder, state: ir.Value, recorded: Sequence[ir.Value]) 
     builder.ret(builder.sub(constant(-1), site))
 
 
-def _index_count(block: Block) -> int:
-    """The most indices that a failure in the block reports."""
-    counts = [0]
-    for statement in block:
-        match statement:
-            case Require(_, _, failure) | Expect(_, failure):
-                counts.append(len(failure.indices))
-            case For() | While() | If() | Switch():
-                counts += map(_index_count, _blocks(statement))
-            case _:
-                pass
-    return max(counts)
-
-
-def _blocks(statement: For | While | If | Switch) -> Iterator[Block]:
-    match statement:
-        case For(_, _, body) | While(_, body, _, _):
-            yield body
-        case If(_, then, otherwise):
-            yield from (then, otherwise)
-        case Switch(_, cases, default):
-            yield from (body for _, body in cases)
-            yield default
+def _index_count(body: Block) -> int:
+    """The most indices that a failure of the body reports."""
+    return max((len(each.failure.indices) for each in statements(body) if isinstance(each, Require | Expect)), default=0)

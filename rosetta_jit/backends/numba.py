@@ -80,7 +80,7 @@ def _body(kernel: Kernel) -> Callable[..., int]:
     """An intrinsic that emits the kernel into the module of whoever calls it."""
 
     @intrinsic
-    def body(typing: object, buffer: object, begin: object, end: object, state: object, row: object) -> Implementation:  # noqa: ARG001, PLR0917 - numba passes the types
+    def body(typing: object, buffer: object, begin: object, end: object, state: object, row: object) -> Implementation:  # noqa: ARG001 - numba passes the types
         def codegen(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: list[ir.Value]) -> ir.Value:  # noqa: ARG001 - as above
             function = llvm.emit(builder.module, kernel, "rosetta_kernel")
             function.linkage = "internal"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.diagnostics import Diagnostic
@@ -12,13 +13,23 @@ if TYPE_CHECKING:
 
     from rosetta_jit.source import Span
 
+MAX_SHOWN = 100
+"""Characters of a hostile name that a report repeats."""
+
+MAX_COMPARED = 500
+"""Names among which the nearest is looked for; comparing is slow."""
+
 
 def _error(code: str, message: str, span: Span | None, label: str, help_: str = "", *notes: str) -> Diagnostic:
     return Diagnostic("error", code, message, span, label, notes, help_)
 
 
+def _cut(name: str) -> str:
+    return name if len(name) <= MAX_SHOWN else f"{name[:MAX_SHOWN]}..."
+
+
 def _nearest(name: str, known: Iterable[str]) -> str:
-    found = get_close_matches(name[:100], sorted(known), n=1)
+    found = get_close_matches(name[:MAX_SHOWN], sorted(islice(known, MAX_COMPARED)), n=1)
     return f"did you mean `{found[0]}`?" if found else ""
 
 
@@ -60,29 +71,29 @@ def not_a_declaration(span: Span) -> Diagnostic:
 
 def no_fields(span: Span, name: str) -> Diagnostic:
     """A type's name alone."""
-    return _error("no-fields", f'"{name}" has no list of fields', span, "of this type", f'write `"{name}" ( ... )`')
+    return _error("no-fields", f'"{_cut(name)}" has no list of fields', span, "of this type", f'write `"{_cut(name)}" ( ... )`')
 
 
 def import_not_found(span: Span, path: str) -> Diagnostic:
     """A file that nobody has."""
-    return _error("import-not-found", f'"{path}" is nowhere on the search path', span, "imported here")
+    return _error("import-not-found", f'"{_cut(path)}" is nowhere on the search path', span, "imported here")
 
 
 def invalid_name(span: Span | None, name: str) -> Diagnostic:
     """A name that no mapping could write down."""
     return _error(
         "invalid-name",
-        f'"{name}" cannot be a name',
+        f'"{_cut(name)}" cannot be a name',
         span,
         "here",
-        "names have letters, digits and _, and start with no digit; those of types are joined by dots",
+        "names have letters, digits and _, and start with no digit; those of types are joined by dots; 100 characters at most",
     )
 
 
 def duplicate(span: Span, what: str, name: str, first: Span | None) -> Diagnostic:
     """A second type, field or option of one name."""
     notes = (f"the first is at {first}",) if first is not None else ()
-    return _error(f"duplicate-{what}", f'there are two {what}s "{name}"', span, "the second", "rename one", *notes)
+    return _error(f"duplicate-{what}", f'there are two {what}s "{_cut(name)}"', span, "the second", "rename one", *notes)
 
 
 def not_a_field(span: Span) -> Diagnostic:
@@ -92,20 +103,20 @@ def not_a_field(span: Span) -> Diagnostic:
 
 def no_type(span: Span, name: str) -> Diagnostic:
     """A field's name alone."""
-    return _error("no-type", f'the field "{name}" has no type', span, "of this field", f'write `("{name}" :double)`')
+    return _error("no-type", f'the field "{_cut(name)}" has no type', span, "of this field", f'write `("{_cut(name)}" :double)`')
 
 
 def unknown_type_word(span: Span, word: str, known: Iterable[str]) -> Diagnostic:
     """A type word that the language does not have."""
     known = sorted(known)
     hint = _nearest(word, known) or f"types are {', '.join(known)}"
-    return _error("unknown-type", f"`{word}` is no type", span, "here", hint)
+    return _error("unknown-type", f"`{_cut(word)}` is no type", span, "here", hint)
 
 
 def unknown_type(span: Span | None, name: str, known: Iterable[str]) -> Diagnostic:
     """A declared type that nobody declares."""
     hint = _nearest(name, known) or "declare it, or import the file that does"
-    return _error("unknown-type", f'the type "{name}" is declared nowhere', span, "used here", hint)
+    return _error("unknown-type", f'the type "{_cut(name)}" is declared nowhere', span, "used here", hint)
 
 
 def malformed_type(span: Span, usage: str) -> Diagnostic:
@@ -117,7 +128,7 @@ def vocab_too_long(span: Span, text: str, limit: int) -> Diagnostic:
     """More characters than a vocab's bytes."""
     return _error(
         "vocab-too-long",
-        f"a vocab of {limit} bytes cannot be `{text}`",
+        f"a vocab of {limit} bytes cannot be `{_cut(text)}`",
         span,
         f"{len(text.encode())} bytes",
         "shorten it, or use :vocab64 (YARP 4)" if limit == 4 else "shorten it, or use :string",
@@ -137,7 +148,9 @@ def second_constant(span: Span) -> Diagnostic:
 def unknown_option(span: Span, word: str, known: Iterable[str]) -> Diagnostic:
     """An option that the language does not have."""
     known = sorted(known)
-    return _error("unknown-option", f"`{word}` is no option", span, "here", _nearest(word, known) or f"options are {', '.join(known)}")
+    return _error(
+        "unknown-option", f"`{_cut(word)}` is no option", span, "here", _nearest(word, known) or f"options are {', '.join(known)}"
+    )
 
 
 def malformed_option(span: Span, usage: str) -> Diagnostic:
@@ -147,12 +160,12 @@ def malformed_option(span: Span, usage: str) -> Diagnostic:
 
 def misplaced_option(span: Span, word: str, where: str) -> Diagnostic:
     """An option of a field that it has no meaning for."""
-    return _error("misplaced-option", f"`{word}` says nothing here", span, "here", f"it belongs to {where}")
+    return _error("misplaced-option", f"`{_cut(word)}` says nothing here", span, "here", f"it belongs to {where}")
 
 
 def unknown_operator(span: Span, word: str, known: Iterable[str]) -> Diagnostic:
     """An operator that the language does not have."""
-    return _error("unknown-operator", f"`{word}` computes nothing", span, "here", f"operators are {' '.join(known)}")
+    return _error("unknown-operator", f"`{_cut(word)}` computes nothing", span, "here", f"operators are {' '.join(known)}")
 
 
 def malformed_expression(span: Span) -> Diagnostic:
@@ -170,7 +183,7 @@ def unknown_path(span: Span | None, path: str, known: Iterable[str]) -> Diagnost
     """A computed constant that reads a field that is not there."""
     return _error(
         "unknown-path",
-        f"the message has no field `{path}`",
+        f"the message has no field `{_cut(path)}`",
         span,
         "here",
         _nearest(path.rpartition(".")[2], known) or "paths start at the message: `geometry.width`",
@@ -179,12 +192,12 @@ def unknown_path(span: Span | None, path: str, known: Iterable[str]) -> Diagnost
 
 def path_through_list(span: Span | None, path: str) -> Diagnostic:
     """A path that would need an index."""
-    return _error("path-through-list", f"`{path}` leads into a list", span, "here", "only fields outside lists can be used")
+    return _error("path-through-list", f"`{_cut(path)}` leads into a list", span, "here", "only fields outside lists can be used")
 
 
 def path_not_integer(span: Span | None, path: str) -> Diagnostic:
     """A path to something that cannot be computed with."""
-    return _error("path-not-integer", f"`{path}` is no integer", span, "here", "compute with :int fields")
+    return _error("path-not-integer", f"`{_cut(path)}` is no integer", span, "here", "compute with :int fields")
 
 
 def computed_in_list(span: Span | None) -> Diagnostic:
@@ -205,7 +218,7 @@ def computed_cycle(span: Span | None, names: Iterable[str]) -> Diagnostic:
 
 def rest_not_last(span: Span | None, name: str) -> Diagnostic:
     """A field after one that takes all remaining elements."""
-    return _error("rest-not-last", f'nothing can follow "{name}", which takes the rest', span, "here", "move it to the end")
+    return _error("rest-not-last", f'nothing can follow "{_cut(name)}", which takes the rest', span, "here", "move it to the end")
 
 
 def recursive_type(span: Span | None, names: Iterable[str]) -> Diagnostic:
@@ -215,7 +228,7 @@ def recursive_type(span: Span | None, names: Iterable[str]) -> Diagnostic:
 
 def too_many_fields(span: Span | None, name: str, limit: int) -> Diagnostic:
     """Declarations that multiply one another."""
-    return _error("too-many-fields", f'"{name}" has more than {limit} fields in all', span, "this type", "use lists")
+    return _error("too-many-fields", f'"{_cut(name)}" has more than {limit} fields in all', span, "this type", "use lists")
 
 
 def unlike_messages(number: int, path: str, first: str, second: str) -> Diagnostic:
@@ -245,3 +258,10 @@ def undescribable_message(number: int, path: str) -> Diagnostic:
 def no_messages() -> Diagnostic:
     """Nothing to infer from."""
     return _error("no-messages", "there is no message to draft a schema from", None, "")
+
+
+def no_such_tag(span: Span | None, unit: str, dialect: str) -> Diagnostic:
+    """A type that came later than the dialect, or went before it."""
+    return _error(
+        "no-such-tag", f"{dialect} has no {unit}", span, "no tag for this type", "choose a type that the dialect has, or another dialect"
+    )

@@ -59,7 +59,7 @@ def unknown_field(step: Member, side: str, owner: str, known: Collection[str], e
         "unknown-field",
         f"`{shorten(owner)}` has no field `{shorten(step.name)}`",
         step.span,
-        f"read as a field of the {side}",
+        f"looked up on the {side} side",
         notes=_there_are("its fields", known),
         help_=_did_you_mean(step.name, known) or elsewhere,
     )

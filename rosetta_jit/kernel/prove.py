@@ -76,6 +76,12 @@ def equal(left: Linear, right: Linear) -> Formula:
     return All((difference, times(difference, -1)))
 
 
+def _shares_atom(fact: Any, goal: Linear) -> bool:
+    """Whether an alternative is directly about an atom of the goal."""
+    atoms = {atom for atom, _ in goal.terms}
+    return any(isinstance(part, Linear) and not atoms.isdisjoint(a for a, _ in part.terms) for part in fact.parts)
+
+
 @dataclass(slots=True)
 class Facts:
     """Bounds of atoms and of sums of atoms."""
@@ -88,6 +94,7 @@ class Facts:
     _cases: dict[int, tuple[tuple[Formula, Linear], ...]] = field(default_factory=dict[int, tuple[tuple[Formula, Linear], ...]])
     _named: dict[Hashable, Linear] = field(default_factory=dict[Hashable, Linear])
     _born: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    _either: dict[Any, None] = field(default_factory=dict[Any, None])
     _trail: list[tuple[str, int | Terms, int | None]] = field(default_factory=list[tuple[str, "int | Terms", "int | None"]])
 
     # --- atoms -------------------------------------------------------------------------------------------------------
@@ -147,6 +154,9 @@ class Facts:
                     self.assume(open_parts[0])
                 elif not open_parts:
                     self._contradiction()
+                elif formula not in self._either:
+                    self._trail.append(("either", 0, None))
+                    self._either[formula] = None
             case False:
                 self._contradiction()
             case True | None:
@@ -205,6 +215,8 @@ class Facts:
                 self._forget(key, old)
             elif kind == "impossible":
                 self.impossible = False
+            elif kind == "either":
+                self._either.popitem()
             elif kind == "low" and old is not None:
                 gained.setdefault(((key, 1),), self.lows[key])
                 self.lows[key] = old
@@ -254,7 +266,7 @@ class Facts:
             case All(parts):
                 return all(self._proves(part, depth) for part in parts)
             case Any(parts):
-                return any(self._proves(part, depth) for part in parts) or self._proves_one(parts, depth)
+                return formula in self._either or any(self._proves(part, depth) for part in parts) or self._proves_one(parts, depth)
             case bool():
                 return formula
             case None:
@@ -274,14 +286,17 @@ class Facts:
         return proven
 
     def _by_cases(self, goal: Linear, depth: int) -> bool:
-        """Whether a goal holds in each case of an atom that is chosen among values."""
+        """Whether a goal holds in each case of an atom that is chosen among values, or of a fact that has alternatives."""
         atom = next((a for a, _ in goal.terms if a in self._cases), None)
-        return atom is not None and all(self._in_case(goal, atom, *case, depth) for case in self._cases[atom])
+        if atom is not None:
+            return all(self._in_case(replaced(goal, atom, value), condition, depth) for condition, value in self._cases[atom])
+        alternatives = next((fact for fact in reversed(self._either) if _shares_atom(fact, goal)), None)
+        return alternatives is not None and all(self._in_case(goal, part, depth) for part in alternatives.parts)
 
-    def _in_case(self, goal: Linear, atom: int, condition: Formula, value: Linear, depth: int) -> bool:
+    def _in_case(self, goal: Linear, condition: Formula, depth: int) -> bool:
         mark = self.mark()
         self.assume(condition)
-        proven = self.impossible or self._proves(replaced(goal, atom, value), depth - 1)
+        proven = self.impossible or self._proves(goal, depth - 1)
         self.rollback(mark)
         return proven
 

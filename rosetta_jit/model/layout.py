@@ -8,8 +8,8 @@
 
 Everything of variable length (string, bytes, array, map) is a `Span`: the start and the count, two int64, of its elements in a lane of their own. There is a lane for
 each such field *path*, so that the elements of one array lie together however the wire orders fields. A recursive struct has one lane for
-all depths; a field that refers to it is a Span of at most one row there. All rows of such a lane end with hidden words (`LINK_WORDS`) in
-which kernels keep their work list instead of a stack.
+all depths below the message itself, which is always alone in its row of lane 0; a field that refers to it is a Span of at most one row
+there. All rows of such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their work list instead of a stack.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
 SPAN_BYTES = 16
 LINK_WORDS = 6
-MAX_ROW_BYTES = 1 << 20
-"""A struct whose row would be larger is refused: no schema of people comes near it."""
+MAX_ROW_BYTES, MAX_SLOTS = 1 << 20, 1 << 16
+"""Larger rows, and types that unfold to more fields, are refused: no schema of people comes near them, hostile ones double at each level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ def layout(type_: Type, schema: Schema) -> Layout:
     Raises
     ------
     ValueError
-        If a row would be larger than `MAX_ROW_BYTES`.
+        If a row would be larger than `MAX_ROW_BYTES`, or the type unfolds to more than `MAX_SLOTS` fields.
     """
     building = _Building(schema, recursive_structs(type_, schema))
     building.lane(type_, "")
@@ -188,11 +188,13 @@ class _Building:
     schema: Schema
     recursive: frozenset[str]
     lanes: list[Lane | None] = field(default_factory=list[Lane | None])
+    slots: int = 0
     of_struct: dict[str, int] = field(default_factory=dict[str, int])
 
     def lane(self, element: Type, name: str) -> int:
         """The lane for elements of a type: a new one, or the one of a recursive struct."""
-        struct = element.name if isinstance(element, Ref | Struct) and element.name in self.recursive else None
+        is_root = not self.lanes
+        struct = element.name if isinstance(element, Ref | Struct) and element.name in self.recursive and not is_root else None
         if struct is not None and struct in self.of_struct:
             return self.of_struct[struct]
         index = len(self.lanes)
@@ -219,6 +221,9 @@ class _Building:
 
     def slot(self, type_: Type, offset: int, name: str) -> tuple[Slot, int]:
         """The slot of a type at the next suitable offset, and the offset behind it."""
+        self.slots += 1
+        if self.slots > MAX_SLOTS or offset > MAX_ROW_BYTES:
+            raise ValueError(f"{name or 'the message'} unfolds to too many fields")
         match type_:
             case Bool() | Int() | Float() | Enum():
                 scalar = scalar_of(type_)

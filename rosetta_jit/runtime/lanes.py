@@ -75,8 +75,8 @@ class Cells(dict[int, Any]):
         self.buffers = buffers
 
     def __missing__(self, key: int) -> Any:
-        lane: Any = self.buffers[key >> 4]
-        cells: Any = memoryview(lane).cast(cast("Any", _FORMATS[SCALARS[key & 15]]))
+        lane: Any = memoryview(cast("Any", self.buffers[key >> 4]))
+        cells: Any = lane.cast(_FORMATS[SCALARS[key & 15]])
         self[key] = cells
         return cells
 
@@ -154,13 +154,15 @@ class Lanes:
         The same bytes as scalars.
     source : list
         One element: the message from which spans are borrowed, or None.
+    rows : int
+        How many messages they hold, from row 0 of lane 0 on.
     wasted : int
         About how many bytes of rows nothing refers to any more.
     moves : int
         How often rows changed their place, so that views know when to look for theirs again.
     """
 
-    __slots__ = ("__weakref__", "arena", "arrays", "buffers", "cells", "moves", "plan", "source", "state", "wasted", "words")
+    __slots__ = ("__weakref__", "arena", "arrays", "buffers", "cells", "moves", "plan", "rows", "source", "state", "wasted", "words")
 
     def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
         self.plan = plan
@@ -177,6 +179,7 @@ class Lanes:
         self.arrays = Arrays(self.buffers, plan.dtypes, array_type)
         self.source: list[Any] = [None]
         self.moves = 0
+        self.rows = plan.rows
         self.wasted = 0
 
     @classmethod
@@ -242,6 +245,7 @@ class Lanes:
             self.grow(0, rows - self.capacity(0))
         for lane in range(len(self.buffers)):
             self.give_back(lane, 0)
+        self.rows = rows
         self.take(0, rows)
         self.source[0] = None
         self.wasted = 0

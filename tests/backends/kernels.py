@@ -47,7 +47,7 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 
-POS, COUNT, I, START = (Local("i64", name) for name in ("pos", "count", "i", "start"))
+POS, COUNT, AT, START = (Local("i64", name) for name in ("pos", "count", "i", "start"))
 
 
 def kernel(*bodies: Block, strides: tuple[int, ...], sites: int = 9, direction: Direction = "decode", name: str = "test") -> Kernel:
@@ -80,7 +80,7 @@ def fixed(fields: int) -> Kernel:
 
 def specialised(count: int = 24) -> Kernel:
     """A bottle of doubles under one header, in a loop, into a row of floats."""
-    radians = Convert("f32", Binary("mul", Load("f64", add(Binary("add", BEGIN, mul(I, 8)), 8)), Const("f64", math.pi / 180)))
+    radians = Convert("f32", Binary("mul", Load("f64", add(Binary("add", BEGIN, mul(AT, 8)), 8)), Const("f64", math.pi / 180)))
     body = (
         Require(BEGIN, index(8 + 8 * count), failure(1)),
         row_fits(),
@@ -91,7 +91,7 @@ def specialised(count: int = 24) -> Kernel:
         Let("start", Used(1)),
         SetField(Place(0, ROW, 0), START),
         SetField(Place(0, ROW, 8), index(count)),
-        For("i", index(count), (SetField(Place(1, Binary("add", START, I)), radians),)),
+        For("i", index(count), (SetField(Place(1, Binary("add", START, AT)), radians),)),
         Advance(1, index(count)),
         Return(add(BEGIN, 8 + 8 * count)),
     )
@@ -100,7 +100,7 @@ def specialised(count: int = 24) -> Kernel:
 
 def counted() -> Kernel:
     """An int32 count, then so many big-endian int16, each of which must not be negative."""
-    at = add(Binary("add", BEGIN, mul(I, 2)), 4)
+    at = add(Binary("add", BEGIN, mul(AT, 2)), 4)
     body = (
         Require(BEGIN, index(4), failure(1)),
         row_fits(),
@@ -114,8 +114,8 @@ def counted() -> Kernel:
             COUNT,
             (
                 Let("value", Load("i16", at, ">")),
-                Expect(Compare("ge", Local("i16", "value"), Const("i16", 0)), failure(4, at, I)),
-                SetField(Place(1, Binary("add", START, I)), Convert("f64", Local("i16", "value"))),
+                Expect(Compare("ge", Local("i16", "value"), Const("i16", 0)), failure(4, at, AT)),
+                SetField(Place(1, Binary("add", START, AT)), Convert("f64", Local("i16", "value"))),
             ),
         ),
         SetField(Place(0, ROW, 0), START),
@@ -243,7 +243,7 @@ def encoder() -> tuple[Kernel, Kernel]:
         *known,
         Require(BEGIN, add(mul(COUNT, 8), 4), failure(1)),
         Store(BEGIN, Convert("i32", COUNT)),
-        For("i", COUNT, (Store(add(Binary("add", BEGIN, mul(I, 8)), 4), Get("f64", Place(1, Binary("add", START, I)))),)),
+        For("i", COUNT, (Store(add(Binary("add", BEGIN, mul(AT, 8)), 4), Get("f64", Place(1, Binary("add", START, AT)))),)),
         Return(behind),
     )
     return (
@@ -254,9 +254,9 @@ def encoder() -> tuple[Kernel, Kernel]:
 
 def swapped(width: int = 320, height: int = 240) -> Kernel:
     """An image of RGB pixels, its channels swapped."""
-    at = Binary("add", BEGIN, mul(I, 3))
+    at = Binary("add", BEGIN, mul(AT, 3))
     size = 3 * width * height
-    start = mul(I, 3)
+    start = mul(AT, 3)
     body = (
         Require(BEGIN, index(size), failure(1)),
         Reserve(1, index(size)),

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.yarp.tags import DICT, DIALECTS, LIST, YARP3, YARP4, YARP2012, Dialect
+from rosetta_jit.frameworks.yarp.tags import DIALECTS, DICT, LIST, YARP3, YARP4, YARP2012, Dialect
 from rosetta_jit.model import expr
-from rosetta_jit.model.layout import map_entry, recursive_structs
+from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Constant, Count, Encoding, Number, Padding, Path, Repeat, Seq, Table
 
@@ -26,7 +26,16 @@ if TYPE_CHECKING:
 BOOLEANS = ((49, 1), (0, 0))
 """True is the vocab '1', false is 0; YARP has no tag for them. (os/impl/BottleImpl.cpp, smartAdd)"""
 
-SCALARS = {"int8": "i8", "int16": "i16", "int32": "i32", "int64": "i64", "float32": "f32", "float64": "f64", "vocab32": "i32", "vocab64": "i64"}
+SCALARS = {
+    "int8": "i8",
+    "int16": "i16",
+    "int32": "i32",
+    "int64": "i64",
+    "float32": "f32",
+    "float64": "f64",
+    "vocab32": "i32",
+    "vocab64": "i64",
+}
 
 
 def encode_type(struct: Struct, schema: Schema, dialect: str) -> Encoding:
@@ -35,10 +44,8 @@ def encode_type(struct: Struct, schema: Schema, dialect: str) -> Encoding:
     Raises
     ------
     SchemaError
-        If the dialect has no tag for a type of the schema, or the type contains itself.
+        If the dialect has no tag for a type of the schema.
     """
-    if struct.name in recursive_structs(Ref(struct.name), schema):
-        raise SchemaError((catalogue.recursive(struct.span, struct.name),))
     if dialect != "yarp":
         return Encoding(dialect, _forms(struct, schema, DIALECTS[dialect]), _Bottles(schema, DIALECTS[dialect]).message(struct))
     usable = [each for each in (YARP2012, YARP3, YARP4) if not _missing(struct, schema, each)]
@@ -85,8 +92,17 @@ class _Bottles:
     schema: Schema
     dialect: Dialect
     exact: bool = False
+    declared: Struct | None = None
+    base: Path = ()
 
     def message(self, struct: Struct) -> Codec:
+        return self.within(struct, ()).top(struct)
+
+    def within(self, struct: Struct, path: Path) -> _Bottles:
+        """Codecs below a declaration: computed values of its fields name fields of it."""
+        return replace(self, declared=struct, base=path)
+
+    def top(self, struct: Struct) -> Codec:
         return self.coded((), self.list_forms(struct, ()), _rest_path(struct, ()))
 
     def coded(self, path: Path, forms: tuple[tuple[int, Codec], ...], may_be_empty: Path | None) -> Codec:
@@ -135,6 +151,8 @@ class _Bottles:
     def element(self, field: Field, type_: Type, path: Path) -> Codec:
         """A value after the code of its type."""
         resolved = self.schema.resolve(type_)
+        if isinstance(type_, Ref) and isinstance(resolved, Struct):
+            return self.within(resolved, path).element(field, resolved, path)
         match resolved:
             case Struct() if resolved.fields and resolved.fields[0].option("key") is not None:
                 inner = self.coded(path, self.list_forms(resolved, path), None)
@@ -143,11 +161,19 @@ class _Bottles:
                 return self.coded(path, self.list_forms(resolved, path), _rest_path(resolved, path))
             case Map(key, value):
                 entries = replace(field, type=Array(map_entry(key, value)), options=(), length=None)
-                return Seq((Constant(path, DICT, "i32", kind="tag"), Constant(path, LIST, "i32", kind="tag"), self.elements(entries, path, tagged=True)))
+                return Seq(
+                    (
+                        Constant(path, DICT, "i32", kind="tag"),
+                        Constant(path, LIST, "i32", kind="tag"),
+                        self.elements(entries, path, tagged=True),
+                    )
+                )
             case Array(element, _):
                 return self.array(field, replace(field, type=resolved), path, self.unit(element))
             case _:
-                return Seq((Constant(path, self.tag(self.unit(resolved) or "", field), "i32", kind="tag"), self.scalar(field, resolved, path)))
+                return Seq(
+                    (Constant(path, self.tag(self.unit(resolved) or "", field), "i32", kind="tag"), self.scalar(field, resolved, path))
+                )
 
     def array(self, field: Field, resolved: Field, path: Path, unit: str | None) -> Codec:
         general = (LIST, self.elements(resolved, path, tagged=True))
@@ -162,7 +188,7 @@ class _Bottles:
         array = self.schema.resolve(field.type)
         assert isinstance(array, Array)
         fixed = None if array.length is None else array.length + len(head)
-        count = Count("i32", value=fixed if fixed is not None else field.length)
+        count = Count("i32", value=fixed if fixed is not None else self.computed(field.length))
         inner = replace(field, constant=None, length=None, options=())
         item = self.element(inner, array.element, ()) if tagged else self.scalar(inner, array.element, ())
         return Repeat(path, count, item, head, len(head))
@@ -177,13 +203,13 @@ class _Bottles:
             case Int() | Float(), None:
                 return Number(path, SCALARS[self.unit(type_) or ""])
             case Int(), computed:
-                return Computed(path, SCALARS[self.unit(type_) or ""], computed)
+                return Computed(path, SCALARS[self.unit(type_) or ""], self.computed(computed) or computed)
             case Bool(), _:
                 return Table(path, "i32", BOOLEANS)
             case String(), _:
-                return Blob(path, Count("i32", value=field.length), terminated=self.dialect.nul_terminated)
+                return Blob(path, Count("i32", value=self.computed(field.length)), terminated=self.dialect.nul_terminated)
             case Bytes(), _:
-                return Blob(path, Count("i32", value=field.length))
+                return Blob(path, Count("i32", value=self.computed(field.length)))
             case _:
                 raise AssertionError(type_)
 
@@ -198,6 +224,32 @@ class _Bottles:
             case _:
                 assert not isinstance(value, str)
                 return Constant(path, value, SCALARS[self.unit(type_) or ""])
+
+    def computed(self, value: expr.Expr | None) -> expr.Expr | None:
+        """A computed value with its paths from the message on, and the constants of the schema put in."""
+        match value:
+            case expr.Path(side, steps):
+                names = tuple(step.name for step in steps if isinstance(step, expr.Member))
+                known = self.constant_at(names)
+                return known or expr.Path(side, tuple(expr.Member(name) for name in (*self.base, *names)))
+            case expr.Unary(operator, operand):
+                return expr.Unary(operator, self.computed(operand) or operand)
+            case expr.Binary(operator, left, right):
+                return expr.Binary(operator, self.computed(left) or left, self.computed(right) or right)
+            case expr.Call(function, arguments):
+                return expr.Call(function, tuple(self.computed(each) or each for each in arguments))
+            case _:
+                return value
+
+    def constant_at(self, names: tuple[str, ...]) -> expr.Literal | None:
+        """The constant of a field of the declaration, if it has one."""
+        owner: Type | None = self.declared
+        found: Field | None = None
+        for name in names:
+            owner = self.schema.resolve(owner) if owner is not None else None
+            found = next((each for each in owner.fields if each.name == name), None) if isinstance(owner, Struct) else None
+            owner = found.type if found is not None else None
+        return found.constant if found is not None and isinstance(found.constant, expr.Literal) else None
 
     def unit(self, type_: Type) -> str | None:
         """The spelling of the tag of a scalar; None for lists and dicts."""
@@ -233,5 +285,3 @@ def _rest_path(struct: Struct, path: Path) -> Path | None:
         array = struct.fields[0].type
         return (*path, struct.fields[0].name) if isinstance(array, Array) and array.length is None else None
     return None
-
-

@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-FIELD_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-TYPE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
+FIELD_NAME = re.compile(r"(?!.{101})[A-Za-z_][A-Za-z0-9_]*")
+TYPE_NAME = re.compile(r"(?!.{101})[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
+
+MAX_KEY = 80
+"""Characters of a key that its field's name keeps, which leaves room to tell it from others."""
 
 
 def unique_names(keys: Iterable[str]) -> list[str]:
     """A field name for each key: itself where it is one, or as close to it as its characters and the others allow."""
     names: dict[str, None] = {}
     for key in keys:
-        name = re.sub(r"[^A-Za-z0-9_]", "_", key)
+        name = re.sub(r"[^A-Za-z0-9_]", "_", key)[:MAX_KEY]
         name = name if FIELD_NAME.fullmatch(name) else f"_{name}"
         while name in names:
             name = f"{name}_{len(names)}"

@@ -30,7 +30,7 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.schema_check import check
 from rosetta_jit.frameworks.yarp.schema_type import read_struct
-from rosetta_jit.frameworks.yarp.sexpr import Form, Text, Word, head, read_forms
+from rosetta_jit.frameworks.yarp.sexpr import MAX_PROBLEMS, Form, Text, Word, head, read_forms
 from rosetta_jit.model.types import Schema
 
 if TYPE_CHECKING:
@@ -49,21 +49,21 @@ def parse(source: Source, load: Load) -> Schema:
     Raises
     ------
     SchemaError
-        With everything that is wrong in the file and in those that it imports.
+        With everything that is wrong in the file and in those that it imports, up to `MAX_PROBLEMS`.
     """
     problems: list[Diagnostic] = []
     structs: dict[str, Struct] = {}
     sources = {source.name: source}
     unread = [source]
-    while unread:
+    while unread and len(problems) < MAX_PROBLEMS:
         for imported in _read_file(unread.pop(), load, structs, problems):
             if imported.name not in sources:
                 sources[imported.name] = imported
                 unread.append(imported)
     if not problems:
-        problems += check(structs)
+        problems += check(structs, MAX_PROBLEMS)
     if problems:
-        raise SchemaError(tuple(problems))
+        raise SchemaError(tuple(problems[:MAX_PROBLEMS]))
     return Schema(MappingProxyType(structs), tuple(sources))
 
 
@@ -75,7 +75,7 @@ def _read_file(source: Source, load: Load, structs: dict[str, Struct], problems:
         problems += error.diagnostics
         return []
     imports: list[Source] = []
-    while nodes:
+    while nodes and len(problems) < MAX_PROBLEMS:
         match nodes.popleft():
             case Form((Word(":import"), Text(path, span))):
                 imports += _import(load(path), catalogue.import_not_found(span, path), problems)

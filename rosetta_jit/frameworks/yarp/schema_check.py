@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from graphlib import CycleError, TopologicalSorter
+from itertools import islice
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import bottle as catalogue
@@ -20,19 +21,43 @@ if TYPE_CHECKING:
 MAX_FIELDS = 1 << 16
 """Fields of a type with all that it contains; kernels grow with it, and declarations can double it line by line."""
 
+Members = dict[int, dict[str, "Type"]]
+"""The fields of each struct by name, so that many paths into a large one are found in linear time; keys are identities."""
 
-def check(structs: Mapping[str, Struct]) -> list[Diagnostic]:
-    """Everything that is wrong between the declarations of a schema."""
-    problems = [
-        catalogue.unknown_type(ref.span, ref.name, structs)
-        for struct in structs.values()
-        for ref in _refs(struct)
-        if ref.name not in structs
-    ]
-    problems = problems or _check_bounds(structs)
+
+def check(structs: Mapping[str, Struct], limit: int) -> list[Diagnostic]:
+    """What is wrong between the declarations of a schema, ``limit`` problems at most."""
+    problems = list(islice(_check_names(structs), limit)) or _check_bounds(structs)
     if problems:
         return problems
-    return [problem for struct in structs.values() for problem in _check_computed(struct, structs)]
+    members = {id(struct): {field.name: field.type for field in struct.fields} for struct in _structs(structs)}
+    found = (problem for struct in structs.values() for problem in _check_computed(struct, structs, members))
+    return list(islice(found, limit))
+
+
+def _check_names(structs: Mapping[str, Struct]) -> Iterator[Diagnostic]:
+    for struct in structs.values():
+        for ref in _refs(struct):
+            if ref.name not in structs:
+                yield catalogue.unknown_type(ref.span, ref.name, structs)
+    for inline in _structs(structs):
+        declared = structs.get(inline.name, inline)
+        if declared is not inline and declared.span is not None:
+            yield catalogue.duplicate(declared.span, "type", inline.name, inline.span)
+
+
+def _structs(structs: Mapping[str, Struct]) -> Iterator[Struct]:
+    """The declared structs and those inline in them."""
+    pending: list[Type] = list(structs.values())
+    while pending:
+        match pending.pop():
+            case Struct(_, fields) as struct:
+                yield struct
+                pending += [field.type for field in fields]
+            case Array(inner) | Map(_, inner):
+                pending.append(inner)
+            case _:
+                pass
 
 
 def _refs(type_: Type) -> Iterator[Ref]:
@@ -89,24 +114,22 @@ def _extent(type_: Type, extents: Mapping[str, tuple[int, int]]) -> tuple[int, i
             assert_never(type_)
 
 
-def _check_computed(struct: Struct, structs: Mapping[str, Struct]) -> list[Diagnostic]:
-    problems: list[Diagnostic] = []
+def _check_computed(root: Struct, structs: Mapping[str, Struct], members: Members) -> Iterator[Diagnostic]:
     needs: dict[str, set[str]] = {}
     places: dict[str, Field] = {}
-    for name, field, in_list in _fields(struct, "", in_list=False):
+    for name, field, in_list in _fields(root, "", in_list=False):
         paths = [*_paths(field.constant), *_paths(field.length)]
         if paths and in_list:
-            problems.append(catalogue.computed_in_list(field.span))
-            continue
-        problems += [problem for path in paths if (problem := _check_path(path, struct, structs)) is not None]
-        needs[name] = {_dotted(path) for path in _paths(field.constant)}
-        places[name] = field
+            yield catalogue.computed_in_list(field.span)
+        elif paths:
+            yield from (found for path in paths if (found := _check_path(path, root, structs, members)) is not None)
+            needs[name] = {_dotted(path) for path in _paths(field.constant)}
+            places[name] = field
     try:
         TopologicalSorter(needs).prepare()
     except CycleError as error:
         names: list[str] = error.args[1]
-        problems.append(catalogue.computed_cycle(places[names[0]].span, names))
-    return problems
+        yield catalogue.computed_cycle(places[names[0]].span, names)
 
 
 def _fields(type_: Type, prefix: str, *, in_list: bool) -> Iterator[tuple[str, Field, bool]]:
@@ -142,14 +165,14 @@ def _paths(expr: Expr | None) -> Iterator[Path]:
             assert_never(expr)
 
 
-def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct]) -> Diagnostic | None:
+def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members) -> Diagnostic | None:
     """The path must lead, through structs alone, to an integer."""
     type_: Type = root
     for step in path.steps:
         type_ = structs[type_.name] if isinstance(type_, Ref) else type_
         match type_, step:
-            case Struct(_, fields), Member(name):
-                known = {field.name: field.type for field in fields}
+            case Struct() as struct, Member(name):
+                known = members[id(struct)]
                 if name not in known:
                     return catalogue.unknown_path(path.span, _dotted(path), known)
                 type_ = known[name]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.frameworks.yarp.names import FIELD_NAME
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
-from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word, head
+from rosetta_jit.frameworks.yarp.sexpr import MAX_PROBLEMS, Form, Number, Text, Vocab, Word, head
 from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Map, Ref, String, Struct
@@ -72,6 +72,8 @@ def read_struct(name: str, nodes: Sequence[Node], problems: list[Diagnostic], *,
     fields: dict[str, Field] = {}
     for node in nodes:
         field = _read_field(name, node, problems, depth, keyed=keyed)
+        if len(problems) >= MAX_PROBLEMS:
+            break
         if field is None:
             continue
         if field.name in fields and field.span is not None:

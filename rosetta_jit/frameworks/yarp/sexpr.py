@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 MAX_FORMS = 160
 """Parentheses within parentheses: two for each level of a message, and room for expressions."""
 
+MAX_PROBLEMS = 50
+"""Reading stops after so many: nobody mends more at once, and saying where each stands takes time."""
+
 MAX_DIGITS = 100
 """Python refuses to convert very long numbers; none of these fits any field."""
 
@@ -115,6 +118,8 @@ def read_forms(source: Source) -> tuple[Node, ...]:
                 levels[-1].append(_atom(token, span))
         if len(opened) > MAX_FORMS:
             raise SchemaError((catalogue.nesting_too_deep(span, MAX_FORMS),))
+        if len(problems) >= MAX_PROBLEMS:
+            break
     problems += [catalogue.unclosed_parenthesis(span) for span in opened[-1:] if not problems]
     if problems:
         raise SchemaError(tuple(problems))

@@ -1,0 +1,85 @@
+"""What backends that print text share: lines, identifiers, and a walk over statements."""
+
+from __future__ import annotations
+
+import re
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Block, For, If, Stmt, Switch, While
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MAX_IDENTIFIER = 60
+"""Longer names from schemas are cut."""
+
+
+@dataclass(slots=True)
+class Writer:
+    """Lines of source text, each at the current indentation."""
+
+    lines: list[str] = field(default_factory=list[str])
+    depth: int = 0
+
+    def line(self, text: str = "") -> None:
+        self.lines.append("    " * self.depth + text if text else "")
+
+    @contextmanager
+    def indented(self, head: str) -> Iterator[None]:
+        """A head and, below it, what is written until the end of the `with`."""
+        self.line(head)
+        self.depth += 1
+        yield
+        self.depth -= 1
+
+    def text(self) -> str:
+        return "\n".join((*self.lines, ""))
+
+
+@dataclass(slots=True)
+class Namespace:
+    """Identifiers for names that come from schemas: letters, digits and underscores alone, never taken or reserved, never the same for two."""
+
+    reserved: frozenset[str]
+    identifiers: dict[str, str] = field(default_factory=dict[str, str])
+    taken: set[str] = field(default_factory=set[str])
+
+    def identifier(self, name: str) -> str:
+        """The identifier of a name, always the same one."""
+        if name not in self.identifiers:
+            self.identifiers[name] = self._free(re.sub(r"[^A-Za-z0-9_]", "_", name)[:MAX_IDENTIFIER])
+            self.taken.add(self.identifiers[name])
+        return self.identifiers[name]
+
+    def _free(self, wanted: str) -> str:
+        start = wanted if wanted[:1].isalpha() else f"v{wanted}"
+        candidate, number = start, len(self.taken)
+        while candidate in self.taken or candidate in self.reserved:
+            candidate = f"{start}_{number}"
+            number += 1
+        return candidate
+
+
+def statements(block: Block) -> Iterator[Stmt]:
+    """All statements of a block, those of inner blocks included."""
+    pending = list(reversed(block))
+    while pending:
+        statement = pending.pop()
+        yield statement
+        for inner in inner_blocks(statement):
+            pending += reversed(inner)
+
+
+def inner_blocks(statement: Stmt) -> tuple[Block, ...]:
+    """The blocks that a statement governs."""
+    match statement:
+        case For(_, _, body) | While(_, body, _, _):
+            return (body,)
+        case If(_, then, otherwise):
+            return (then, otherwise)
+        case Switch(_, cases, default):
+            return (*(body for _, body in cases), default)
+        case _:
+            return ()

@@ -1,0 +1,196 @@
+"""A kernel as Python source that a person can read, and debug: slow, and right wherever Python runs.
+
+    kernel(buffer, begin, end, state, lanes, row) -> int
+
+It takes and returns what `kernel.interpret.run` does. Each attempt is a function; what a message cannot be ends it with `Failed`.
+"""
+
+from __future__ import annotations
+
+import keyword
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.backends.base import Namespace, Writer, statements
+from rosetta_jit.backends.python_expr import FLOATS, FORMATS, Names, expression, location, part
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Advance,
+    Assign,
+    Block,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    For,
+    If,
+    Kernel,
+    Let,
+    Order,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Stmt,
+    Store,
+    Switch,
+    Var,
+    While,
+    Wire,
+    type_of,
+)
+from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+IMPORTS = (
+    "from struct import pack_into, unpack_from",
+    "",
+    "from numpy import float32, float64",
+    "",
+    "from rosetta_jit.backends.python_support import Failed, has_room, is_text, quotient, remainder, reserve, run_attempts",
+    "from rosetta_jit.kernel.arithmetic import binary, convert, fits, from_bytes, to_bytes, unary, wrapped",
+)
+CALLED = frozenset(name.strip(",") for line in IMPORTS for name in line.partition(" import ")[2].split())
+PARAMETERS = "buffer, begin, end, state, lanes, row"
+
+
+def compile_python(kernel: Kernel) -> Callable[..., int]:
+    """The kernel as a Python function.
+
+    Raises
+    ------
+    SyntaxError
+        If blocks nest deeper than Python allows: 20 loops, 100 levels of indentation.
+    """
+    scope: dict[str, Callable[..., int]] = {}
+    exec(compile(python_text(kernel), f"<kernel {kernel.name!a}>", "exec"), scope)  # noqa: S102 - our own text, of mangled names and numbers
+    return scope["kernel"]
+
+
+def python_text(kernel: Kernel) -> str:
+    """The kernel as the source of a Python module, the same for the same kernel."""
+    writer = Writer()
+    writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
+    for line in IMPORTS:
+        writer.line(line)
+    for number, body in enumerate(kernel.bodies):
+        writer.line()
+        writer.line()
+        with writer.indented(f"def attempt_{number}({PARAMETERS}):"):
+            _Attempt(kernel, body, writer).write()
+    writer.line()
+    writer.line()
+    with writer.indented(f"def kernel({PARAMETERS}):"):
+        attempts = "".join(f"attempt_{number}, " for number in range(len(kernel.bodies))).rstrip()
+        writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row)")
+    return writer.text()
+
+
+def _reserved(kernel: Kernel) -> frozenset[str]:
+    lanes = range(len(kernel.strides))
+    words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
+    return frozenset(keyword.kwlist) | CALLED | words | set(PARAMETERS.split(", ")) | {"bool", "bytes", "min", "max", "range", "None"}
+
+
+class _Attempt:
+    """Prints one body."""
+
+    def __init__(self, kernel: Kernel, body: Block, writer: Writer) -> None:
+        parameters = {name: name for name in ("begin", "end", "row")}
+        self.kernel, self.body, self.writer = kernel, body, writer
+        self.names = Names(Namespace(_reserved(kernel), parameters), kernel.strides)
+        self.advanced = sorted({each.lane for each in statements(body) if isinstance(each, Advance)})
+
+    def write(self) -> None:
+        """The body, behind the lengths that it turned out to read."""
+        outer, self.writer = self.writer, Writer(depth=self.writer.depth)
+        self._block(self.body)
+        for lane in sorted(self.names.used | set(self.advanced)):
+            outer.line(f"used_{lane} = int(state[{lane_word(lane, USED)}])")
+        for lane in sorted(self.names.capacities):
+            outer.line(f"capacity_{lane} = int(state[{lane_word(lane, CAPACITY)}])")
+        outer.lines += self.writer.lines
+
+    def _block(self, block: Block) -> None:
+        for statement in block:
+            self._statement(statement)
+        if not block:
+            self.writer.line("pass")
+
+    def _statement(self, statement: Stmt) -> None:
+        match statement:
+            case Require(at, size, failure):
+                self._fail_unless(f"has_room({self._text(at)}, {self._text(size)}, end)", failure)
+            case Expect(condition, failure):
+                self._fail_unless(self._text(condition), failure)
+            case Let(name, value) | Var(name, value) | Assign(name, value):
+                self.writer.line(f"{self.names.locals.identifier(name)} = {self._text(value)}")
+            case Store(at, value, order):
+                self._set(Wire(at), value, order)
+            case SetField(place, value):
+                self._set(place, value, "<")
+            case Reserve(lane, count):
+                free = f"{self.names.capacity_name(lane)} - {self.names.used_name(lane)}"
+                self.writer.line(f"reserve({lane}, {self._text(count)}, {free})")
+            case Advance(lane, count):
+                self.writer.line(f"{self.names.used_name(lane)} += {self._text(count)}")
+            case Copy(target, source, size):
+                length = self._text(size)
+                self.writer.line(f"{part(self.names, target, length)} = {part(self.names, source, length)}")
+            case Fill(target, size, byte):
+                length = self._text(size)
+                self.writer.line(f"{part(self.names, target, length)} = bytes([{byte}]) * {length}")
+            case Return(position):
+                for lane in self.advanced:
+                    self.writer.line(f"state[{lane_word(lane, USED)}] = used_{lane}")
+                self.writer.line(f"return {self._text(position)}")
+            case For() | While() | If() | Switch():
+                self._nested(statement)
+            case _:
+                assert_never(statement)
+
+    def _nested(self, statement: For | While | If | Switch) -> None:
+        match statement:
+            case For(variable, count, body):
+                self._governed(f"for {self.names.locals.identifier(variable)} in range({self._text(count)}):", body)
+            case While(condition, body, _, _):
+                self._governed(f"while {self._text(condition)}:", body)
+            case If(condition, then, otherwise):
+                self._governed(f"if {self._text(condition)}:", then)
+                if otherwise:
+                    self._governed("else:", otherwise)
+            case Switch(value, cases, default):
+                with self.writer.indented(f"match {self._text(value)}:"):
+                    for number, body in cases:
+                        self._governed(f"case {number}:", body)
+                    self._governed("case _:", default)
+            case _:
+                assert_never(statement)
+
+    def _governed(self, head: str, body: Block) -> None:
+        with self.writer.indented(head):
+            self._block(body)
+
+    def _fail_unless(self, condition: str, failure: Failure) -> None:
+        indices = "".join(f"{self._text(each)}, " for each in failure.indices)
+        with self.writer.indented(f"if not {condition}:"):
+            self.writer.line(f"raise Failed({failure.site}, {self._text(failure.at)}, ({indices.rstrip()})){self._about(failure.site)}")
+
+    def _about(self, number: int) -> str:
+        site = self.kernel.sites[number]
+        return f"  # {ascii(f'{site.kind} {site.path}')[1:-1]}"
+
+    def _set(self, address: Address, value: Expr, order: Order) -> None:
+        type_ = type_of(value)
+        if type_ in FLOATS:
+            target = part(self.names, address, str(WIDTH[type_]))
+            self.writer.line(f'{target} = to_bytes("{type_}", {self._text(value)}, "{order}")')
+        else:
+            memory, start = location(self.names, address)
+            self.writer.line(f'pack_into("{order}{FORMATS[type_]}", {memory}, {start}, {self._text(value)})')
+
+    def _text(self, expr: Expr) -> str:
+        return expression(self.names, expr)

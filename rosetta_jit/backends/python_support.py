@@ -1,0 +1,88 @@
+"""What generated Python calls: outcomes of an attempt, and the few operations that Python lacks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosetta_jit.kernel.ir import GROW
+from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, MAX_INDICES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    State = np.ndarray[tuple[int], np.dtype[np.int64]]
+    Bytes = bytes | bytearray | memoryview
+    Attempt = Callable[[memoryview, int, int, State, list[memoryview], int], int]
+
+
+class Failed(Exception):  # noqa: N818 - it ends an attempt, and is no error of this program
+    """An attempt came upon something that the message should not have."""
+
+    def __init__(self, site: int, at: int, indices: tuple[int, ...]) -> None:
+        super().__init__()
+        self.site, self.at, self.indices = site, at, indices
+
+
+class Full(Exception):  # noqa: N818 - as above
+    """A lane is too small."""
+
+    def __init__(self, lane: int, missing: int) -> None:
+        super().__init__()
+        self.lane, self.missing = lane, missing
+
+
+def run_attempts(attempts: Sequence[Attempt], message: tuple[Bytes, int, int], state: State, lanes: Sequence[Bytes], row: int) -> int:
+    """The first attempt that succeeds, else the failure that came farthest, left in the state."""
+    buffer, begin, end = message
+    views = [memoryview(lane).cast("B") for lane in lanes]
+    farthest: Failed | None = None
+    for attempt in attempts:
+        try:
+            with np.errstate(all="ignore"):
+                return attempt(memoryview(buffer).cast("B"), begin, end, state, views, row)
+        except Failed as failed:
+            farthest = failed if farthest is None or failed.at > farthest.at else farthest
+        except Full as full:
+            state[GROW_LANE], state[GROW_ROWS] = full.lane, full.missing
+            return GROW
+    return 0 if farthest is None else _recorded(state, farthest)
+
+
+def _recorded(state: State, failed: Failed) -> int:
+    state[ERROR_OFFSET], state[ERROR_SITE] = failed.at, failed.site
+    for number, value in enumerate(failed.indices[:MAX_INDICES]):
+        state[ERROR_INDICES + number] = value
+    return -1 - failed.site
+
+
+def has_room(at: int, size: int, end: int) -> bool:
+    """Whether ``size`` bytes lie at ``at``, before ``end``."""
+    return at >= 0 and 0 <= size <= end - at
+
+
+def reserve(lane: int, count: int, free: int) -> None:
+    """Raise `Full` unless so many rows are free."""
+    if not 0 <= count <= free:
+        raise Full(lane, count - free)
+
+
+def quotient(left: int, right: int) -> int:
+    """``left / right``, truncated toward zero."""
+    result = abs(left) // abs(right)
+    return result if (left < 0) == (right < 0) else -result
+
+
+def remainder(left: int, right: int) -> int:
+    """What `quotient` leaves, with the sign of ``left``."""
+    return left - right * quotient(left, right)
+
+
+def is_text(data: memoryview) -> bool:
+    """Whether bytes are valid UTF-8."""
+    try:
+        bytes(data).decode()
+    except UnicodeDecodeError:
+        return False
+    return True

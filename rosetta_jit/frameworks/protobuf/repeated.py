@@ -1,0 +1,216 @@
+"""Repeated fields and maps with protobuf's manners.
+
+Repeated numbers are numpy arrays that also append, extend and delete as lists do. Where a list and an array disagree, the array wins
+(``==`` and ``+`` go element by element), but for truth (`if message.samples:` asks whether there are any) and iteration (Python's own
+numbers). An array shows the elements that were there when it was read from its message: read the attribute again after a change of length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rosetta_jit.runtime.holder import arena, coerce, values
+from rosetta_jit.runtime.holder.message import Message, place, writable
+from rosetta_jit.runtime.holder.record import Numbers, Record, Scalar
+from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence, view_of
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder.record import Entry
+
+
+class NumberArray(np.ndarray[Any, Any]):
+    """A repeated field of numbers, or of enums: a view into its message's lane.
+
+    Attributes
+    ----------
+    owner_ : tuple of message and field
+        Whose elements these are. Slices and copies have none, and cannot change their length.
+    """
+
+    __slots__ = ("owner_",)
+
+    def _field(self) -> tuple[Message, Numbers]:
+        owner: tuple[Message, Entry] | None = getattr(self, "owner_", None)
+        if owner is None:
+            raise TypeError("a slice or copy of a repeated field cannot change its length; change the field itself")
+        return owner[0], cast("Numbers", owner[1].node)
+
+    def _replace(self, elements: Iterable[Any]) -> None:
+        message, node = self._field()
+        prepared = values.prepare(node, elements)
+        lanes, row = writable(message)
+        values.put(node, lanes, row, prepared)
+
+    def append(self, value: Any) -> None:
+        self.extend([value])
+
+    def extend(self, elements: Iterable[Any]) -> None:
+        """Append all elements, or none if one is wrong."""
+        message, node = self._field()
+        prepared = coerce.numbers(node.type, _iterable(elements))
+        if not prepared.size:
+            return
+        lanes, row = writable(message)
+        count = arena.span_of(lanes, node.span, row)[1]
+        start = arena.resize(lanes, node.span, node.lane, row, count + prepared.size) + count
+        lanes.arrays[node.lane][start : start + prepared.size] = prepared
+
+    MergeFrom = extend
+
+    def insert(self, index: int, value: Any) -> None:
+        elements = self._current()
+        elements.insert(index, value)
+        self._replace(elements)
+
+    def pop(self, index: int = -1) -> Any:
+        elements = self._current()
+        value = elements.pop(index)
+        self._replace(elements)
+        return value
+
+    def remove(self, value: Any) -> None:
+        elements = self._current()
+        elements.remove(value)
+        self._replace(elements)
+
+    def clear(self) -> None:
+        self._replace([])
+
+    def reverse(self) -> None:
+        self._replace(self._current()[::-1])
+
+    def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Sort in place, as a list does."""
+        self[...] = sorted(self.tolist(), key=cast("Any", key), reverse=reverse)
+
+    def _current(self) -> list[Any]:
+        """The field's elements, which may be others than when this array was read."""
+        message, node = self._field()
+        lanes, row = place(message)
+        return values.read(node, lanes, row, values.Form.RAW).tolist()
+
+    def __delitem__(self, index: Any) -> None:
+        elements = self._current()
+        del elements[index]
+        self._replace(elements)
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        if isinstance(index, int) and getattr(self, "owner_", None) is not None:
+            value = coerce.scalar(self._field()[1].type, value)
+        super().__setitem__(index, value)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.tolist())
+
+    def __bool__(self) -> bool:
+        return self.size > 0
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:  # noqa: ARG002, FBT001, FBT002  numpy's protocol
+        """Results of arithmetic are arrays like any other."""
+        return array[()] if return_scalar else np.asarray(array)
+
+
+def _iterable(elements: Any) -> Iterable[Any]:
+    if not isinstance(elements, Iterable):
+        raise TypeError("must assign iterable")
+    return cast("Iterable[Any]", elements)
+
+
+class RepeatedStrings(Sequence):
+    """A repeated field of strings or bytes."""
+
+    __slots__ = ()
+
+    def extend(self, values: Iterable[Any]) -> None:
+        super().extend(_iterable(values))
+
+    def MergeFrom(self, other: Iterable[Any]) -> None:  # noqa: N802  as protobuf names it
+        """Append the elements of another repeated field."""
+        self.extend(other)
+
+
+class RepeatedMessages(Sequence):
+    """A repeated field of messages: they are copied in, and cannot be replaced but by `CopyFrom` of the element."""
+
+    __slots__ = ()
+
+    def add(self, **fields: Any) -> Any:
+        """Append an empty message, or one of the fields given; return it."""
+        self._append([{}])
+        added = self[len(self) - 1]
+        try:
+            added.set_fields_(fields)
+        except BaseException:
+            del self[len(self) - 1]
+            raise
+        return added
+
+    def append(self, value: Any) -> None:
+        super().append(self._checked(value))
+
+    def insert(self, index: int, value: Any) -> None:
+        super().insert(index, self._checked(value))
+
+    def extend(self, values: Iterable[Any]) -> None:
+        super().extend([self._checked(each) for each in _iterable(values)])
+
+    def MergeFrom(self, other: Iterable[Any]) -> None:  # noqa: N802  as protobuf names it
+        """Append the elements of another repeated field."""
+        self.extend(other)
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        raise TypeError(f"'{type(self).__name__}' object does not support item assignment")
+
+    def _checked(self, value: Any) -> Any:
+        record = cast("Record", self.node.element)
+        if not isinstance(value, Message) or value.access_.record.struct != record.struct:
+            raise TypeError(f"Expected a message object of type {record.struct}, but got {value!r:.80}.")
+        return value
+
+
+def repeated(message: Message, entry: Entry) -> Sequence:
+    """What shows a repeated field of anything but numbers."""
+    shown = Sequence(message, entry)
+    return (RepeatedMessages if isinstance(shown.node.element, Record) else RepeatedStrings)(message, entry)
+
+
+class MapField(Dictionary):
+    """A map field: reading a key that is not there puts it there, with a default value or an empty message."""
+
+    __slots__ = ()
+
+    def __getitem__(self, key: Any) -> Any:
+        if self.checked(key) not in self._keys():
+            super().__setitem__(key, {} if self._holds_messages else self.node.value.default)
+        return super().__getitem__(key)
+
+    get_or_create = __getitem__
+
+    @property
+    def _holds_messages(self) -> bool:
+        return self.node.value.default is None
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        if self._holds_messages:
+            raise ValueError("May not set values directly, call my_map[key].foo = 5")
+        super().__setitem__(key, value)
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        return self[key] if key in self else default
+
+    def pop(self, key: Any, *default: Any) -> Any:
+        if key not in self:
+            if default:
+                return default[0]
+            raise KeyError(key)
+        value = self[key]
+        del self[key]
+        return value
+
+    def MergeFrom(self, other: Mapping[Any, Any]) -> None:  # noqa: N802  as protobuf names it
+        """Take over the pairs of another map."""
+        for key in other:
+            Dictionary.__setitem__(self, key, other[key])

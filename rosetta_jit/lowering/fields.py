@@ -1,0 +1,278 @@
+"""The fields that a codec's leaves carry: what a walk over a codec reads from and writes to.
+
+A walk knows paths and directions; only `Fields` knows where a value lives. `HolderFields` keeps the values of a type in its own
+holder. The fields of a wire that a mapping relates to another type are `rosetta_jit.lowering.bound.WireFields`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol
+
+from rosetta_jit.kernel.ir import (
+    ROW,
+    Advance,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Expr,
+    Get,
+    Place,
+    Reserve,
+    Scalar,
+    SetField,
+    Unary,
+    Used,
+    Wire,
+    add,
+    index,
+    type_of,
+)
+from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
+
+if TYPE_CHECKING:
+    from rosetta_jit.wire.codec import Choice, Codec, Path
+
+
+class Fields(Protocol):
+    """Where the values of one message or element live."""
+
+    where: Where
+
+    def put(self, path: Path, value: Expr) -> None:
+        """Decode: a number has come."""
+        ...
+
+    def get(self, path: Path) -> Expr | None:
+        """Encode: the number to write; None where it is written later, in its place."""
+        ...
+
+    def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
+        """Decode: bytes have come."""
+        ...
+
+    def size_of(self, path: Path) -> Expr:
+        """Encode: how many bytes or elements to write."""
+        ...
+
+    def copy_bytes(self, path: Path, size: Expr) -> None:
+        """Encode: write bytes to the current position."""
+        ...
+
+    def open(self, path: Path, count: Expr) -> Elements:
+        """Decode: so many elements come, one after another."""
+        ...
+
+    def elements(self, path: Path, count: Expr) -> Elements:
+        """Encode: the elements to write."""
+        ...
+
+    def branch(self, choice: Choice) -> None:
+        """Each alternative of a choice will put the same fields."""
+        ...
+
+
+class Elements(Protocol):
+    """The fields of each element of an array."""
+
+    def place(self, item: Codec, first: Expr, step: int) -> Elements:
+        """The elements are of one size: the first lies there, the others each a step further."""
+        ...
+
+    def at(self, number: Expr) -> Fields:
+        """The fields of one element."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A slot of a row of a lane."""
+
+    lane: int
+    row: Expr
+    slot: Slot
+
+    def place(self, offset: int) -> Place:
+        return Place(self.lane, self.row, offset)
+
+
+@dataclass(frozen=True, slots=True)
+class HolderFields:
+    """Fields in the lanes of a holder. With ``borrow`` bytes stay in the message, and the holder says where."""
+
+    writer: Writer
+    layout: Layout
+    cell: Cell
+    where: Where = Where()
+    borrow: bool = False
+
+    def put(self, path: Path, value: Expr) -> None:
+        cell = self.mark(path)
+        match cell.slot:
+            case Number(offset, scalar):
+                self.writer.emit(SetField(cell.place(offset), converted(value, scalar)))
+            case _:
+                raise AssertionError(path)
+
+    def get(self, path: Path) -> Expr | None:
+        cell = self.find(path)
+        match cell.slot:
+            case Number(offset, scalar):
+                return Get(scalar_name(scalar), cell.place(offset))
+            case _:
+                raise AssertionError(path)
+
+    def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
+        cell = self.mark(path)
+        span = span_of(cell)
+        if self.borrow:
+            self.set_span(cell, at, Binary("sub", index(-1), size))
+            return
+        start = self.reserve(span.lane, size)
+        self.writer.emit(Copy(Place(span.lane, start), Wire(at), size))
+        self.set_span(cell, start, size)
+
+    def size_of(self, path: Path) -> Expr:
+        return self.read_span(self.find(path), self.where.members(path))[1]
+
+    def copy_bytes(self, path: Path, size: Expr) -> None:
+        cell = self.find(path)
+        start = self.read_span(cell, self.where.members(path))[0]
+        self.writer.emit(Copy(Wire(self.writer.position), Place(span_of(cell).lane, start), size))
+
+    def open(self, path: Path, count: Expr) -> HolderElements:
+        cell = self.mark(path)
+        start = self.reserve(span_of(cell).lane, count)
+        self.set_span(cell, start, count)
+        return HolderElements(self, span_of(cell).lane, start, self.where.members(path))
+
+    def elements(self, path: Path, count: Expr) -> HolderElements:
+        cell = self.find(path)
+        where = self.where.members(path)
+        return HolderElements(self, span_of(cell).lane, self.read_span(cell, where)[0], where)
+
+    def branch(self, choice: Choice) -> None:
+        """Fields of a holder are written in whichever branch they come."""
+
+    # --- places ------------------------------------------------------------------------------------------------------
+
+    def find(self, path: Path) -> Cell:
+        """The slot at a path."""
+        slot = self.cell.slot
+        for name in path:
+            slot = member_of(slot, name).slot
+        return replace(self.cell, slot=slot)
+
+    def mark(self, path: Path) -> Cell:
+        """The slot at a path that is about to be set: what can be absent on the way becomes present."""
+        slot = self.cell.slot
+        for name in path:
+            self.mark_member(slot, name)
+            slot = member_of(slot, name).slot
+        return replace(self.cell, slot=slot)
+
+    def mark_member(self, slot: Slot, name: str) -> None:
+        member = member_of(slot, name)
+        match slot:
+            case Row() if member.presence is not None:
+                place, mask = presence_bit(self.cell, slot, member.presence)
+                self.writer.emit(SetField(place, Binary("or", Get("u64", place), mask)))
+            case Variant(offset, members):
+                self.writer.emit(SetField(self.cell.place(offset), index(1 + members.index(member))))
+            case _:
+                pass
+
+    def reserve(self, lane: int, count: Expr) -> Expr:
+        """Take ``count`` new rows of a lane; gives the first."""
+        self.writer.emit(Reserve(lane, count))
+        start = self.writer.let("start", Used(lane))
+        self.writer.emit(Advance(lane, count))
+        return start
+
+    def set_span(self, cell: Cell, start: Expr, count: Expr) -> None:
+        offset = cell.slot.offset if isinstance(cell.slot, Span) else 0
+        self.writer.emit(SetField(cell.place(offset), start), SetField(cell.place(offset + 8), count))
+
+    def read_span(self, cell: Cell, where: Where) -> tuple[Expr, Expr]:
+        """Start and count of a field's elements, checked: a damaged holder must not lead outside its lanes."""
+        span = span_of(cell)
+        start = self.writer.let("start", Get("i64", cell.place(span.offset)))
+        count = self.writer.let("count", Get("i64", cell.place(span.offset + 8)))
+        inside = Binary("and", Compare("ge", count, index(0)), Compare("le", count, Used(span.lane)))
+        self.writer.expect(inside, "length", where, "the holder is damaged")
+        inside = Binary("and", Compare("ge", start, index(0)), Compare("le", start, Binary("sub", Used(span.lane), count)))
+        self.writer.expect(inside, "length", where, "the holder is damaged")
+        return start, count
+
+
+@dataclass(frozen=True, slots=True)
+class HolderElements:
+    """The rows of an array from a first one on."""
+
+    parent: HolderFields
+    lane: int
+    start: Expr
+    where: Where
+
+    def place(self, item: Codec, first: Expr, step: int) -> HolderElements:
+        del item, first, step
+        return self
+
+    def at(self, number: Expr) -> HolderFields:
+        cell = Cell(self.lane, add(self.start, number), self.parent.layout.lanes[self.lane].element)
+        return replace(self.parent, cell=cell, where=self.where.element(number))
+
+
+def root_fields(writer: Writer, layout: Layout, *, borrow: bool = False) -> HolderFields:
+    """The fields of the message itself: row `row` of lane 0."""
+    return HolderFields(writer, layout, Cell(0, ROW, layout.root), borrow=borrow)
+
+
+def member_of(slot: Slot, name: str) -> Member:
+    """A field of a row, or a case of a union."""
+    match slot:
+        case Row(members=members) | Variant(members=members):
+            return next(member for member in members if member.name == name)
+        case _:
+            raise AssertionError(name)
+
+
+def span_of(cell: Cell) -> Span:
+    match cell.slot:
+        case Span():
+            return cell.slot
+        case _:
+            raise AssertionError(cell)
+
+
+def presence_bit(cell: Cell, row: Row, bit: int) -> tuple[Place, Const]:
+    """The presence word of a field, and its bit in there."""
+    return cell.place(row.offset + 8 * (bit // 64)), Const("u64", 1 << bit % 64)
+
+
+def converted(value: Expr, scalar: str) -> Expr:
+    """A value as the scalar that a slot holds; nothing is checked."""
+    source, target = type_of(value), scalar_name(scalar)
+    if source == target:
+        return value
+    if target == "bool":
+        zero = Const(source, 0)
+        return Compare("ne", value, zero)
+    return Convert(target, value)
+
+
+def negated(condition: Expr) -> Expr:
+    """The opposite of a condition."""
+    return Unary("not", condition)
+
+
+def scalar_name(scalar: str) -> Scalar:
+    """The same word, as the kernel's type."""
+    match scalar:
+        case "bool" | "i8" | "u8" | "i16" | "u16" | "i32" | "u32" | "i64" | "u64" | "f32" | "f64":
+            return scalar
+        case _:
+            raise AssertionError(scalar)

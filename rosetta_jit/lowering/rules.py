@@ -1,0 +1,205 @@
+"""Rules of a mapping as statements of the kernel, the same in both directions: read one side, write the other.
+
+To unpack, the walk has found the wire's fields, and the rules fill the holder. To pack, the walk asks for numbers and sizes while it
+lays out the message (`Supplies`), and the rules then fill the elements into their places.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, add, index
+from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.arithmetic import binary
+from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
+from rosetta_jit.lowering.values import Values
+from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.types import Array, Bytes, String
+
+if TYPE_CHECKING:
+    from rosetta_jit.wire.codec import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Runner:
+    """Runs rules from one side to the other."""
+
+    writer: Writer
+    source: Side
+    target: Side
+
+    def run(self, rules: tuple[typed.Rule, ...], values: Values) -> None:
+        for rule in rules:
+            here = replace(values, where=Where(_shown(rule))).at_rule(rule.span)
+            match rule:
+                case typed.Assign(place, value):
+                    self.assign(place, value, here)
+                case typed.SetLength(place, value):
+                    self.target.set_length(place, self.count(here.of(value)), here)
+                case typed.For():
+                    self.loop(rule, here)
+                case _:
+                    assert_never(rule)
+
+    def count(self, value: Expr) -> Expr:
+        """A length that is used more than once."""
+        return self.writer.let("length", value)
+
+    def loop(self, rule: typed.For, values: Values) -> None:
+        """A loop; what is looked up within it is forgotten behind it."""
+        start = values.of(rule.start)
+        stop = values.of(rule.stop)
+        self.writer.expect(Compare("ge", stop, start), "count", values.where, "the loop ends before it starts", line=values.line)
+        count = stop if start == index(0) else binary(self.writer, "-", stop, start, values.where, values.line)
+        number = Local("i64", self.writer.fresh(rule.variable.name))
+        known = dict(self.holder.arrays)
+        with self.writer.nested() as body:
+            variable = number if start == index(0) else self.writer.let(rule.variable.name, add(number, start))
+            self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
+        self.holder.arrays = known
+        self.writer.emit(For(number.name, count, block(body)))
+
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+        match place.type, value:
+            case ((String() | Bytes()), typed.Const(str(text))):
+                self.assign_text(place, text.encode(), values)
+            case ((String() | Bytes()), typed.Access(origin)):
+                self.assign_bytes(place, origin, values)
+            case Array(), typed.Access(origin):
+                self.assign_array(place, origin, values)
+            case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
+                pass  # the walk has asked for this number
+            case _:
+                self.target.set_number(place, values.of(value), values)
+
+    def assign_text(self, place: typed.Place, text: bytes, values: Values) -> None:
+        self.target.set_length(place, index(len(text)), values)
+        for number, byte in enumerate(text):
+            self.target.set_byte(place, number, byte, values)
+
+    def assign_bytes(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+        """A string or bytes as a whole. To the wire, the walk has copied it."""
+        if isinstance(self.target, WireSide):
+            return
+        size, source = self.source.count(origin, values), self.source.address(origin, values)
+        if isinstance(place.type, String) and place.type.encoding == "utf-8":
+            self.writer.expect(IsText(source, size), "text", values.where, "not valid UTF-8", line=values.line)
+        self.target.set_length(place, size, values)
+        self.writer.emit(Copy(self.target.address(place, values), source, size))
+
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+        """An array as a whole: its length, then each element."""
+        element = place.type.element if isinstance(place.type, Array) else place.type
+        count = self.source.count(origin, values)
+        self.target.set_length(place, count, values)
+        variable = typed.Local("element")
+        step = typed.IndexStep(variable)
+        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
+        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
+        if origin_type != element:
+            read = typed.Convert(read, element, "widen")
+        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
+
+    @property
+    def holder(self) -> HolderSide:
+        return self.source if isinstance(self.source, HolderSide) else _holder(self.target)
+
+
+@dataclass(frozen=True, slots=True)
+class Supplies:
+    """What an encoding walk asks for while it lays out a message: numbers, sizes, and bytes that are copied as they are."""
+
+    rules: tuple[typed.Rule, ...]
+    source: HolderSide
+    values: Values
+
+    def number(self, path: Path) -> Expr:
+        rule = self.rule(path)
+        assert isinstance(rule, typed.Assign), path
+        return self.values.writer.let("_".join(path), self.here(rule).of(rule.value))
+
+    def size(self, path: Path) -> Expr:
+        rule = self.rule(path)
+        here = self.here(rule)
+        match rule:
+            case typed.SetLength(_, value):
+                size = here.writer.let("_".join((*path, "length")), here.of(value))
+                here.writer.expect(Compare("ge", size, index(0)), "count", here.where, "a length must not be negative", line=here.line)
+                return size
+            case typed.Assign(_, typed.Const(str(text))):
+                return index(len(text.encode()))
+            case typed.Assign(_, typed.Access(origin)):
+                return self.source.count(origin, here)
+            case _:
+                raise AssertionError(path)
+
+    def bytes_at(self, path: Path) -> Place | None:
+        match self.rule(path):
+            case typed.Assign(_, typed.Access(origin)) as rule:
+                address = self.source.address(origin, self.here(rule))
+                return address if isinstance(address, Place) else None
+            case _:
+                return None
+
+    def rule(self, path: Path) -> typed.Rule:
+        """The rule that sets a field, or its length."""
+        return next(rule for rule in self.rules if isinstance(rule, typed.Assign | typed.SetLength) and wire_key(rule.place) == (path, []))
+
+    def here(self, rule: typed.Rule) -> Values:
+        return replace(self.values, where=Where(_shown(rule))).at_rule(rule.span)
+
+
+def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Values) -> None:
+    """Read start and count of the holder's arrays once, before any loop."""
+    for place in _array_places(rules):
+        if place.side == "holder" and not any(isinstance(step, typed.IndexStep) for step in place.steps):
+            holder.array(place, values)
+
+
+def _array_places(node: object) -> list[typed.Place]:
+    """Every place below a rule whose length or elements are read."""
+    match node:
+        case tuple():
+            return [place for each in node for place in _array_places(each)]
+        case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
+            return [place]
+        case typed.Assign(_, value) | typed.SetLength(_, value):
+            return _array_places(value)
+        case typed.For(_, start, stop, body):
+            return _array_places((start, stop, *body))
+        case typed.LenOf(place):
+            return [place]
+        case typed.Access(place):
+            return _indexed(place)
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
+            return _array_places(operand)
+        case typed.Binary(_, left, right):
+            return _array_places((left, right))
+        case typed.Call(_, arguments, _):
+            return _array_places(arguments)
+        case _:
+            return []
+
+
+def _indexed(place: typed.Place) -> list[typed.Place]:
+    for number, step in enumerate(place.steps):
+        if isinstance(step, typed.IndexStep):
+            return [typed.Place(place.side, place.steps[:number], place.type), *_array_places(step.index)]
+    return []
+
+
+def _shown(rule: typed.Rule) -> str:
+    """The field that a rule sets, as the path of its errors."""
+    if isinstance(rule, typed.For):
+        return ""
+    text = ""
+    for step in rule.place.steps:
+        text += f".{step.field.name}" if isinstance(step, typed.FieldStep) else "[]"
+    return text.replace("{", "{{").replace("}", "}}")
+
+
+def _holder(side: Side) -> HolderSide:
+    assert isinstance(side, HolderSide)
+    return side

@@ -1,0 +1,232 @@
+"""The two sides of a mapping while its rules run: the holder in its lanes, the wire where the walk found or laid out its fields.
+
+A side can be read (`values.Source`) and be written; which one is which depends on the direction alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Binary,
+    Compare,
+    Const,
+    Expr,
+    Fill,
+    Get,
+    Load,
+    Place,
+    Select,
+    SetField,
+    Store,
+    Wire,
+    add,
+    index,
+    mul,
+)
+from rosetta_jit.lowering.bound import EACH
+from rosetta_jit.lowering.fields import converted, member_of, scalar_name
+from rosetta_jit.lowering.typed import FieldStep, IndexStep
+from rosetta_jit.model.layout import Number, Row
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering import typed
+    from rosetta_jit.lowering.bound import Region, WireFields
+    from rosetta_jit.lowering.fields import HolderElements, HolderFields
+    from rosetta_jit.lowering.values import Values
+    from rosetta_jit.lowering.writer import Writer
+    from rosetta_jit.model.layout import Member
+    from rosetta_jit.model.types import Constant, Field
+    from rosetta_jit.wire.codec import Path
+
+Key = tuple[object, ...]
+"""A place by names and the kernel's expressions of its indices."""
+
+
+def inside(number: Expr, count: Expr) -> Expr:
+    """Whether an index is one of so many."""
+    return Binary("and", Compare("ge", number, index(0)), Compare("lt", number, count))
+
+
+@dataclass(slots=True)
+class HolderSide:
+    """The holder. Arrays whose length was set, or that were looked at, are known by their place."""
+
+    writer: Writer
+    root: HolderFields
+    arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
+
+    def number(self, place: typed.Place, values: Values) -> Expr:
+        fields, path, last = self.descend(place, values)
+        if not path:
+            return _got(fields, path)
+        owner = fields.find(path[:-1])
+        member = member_of(owner.slot, path[-1])
+        value = _got(fields, path)
+        if member.presence is None or last is None or not isinstance(owner.slot, Row):
+            return value
+        return self.present_or_default(owner.place, owner.slot, member, last, value, values)
+
+    def present_or_default(self, place: object, row: Row, member: Member, last: Field, value: Expr, values: Values) -> Expr:
+        """What reading gives: the value; where it is absent, its default, or an error if it is required."""
+        assert callable(place)
+        bit = member.presence or 0
+        mask = Const("u64", 1 << bit % 64)
+        word = Get("u64", place(row.offset + 8 * (bit // 64)))
+        present = Compare("ne", Binary("and", word, mask), Const("u64", 0))
+        if last.required:
+            self.writer.expect(present, "missing", values.where.member(last.name), "a required field is not set", line=values.line)
+            return value
+        scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
+        return Select(present, value, Const(scalar_name(scalar), _number(last.default)))
+
+    def count(self, place: typed.Place, values: Values) -> Expr:
+        return self.array(place, values)[1]
+
+    def address(self, place: typed.Place, values: Values) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        elements, _ = self.array(place, values)
+        return Place(elements.lane, elements.start)
+
+    def array(self, place: typed.Place, values: Values) -> tuple[HolderElements, Expr]:
+        """The elements of an array, and how many there are."""
+        key = self.key(place, values)
+        if key not in self.arrays:
+            fields, path, _ = self.descend(place, values)
+            count = fields.size_of(path)
+            self.arrays[key] = fields.elements(path, count), count
+        return self.arrays[key]
+
+    def key(self, place: typed.Place, values: Values) -> Key:
+        return tuple(step.field.name if isinstance(step, FieldStep) else values.of(step.index) for step in place.steps)
+
+    def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
+        """The fields of the innermost element, the path from there, and the last field of it."""
+        fields, path, last, done = self.root, (), None, 0
+        for step in place.steps:
+            done += 1
+            match step:
+                case FieldStep(each):
+                    path, last = (*path, each.name), each
+                case IndexStep(at):
+                    elements, count = self.array(_prefix(place, done - 1), values)
+                    number = values.of(at)
+                    where = fields.where.members(path)
+                    self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+                    fields, path, last = elements.at(number), (), None
+        return fields, path, last
+
+    # --- writing -------------------------------------------------------------------------------------------------------
+
+    def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
+        fields, path, _ = self.descend(place, values)
+        fields.put(path, value)
+
+    def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """Take room for the elements; those that are structs begin empty."""
+        fields, path, _ = self.descend(place, values)
+        where = fields.where.members(path)
+        self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
+        elements = fields.open(path, count)
+        self.arrays[self.key(place, values)] = elements, count
+        lane = self.root.layout.lanes[elements.lane]
+        if not isinstance(lane.element, Number):
+            self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
+            self.writer.emit(Fill(Place(elements.lane, elements.start), mul(count, lane.stride)))
+
+    def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
+        """One byte of a text whose length was set."""
+        elements, _ = self.array(place, values)
+        self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), Const("u8", value)))
+
+
+@dataclass(slots=True)
+class WireSide:
+    """The wire, as the walk has bound it."""
+
+    writer: Writer
+    root: WireFields
+
+    def number(self, place: typed.Place, values: Values) -> Expr:
+        key, indices = wire_key(place)
+        if not indices:
+            found = self.root.get(key)
+            assert found is not None, key
+            return found
+        region, at = self.element(key, indices, values)
+        return Load(region.scalar, at, ">" if region.order == ">" else "<")
+
+    def count(self, place: typed.Place, values: Values) -> Expr:
+        del values
+        return self.root.size_of(wire_key(place)[0])
+
+    def address(self, place: typed.Place, values: Values) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        del values
+        return Wire(self.root.found.regions[(*wire_key(place)[0], EACH)].first)
+
+    def element(self, key: Path, indices: list[Expr], values: Values) -> tuple[Region, Expr]:
+        """How the elements of an array lie, and where one of them is; it is checked to be there."""
+        assert len(indices) == 1, key
+        region, array = self.root.found.regions[key], key[: key.index(EACH)]
+        number = values.of(indices[0])
+        where = values.where.members(array)
+        self.writer.expect(inside(number, self.root.size_of(array)), "index", where, "no such element", line=values.line)
+        at = Binary("add", region.first, mul(number, region.step))
+        self.writer.require(WIDTH[region.scalar], where, at=at)
+        return region, at
+
+    # --- writing -------------------------------------------------------------------------------------------------------
+
+    def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
+        """Numbers outside arrays were written by the walk."""
+        key, indices = wire_key(place)
+        if indices:
+            region, at = self.element(key, indices, values)
+            self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
+
+    def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """The walk has asked for it."""
+
+    def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
+        """One byte of a text whose size the walk has asked for."""
+        del values
+        at = add(self.root.found.regions[(*wire_key(place)[0], EACH)].first, number)
+        self.writer.require(1, self.root.where, at=at)
+        self.writer.emit(Store(at, Const("u8", value)))
+
+
+Side = HolderSide | WireSide
+
+
+def wire_key(place: typed.Place) -> tuple[Path, list[typed.Expr]]:
+    """The path of a place with its indices taken out."""
+    key: list[str] = []
+    indices: list[typed.Expr] = []
+    for step in place.steps:
+        match step:
+            case FieldStep(each):
+                key.append(each.name)
+            case IndexStep(at):
+                key.append(EACH)
+                indices.append(at)
+    return tuple(key), indices
+
+
+def _prefix(place: typed.Place, steps: int) -> typed.Place:
+    from rosetta_jit.lowering.typed import Place as TypedPlace
+
+    return TypedPlace(place.side, place.steps[:steps], place.type)
+
+
+def _got(fields: HolderFields, path: Path) -> Expr:
+    value = fields.get(path)
+    assert value is not None
+    return value
+
+
+def _number(default: Constant | None) -> int | float:
+    return default if isinstance(default, int | float) else 0

@@ -1,0 +1,194 @@
+"""Typed expressions of rules as kernel expressions: arithmetic, conversions with their rule, functions of the language."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol, assert_never
+
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Local, Scalar, Unary, index, type_of
+from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.arithmetic import align, binary
+from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import Bool, Enum, Float, Int
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
+
+
+class Source(Protocol):
+    """The side that rules read."""
+
+    def number(self, place: typed.Place, values: Values) -> Expr:
+        """The number at a place."""
+        ...
+
+    def count(self, place: typed.Place, values: Values) -> Expr:
+        """The number of elements at a place, int64."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """Evaluates expressions: what they read, the loop variables around them, the rule that they belong to."""
+
+    writer: Writer
+    source: Source
+    variables: Mapping[str, Expr]
+    where: Where = Where()
+    line: str = ""
+
+    def of(self, value: typed.Expr) -> Expr:
+        """The kernel expression of a number."""
+        match value:
+            case typed.Const(number, type_):
+                return constant(number, scalar_type(type_))
+            case typed.Local(name):
+                return self.variables[name]
+            case typed.Access(place):
+                return self.source.number(place, self)
+            case typed.LenOf(place):
+                return self.source.count(place, self)
+            case typed.Unary(_, operand):
+                return self.negative(self.of(operand))
+            case typed.Binary(operator, left, right):
+                return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+            case typed.Convert(operand, type_, rule):
+                return self.convert(self.of(operand), scalar_type(type_), rule)
+            case typed.Call(function, arguments, _):
+                return self.call(function, [self.of(argument) for argument in arguments])
+            case _:
+                assert_never(value)
+
+    def at_rule(self, span: Span | None) -> Values:
+        """The same, with the rule's line for errors."""
+        return replace(self, line=str(span) if span is not None else "")
+
+    def negative(self, operand: Expr) -> Expr:
+        if type_of(operand) in ("f32", "f64"):
+            return Unary("neg", operand)
+        return binary(self.writer, "-", index(0), operand, self.where, self.line)
+
+    def call(self, function: typed.Function, arguments: list[Expr]) -> Expr:
+        match function:
+            case "radians" | "degrees":
+                factor = math.pi / 180 if function == "radians" else 180 / math.pi
+                return Binary("mul", arguments[0], Const(type_of(arguments[0]), factor))
+            case "sqrt" | "floor" | "ceil" | "abs":
+                if function == "abs" and type_of(arguments[0]) == "i64":
+                    return Binary("max", arguments[0], self.negative(arguments[0]))
+                return arguments[0] if type_of(arguments[0]) == "i64" else Unary(function, arguments[0])
+            case "min" | "max":
+                result = arguments[0]
+                for argument in arguments[1:]:
+                    result = Binary(function, result, argument)
+                return result
+            case "align":
+                return align(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case _:
+                assert_never(function)
+
+    # --- conversions ---------------------------------------------------------------------------------------------------
+
+    def convert(self, value: Expr, target: Scalar, rule: typed.ConversionRule) -> Expr:
+        """A number as another type, by the rule that the mapping states."""
+        source = type_of(value)
+        if isinstance(value, Const):
+            folded = _folded(value, target)
+            if folded is not None:
+                return folded
+        match rule:
+            case "widen" | "nearest" | "wrap":
+                return value if source == target else Convert(target, value)
+            case "saturate":
+                return self.saturated(value, target)
+            case "exact" | "round" | "truncate":
+                return self.exact(value, target, rule)
+            case _:
+                assert_never(rule)
+
+    def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
+        source = type_of(value)
+        local = self.writer.let("number", value)
+        if source in ("f32", "f64"):
+            whole = self.writer.let("whole", Unary("rint" if rule == "round" else "trunc", local))
+            if rule == "exact":
+                self.expect(Compare("eq", whole, local), target)
+            local = whole
+        self.in_range(local, target)
+        return Convert(target, local)
+
+    def in_range(self, value: Local, target: Scalar) -> None:
+        source = type_of(value)
+        if target in ("f32", "f64", "bool"):
+            return
+        low, high = RANGES[target]
+        if source in ("f32", "f64"):
+            self.expect(Compare("ge", value, Const(source, float(low))), target)
+            self.expect(Compare("lt", value, Const(source, float(high))), target)
+            return
+        least, most = RANGES[source] if source in RANGES else (0, 2)
+        if low > least:
+            self.expect(Compare("ge", value, Const(source, low)), target)
+        if high < most:
+            self.expect(Compare("lt", value, Const(source, high)), target)
+
+    def saturated(self, value: Expr, target: Scalar) -> Expr:
+        source = type_of(value)
+        if source in ("f32", "f64") or target in ("f32", "f64"):
+            return Convert(target, value)
+        low, high = RANGES[target]
+        least, most = RANGES[source]
+        if low > least:
+            value = Binary("max", value, Const(source, low))
+        if high < most:
+            value = Binary("min", value, Const(source, high - 1))
+        return Convert(target, value)
+
+    def expect(self, condition: Expr, target: str) -> None:
+        self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES[target]}", line=self.line)
+
+
+RANGES: dict[str, tuple[int, int]] = {
+    "i8": (-(1 << 7), 1 << 7),
+    "u8": (0, 1 << 8),
+    "i16": (-(1 << 15), 1 << 15),
+    "u16": (0, 1 << 16),
+    "i32": (-(1 << 31), 1 << 31),
+    "u32": (0, 1 << 32),
+    "i64": (-(1 << 63), 1 << 63),
+    "u64": (0, 1 << 64),
+}
+"""Least value and first one too large."""
+
+NAMES = {"i8": "int8", "u8": "uint8", "i16": "int16", "u16": "uint16", "i32": "int32", "u32": "uint32", "i64": "int64", "u64": "uint64"}
+
+
+def scalar_type(type_: Type) -> Scalar:
+    """The kernel's type of a number."""
+    match type_:
+        case Bool() | Int() | Float() | Enum():
+            return scalar_name(scalar_of(type_))
+        case _:
+            raise AssertionError(type_)
+
+
+def constant(number: float | str, scalar: Scalar) -> Const:
+    """A number that the mapping writes down."""
+    assert not isinstance(number, str)
+    return Const(scalar, float(number) if scalar in ("f32", "f64") else int(number))
+
+
+def _folded(value: Const, target: Scalar) -> Const | None:
+    """A constant of another type, where that is the same number."""
+    if target in ("f32", "f64"):
+        return Const(target, float(value.value)) if abs(value.value) <= 1 << 24 or target == "f64" else None
+    if target in RANGES and float(value.value).is_integer():
+        low, high = RANGES[target]
+        return Const(target, int(value.value)) if low <= value.value < high else None
+    return None

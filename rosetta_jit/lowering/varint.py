@@ -1,0 +1,100 @@
+"""Base-128 integers of protobuf: read, written, and their size."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import BEGIN, END, Assign, Binary, Compare, Const, Convert, Expr, If, Local, Select, While, add, index, type_of
+from rosetta_jit.lowering.writer import Where, Writer, block
+
+if TYPE_CHECKING:
+    from rosetta_jit.wire.codec import Varint
+
+SEVEN_BITS = Const("u64", 0x7F)
+ONE, ZERO = Const("u64", 1), Const("u64", 0)
+
+
+def read_varint(writer: Writer, where: Where) -> Local:
+    """The next varint as a u64. One byte is the common case; at most ten are read, and bits above the 64th are dropped."""
+    first = writer.let("byte", writer.load("u8", where))
+    value, after = writer.var("varint", Convert("u64", first)), writer.var("next", writer.position)
+    with writer.nested() as more:
+        writer.assign(value, Binary("and", value, SEVEN_BITS))
+        shift, byte = writer.var("shift", index(7)), writer.var("byte", first)
+        with writer.nested() as body:
+            writer.position = after
+            writer.assign(byte, writer.load("u8", where))
+            writer.assign(after, writer.position)
+            bits = Binary("shl", Binary("and", Convert("u64", byte), SEVEN_BITS), Convert("u64", shift))
+            writer.assign(value, Binary("or", value, bits))
+            writer.assign(shift, add(shift, 7))
+        unfinished = Compare("ge", byte, Const("u8", 128))
+        invariant = (
+            Compare("ge", after, BEGIN),
+            Compare("le", after, END),
+            Compare("ge", shift, index(7)),
+            Compare("le", shift, index(70)),
+        )
+        writer.emit(While(Binary("and", unfinished, Compare("lt", shift, index(64))), block(body), invariant, shift))
+        writer.expect(Compare("lt", byte, Const("u8", 128)), "varint", where, "an integer of more than ten bytes")
+    writer.emit(If(Compare("ge", first, Const("u8", 128)), block(more)))
+    writer.position = after
+    return value
+
+
+def write_varint(writer: Writer, value: Expr, where: Where) -> None:
+    """Write a u64 in as few bytes as it takes, or count them."""
+    if isinstance(value, Const):
+        for byte in varint_bytes(int(value.value)):
+            writer.store(Const("u8", byte), where)
+        return
+    rest, after = writer.var("rest", value), writer.cursor()
+    written = writer.var("written", index(0))
+    with writer.nested() as body:
+        writer.position = after
+        writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), where)
+        writer.settle()
+        writer.emit(
+            Assign(after.name, writer.position),
+            Assign(rest.name, Binary("shr", rest, Const("u64", 7))),
+            Assign(written.name, add(written, 1)),
+        )
+    again = Binary("and", Compare("ge", rest, Const("u64", 128)), Compare("lt", written, index(9)))
+    invariant = (*writer.position_invariant(after), Compare("ge", written, index(0)), Compare("le", written, index(9)))
+    writer.emit(While(again, block(body), invariant, written))
+    writer.position = after
+    writer.store(Convert("u8", rest), where)
+
+
+def varint_bytes(value: int) -> bytes:
+    """A varint that is known."""
+    written = bytearray()
+    while value >= 128:
+        written.append(value & 127 | 128)
+        value >>= 7
+    written.append(value)
+    return bytes(written)
+
+
+def from_varint(varint: Varint, value: Local, scalar: str) -> Expr:
+    """The number that a varint stands for, with at least the scalar's low bits right."""
+    if not varint.zigzag:
+        return value
+    bits: Expr = Binary("and", value, Const("u64", (1 << 32) - 1)) if scalar.endswith("32") else value
+    sign = Select(Compare("ne", Binary("and", bits, ONE), ZERO), Const("u64", (1 << 64) - 1), ZERO)
+    return Binary("xor", Binary("shr", bits, ONE), sign)
+
+
+def to_varint(varint: Varint, value: Expr) -> Expr:
+    """The u64 that a number is written as: sign-extended, or with the sign in the lowest bit."""
+    scalar = type_of(value)
+    if not varint.zigzag:
+        return value if scalar == "u64" else Convert("u64", value if scalar in ("bool", "u8", "u16", "u32") else _wide(value))
+    wide = _wide(value)
+    shifted = Binary("shl", Convert("u64", wide), ONE)
+    spread = Binary("xor", shifted, Select(Compare("lt", wide, index(0)), Const("u64", (1 << 64) - 1), ZERO))
+    return spread
+
+
+def _wide(value: Expr) -> Expr:
+    return value if type_of(value) == "i64" else Convert("i64", value)

@@ -1,0 +1,214 @@
+"""The kernel that is being written: its current block, the position in the message, fresh names, and sites of failure."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel import state
+from rosetta_jit.kernel.ir import (
+    BEGIN,
+    END,
+    WIDTH,
+    Assign,
+    Binary,
+    Block,
+    Compare,
+    Const,
+    Convert,
+    Direction,
+    Expect,
+    Expr,
+    Failure,
+    Fits,
+    Let,
+    Load,
+    Local,
+    Require,
+    Scalar,
+    Site,
+    Stmt,
+    Store,
+    Var,
+    add,
+    index,
+    type_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MAX_SIZE = 1 << 56
+"""No message that fits in memory is larger, so sums of sizes below this cannot wrap."""
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """The field that is being read or written: its path with a ``{}`` for each index, and the indices."""
+
+    path: str = ""
+    indices: tuple[Expr, ...] = ()
+
+    def member(self, name: str) -> Where:
+        """A field of it."""
+        return replace(self, path=f"{self.path}.{_escape(name)}") if name else self
+
+    def members(self, names: tuple[str, ...]) -> Where:
+        """A field of a field of it."""
+        where = self
+        for name in names:
+            where = where.member(name)
+        return where
+
+    def element(self, at: Expr) -> Where:
+        """An element of it. Only so many indices are reported; deeper ones show as ``[]``."""
+        if len(self.indices) == state.MAX_INDICES:
+            return replace(self, path=f"{self.path}[]")
+        return Where(f"{self.path}[{{}}]", (*self.indices, at))
+
+
+@dataclass(slots=True)
+class Writer:
+    """Collects statements. ``position`` is always a local plus a constant."""
+
+    direction: Direction
+    block: list[Stmt] = field(default_factory=list[Stmt])
+    position: Expr = BEGIN
+    sites: list[Site] = field(default_factory=lambda: [Site("grow", "", "a lane is too small")])
+    names: set[str] = field(default_factory=set[str])
+
+    def emit(self, *statements: Stmt) -> None:
+        self.block.extend(statements)
+
+    def fresh(self, stem: str) -> str:
+        """A name not used before in this kernel."""
+        name, number = stem, 1
+        while name in self.names:
+            number += 1
+            name = f"{stem}_{number}"
+        self.names.add(name)
+        return name
+
+    def let(self, stem: str, value: Expr) -> Local:
+        local = Local(type_of(value), self.fresh(stem))
+        self.emit(Let(local.name, value))
+        return local
+
+    def var(self, stem: str, value: Expr) -> Local:
+        local = Local(type_of(value), self.fresh(stem))
+        self.emit(Var(local.name, value))
+        return local
+
+    def assign(self, variable: Local, value: Expr) -> None:
+        self.emit(Assign(variable.name, value))
+
+    @contextmanager
+    def nested(self) -> Iterator[list[Stmt]]:
+        """A block of its own; the position within it starts where it is now and is put back afterwards."""
+        outer, position = self.block, self.position
+        self.block = inner = []
+        try:
+            yield inner
+        finally:
+            self.block, self.position = outer, position
+
+    # --- failing -----------------------------------------------------------------------------------------------------
+
+    def failure(self, kind: str, where: Where, detail: str, *, at: Expr | None = None, line: str = "") -> Failure:
+        site = Site(kind, where.path, detail, line)
+        if site not in self.sites:
+            self.sites.append(site)
+        return Failure(self.sites.index(site), self.position if at is None else at, where.indices)
+
+    def expect(self, condition: Expr, kind: str, where: Where, detail: str, *, at: Expr | None = None, line: str = "") -> None:
+        self.emit(Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
+
+    def require(self, size: Expr | int, where: Where, detail: str = "the message ends here", *, at: Expr | None = None) -> None:
+        """The next bytes, or those at a place, are there."""
+        size = index(size) if isinstance(size, int) else size
+        place = self.position if at is None else at
+        kind = "truncated" if self.direction == "decode" else "length"
+        if self.direction != "size":
+            self.emit(Require(place, size, self.failure(kind, where, detail, at=place)))
+
+    # --- moving on ---------------------------------------------------------------------------------------------------
+
+    def advance(self, size: Expr | int) -> None:
+        """Move on by bytes that were required before; a size that is not constant gets a local of its own."""
+        moved = add(self.position, size)
+        if isinstance(size, int) or isinstance(size, Const):
+            self.position = moved
+            return
+        self.position = self.let("at", moved)
+        if self.direction == "size":
+            self.bound_size()
+
+    def settle(self) -> None:
+        """Where positions are sums of sizes: check the sum so far, so that a loop may add to it."""
+        if self.direction == "size" and not isinstance(self.position, Const):
+            self.position = self.let("at", self.position)
+            self.bound_size()
+
+    def cursor(self, stem: str = "next") -> Local:
+        """A variable that starts at the current position."""
+        self.settle()
+        return self.var(stem, self.position)
+
+    def position_invariant(self, at: Local) -> tuple[Expr, ...]:
+        """What always holds of a position: between the begin and the end, or small enough to add to."""
+        if self.direction == "size":
+            return Compare("ge", at, index(0)), Compare("le", at, index(MAX_SIZE))
+        return Compare("ge", at, BEGIN), Compare("le", at, END)
+
+    def bound_size(self) -> None:
+        """Keep a sum of sizes far from wrapping."""
+        self.expect(Compare("le", self.position, index(MAX_SIZE)), "length", Where(), "the message would be larger than any memory")
+
+    def load(self, scalar: Scalar, where: Where, order: str = "<") -> Expr:
+        """The next scalar of the message."""
+        self.require(WIDTH[scalar], where)
+        value = Load(scalar, self.position, ">" if order == ">" else "<")
+        self.advance(WIDTH[scalar])
+        return value
+
+    def store(self, value: Expr, where: Where, order: str = "<") -> None:
+        """Write the next scalar of the message, or count its bytes."""
+        width = WIDTH[type_of(value)]
+        if self.direction == "encode":
+            self.require(width, where, "no room for the message")
+            self.emit(Store(self.position, value, ">" if order == ">" else "<"))
+        self.advance(width)
+
+    def checked(self, op: str, left: Expr, right: Expr, where: Where, *, line: str = "") -> Expr:
+        """An i64 operation that must not wrap."""
+        match op:
+            case "add" | "sub" | "mul":
+                self.expect(Fits(op, left, right), "range", where, "a number grows beyond 64 bits", line=line)
+                return Binary(op, left, right)
+            case _:
+                raise AssertionError(op)
+
+
+def integer(value: Expr) -> Expr:
+    """A number as an i64."""
+    match value:
+        case Const(_, number):
+            return index(int(number))
+        case _:
+            return value if type_of(value) == "i64" else Convert("i64", value)
+
+
+def remaining(position: Expr) -> Expr:
+    """Bytes between a position and the end of the message."""
+    return Binary("sub", END, position)
+
+
+def block(statements: list[Stmt]) -> Block:
+    """Statements as a block."""
+    return tuple(statements)
+
+
+def _escape(name: str) -> str:
+    """A field's name in a template of `str.format`."""
+    return name.replace("{", "{{").replace("}", "}}")

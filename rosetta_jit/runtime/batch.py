@@ -1,0 +1,139 @@
+"""Batches: many messages of one type in the lanes of one holder, read as columns or one by one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.kernel.state import VALID
+from rosetta_jit.runtime.columns import Ragged, column, presence_mask
+from rosetta_jit.runtime.lanes import Lanes, plan
+from rosetta_jit.runtime.holder.record import Numbers, Record, Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.holder.classes import Family, Holder
+    from rosetta_jit.runtime.holder.record import Entry
+
+
+class Batch:
+    """``n`` messages.
+
+    ``batch[i]`` is a view of one, with the manners of its holder; ``batch.angles`` is a column (``batch.column("angles")`` where the name is
+    taken). Both show the lanes as they are: they do not outlive the next decode into the batch.
+
+    Attributes
+    ----------
+    lanes : Lanes
+        Message i is row i of lane 0.
+    """
+
+    __slots__ = ("family_", "lanes")
+
+    def __init__(self, family: Family, lanes: Lanes) -> None:
+        self.family_ = family
+        self.lanes = lanes
+
+    @classmethod
+    def new(cls, holder_class: type[Holder], count: int) -> Batch:
+        """So many empty messages of a type."""
+        family = holder_class.family_
+        return cls(family, Lanes(plan(family.layout, count), family.array_type))
+
+    def reset(self, count: int) -> None:
+        """So many empty messages, in the memory that is there."""
+        self.lanes.reset(count)
+
+    def __len__(self) -> int:
+        return self.lanes.rows
+
+    def __getitem__(self, index: int) -> Any:
+        try:
+            row = range(len(self))[index]
+        except IndexError:
+            raise IndexError(f"message {index} of {len(self)}") from None
+        return self.family_.row(self.lanes, row)
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self.family_.row(self.lanes, row) for row in range(len(self)))
+
+    def __getattr__(self, name: str) -> Any:
+        if name in self.family_.tree.root.entries:
+            return self.column(name)
+        raise AttributeError(name)
+
+    def __repr__(self) -> str:
+        return f"<Batch of {len(self)} {self.family_.struct.name}>"
+
+    def column(self, name: str) -> Any:
+        """A field of all messages.
+
+        Parameters
+        ----------
+        name
+            As in the IDL; a field of a nested message with dots: ``image.width``.
+
+        Returns
+        -------
+        ndarray
+            Shape (n,), of a number; not copied. Zero where the field is absent (see `mask`).
+        Ragged
+            Of an array, string, bytes or map.
+        dict
+            Of a message: its columns by name.
+
+        Raises
+        ------
+        KeyError
+            If there is no such field.
+        TypeError
+            If messages contain each other without bound there.
+        InvalidHolder
+            If the last decode into the batch failed.
+        """
+        self._check()
+        return column(self.family_.tree.root, self.lanes, len(self), name.split("."))
+
+    def mask(self, name: str) -> NDArray[np.bool_]:
+        """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it."""
+        self._check()
+        record: Record = self.family_.tree.root
+        present = presence_mask(None, self.lanes, len(self))
+        for each in name.split("."):
+            entry: Entry = record.entries[each]
+            present &= presence_mask(entry.presence, self.lanes, len(self))
+            if isinstance(entry.node, Record):
+                record = entry.node
+        return present
+
+    def to_arrow(self) -> Any:
+        """A `pyarrow.Table` of the columns; absent values are null.
+
+        Raises
+        ------
+        ImportError
+            If pyarrow is not installed.
+        """
+        import pyarrow  # pyright: ignore[reportMissingImports]
+
+        arrow: Any = pyarrow
+        messages = [message.to_dict() for message in self] if any(map(self._is_composed, self.family_.tree.root.entries)) else []
+        return arrow.table({name: self._arrow(arrow, name, messages) for name in self.family_.tree.root.entries})
+
+    def _is_composed(self, name: str) -> bool:
+        return not isinstance(self.family_.tree.root.entries[name].node, Scalar | Numbers)
+
+    def _arrow(self, arrow: Any, name: str, messages: list[dict[str, Any]]) -> Any:
+        if self._is_composed(name):
+            return arrow.array([message.get(name) for message in messages])
+        values = self.column(name)
+        if isinstance(values, Ragged):
+            return arrow.LargeListArray.from_arrays(values.offsets, arrow.array(values.flat()))
+        return arrow.array(values, mask=~self.mask(name))
+
+    def _check(self) -> None:
+        if not self.lanes.words[VALID]:
+            raise self.lanes.invalid()

@@ -1,0 +1,205 @@
+"""Columns: one field of every row of a lane, as numpy sees it.
+
+A number is a strided array. An array of anything is `Ragged`: the column of its elements' lane, and where each row's elements lie in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, assert_never
+
+import numpy as np
+
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.runtime.lanes import dtype_of
+from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.values import decoded
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.holder.record import Node, Presence
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ragged:
+    """An array of arrays of different lengths, none of them copied.
+
+    Attributes
+    ----------
+    values : ndarray, Ragged or dict
+        All elements of the lane, those of other rows included.
+    starts, counts : ndarray of int64, shape (n,)
+        Where the elements of each row begin, and how many they are.
+    kind : str
+        ``"array"``, ``"text"`` (values are UTF-8 bytes) or ``"bytes"``.
+    source : memoryview or None
+        What borrowed rows, whose counts are negative (``~count``), refer to.
+    """
+
+    values: Any
+    starts: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    kind: str = "array"
+    source: memoryview | None = None
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def __getitem__(self, index: int) -> Any:
+        start, count = int(self.starts[index]), int(self.counts[index])
+        if count < 0 and self.source is not None:
+            data: Any = self.source[start : start + ~count]
+        else:
+            data = _part(self.values, start, count)
+        match self.kind:
+            case "text":
+                return decoded(memoryview(data), octets=True)
+            case "bytes":
+                return bytes(data)
+            case _:
+                return data
+
+    @property
+    def contiguous(self) -> bool:
+        """Whether the rows' elements follow each other without gaps, in order."""
+        return bool((self.starts[1:] == self.starts[:-1] + self.counts[:-1]).all() and (self.counts >= 0).all())
+
+    @property
+    def offsets(self) -> NDArray[np.int64]:
+        """Where each row's elements begin if they are put together, and the end of the last: shape (n + 1,), as Arrow has it."""
+        counts = np.where(self.counts < 0, ~self.counts, self.counts)
+        return np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
+
+    def flat(self) -> NDArray[Any]:
+        """The elements of all rows, one after the other; not copied if they already lie so.
+
+        Raises
+        ------
+        TypeError
+            If the elements are not numbers.
+        """
+        if not isinstance(self.values, np.ndarray):
+            raise TypeError("elements that are no numbers cannot be put into one array")
+        values: NDArray[Any] = self.values
+        if self.contiguous:
+            first = int(self.starts[0]) if len(self) else 0
+            return values[first : first + int(self.counts.sum())]
+        if self.source is not None:
+            return np.concatenate([np.frombuffer(self._bytes(index), np.uint8) for index in range(len(self))])
+        within = np.arange(int(self.counts.sum())) - np.repeat(self.offsets[:-1], self.counts)
+        return values[np.repeat(self.starts, self.counts) + within]
+
+    def _bytes(self, index: int) -> Any:
+        start, count = int(self.starts[index]), int(self.counts[index])
+        return self.source[start : start + ~count] if count < 0 and self.source is not None else self.values[start : start + count]
+
+    def to_numpy(self) -> NDArray[Any]:
+        """The elements as a matrix, one row a message; not copied if they already lie so.
+
+        Raises
+        ------
+        ValueError
+            If the rows differ in length.
+        """
+        if len(self) and (self.counts != self.counts[0]).any():
+            raise ValueError("rows of different lengths are no matrix; use `values`, `starts` and `counts`, or `to_list`")
+        width = self.offsets[1] if len(self) else 0
+        return self.flat().reshape(len(self), int(width))
+
+    def to_list(self) -> list[Any]:
+        """Python's own values, row by row."""
+        return [listed(self[index]) for index in range(len(self))]
+
+
+def _part(values: Any, start: int, count: int) -> Any:
+    match values:
+        case Ragged():
+            return Ragged(
+                values.values, values.starts[start : start + count], values.counts[start : start + count], values.kind, values.source
+            )
+        case dict():
+            return {name: _part(each, start, count) for name, each in values.items()}  # pyright: ignore[reportUnknownVariableType]
+        case _:
+            return values[start : start + count]
+
+
+def listed(value: Any) -> Any:
+    """Python's own values of a column, or of what is in one."""
+    match value:
+        case Ragged():
+            return value.to_list()
+        case np.ndarray():
+            return value.tolist()  # pyright: ignore[reportUnknownMemberType]
+        case dict():
+            return {name: listed(each) for name, each in value.items()}  # pyright: ignore[reportUnknownVariableType]
+        case _:
+            return value
+
+
+def cells(lanes: Lanes, cell: Cell, scalar: str, rows: int, *, behind: int = 0) -> NDArray[Any]:
+    """A cell of the first rows of a lane, strided; ``behind`` counts cells to the right."""
+    dtype = dtype_of(scalar)
+    buffer = lanes.buffers[cell.lane]
+    return np.ndarray((rows,), dtype, buffer.data, (cell.index + behind) * dtype.itemsize, (cell.step * dtype.itemsize,))
+
+
+def column(node: Node, lanes: Lanes, rows: int, path: list[str]) -> Any:
+    """The column of a node, or of a field inside it that a path names.
+
+    Raises
+    ------
+    KeyError
+        If there is no such field.
+    TypeError
+        If messages contain each other without bound there: those have no columns.
+    """
+    match node:
+        case Scalar(cell, type_):
+            return cells(lanes, cell, scalar_of(type_), rows)
+        case Text(span, lane, _) | Blob(span, lane):
+            kind = "text" if isinstance(node, Text) else "bytes"
+            starts, counts = _spans(lanes, span, rows)
+            borrowed = lanes.source[0]
+            source = None if borrowed is None else memoryview(borrowed).cast("B")
+            return Ragged(_elements(lanes, lane), starts, counts, kind, source)
+        case Numbers(span, lane, _, _):
+            return Ragged(_elements(lanes, lane), *_spans(lanes, span, rows))
+        case Items(span, lane, element, _):
+            return Ragged(column(element, lanes, lanes.used(lane), path), *_spans(lanes, span, rows))
+        case Pairs(span, lane, key, value):
+            used = lanes.used(lane)
+            pairs = {"key": column(key, lanes, used, []), "value": column(value.node, lanes, used, path)}
+            return Ragged(pairs, *_spans(lanes, span, rows))
+        case Record():
+            if lanes.plan.layout.lanes[node.lane].links is not None and node.lane:
+                raise TypeError(f"messages of {node.struct} contain each other: read them one by one")
+            if path:
+                return column(node.entries[path[0]].node, lanes, rows, path[1:])
+            return {name: column(entry.node, lanes, rows, []) for name, entry in node.entries.items()}
+        case Child():
+            raise TypeError(f"messages of {node.record.struct} contain each other: read them one by one")
+        case _:
+            assert_never(node)
+
+
+def presence_mask(presence: Presence | None, lanes: Lanes, rows: int) -> NDArray[np.bool_]:
+    """Which rows have a field."""
+    match presence:
+        case None:
+            return np.ones(rows, np.bool_)
+        case Bit(cell, mask):
+            return cells(lanes, cell, "u64", rows) & np.uint64(mask) != 0
+        case Case(cell, number, _, _):
+            return cells(lanes, cell, "i64", rows) == number
+        case _:
+            assert_never(presence)
+
+
+def _elements(lanes: Lanes, lane: int) -> NDArray[Any]:
+    return lanes.arrays[lane][: lanes.used(lane)].view(np.ndarray)
+
+
+def _spans(lanes: Lanes, span: Cell, rows: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    return cells(lanes, span, "i64", rows), cells(lanes, span, "i64", rows, behind=1)

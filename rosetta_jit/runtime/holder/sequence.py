@@ -1,0 +1,252 @@
+"""Arrays and maps of a message that numpy cannot show, as Python's own sequences and mappings; they hold no values, only where to look."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, MutableSequence
+from typing import TYPE_CHECKING, Any, cast
+
+from rosetta_jit.runtime.holder import arena, values
+from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.message import Message, bind, place, writable
+from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.holder.message import View
+    from rosetta_jit.runtime.holder.record import Entry, Node
+
+
+def view_of(message: Message, entry: Entry, record: Record, index: int) -> View:
+    """A view of one row of an array or map of records."""
+    family = message.access_.family
+    cls = family.view_class(record.struct)
+    return bind(cls.__new__(cls), message, family.access(record), entry, index)
+
+
+def store_row(node: Node, lanes: Lanes, row: int, value: Any) -> None:
+    """Make a value that of an element that is empty; of a leaf with the errors of an assignment."""
+    if isinstance(node, Scalar | Text | Blob | Numbers):
+        values.store(node, lanes, row, value)
+    else:
+        values.write(node, lanes, row, value)
+
+
+class Sequence(MutableSequence[Any]):
+    """An array of messages, strings, bytes or arrays.
+
+    Elements that are messages are views, and strings and bytes are Python's own. What is assigned or appended is copied.
+    """
+
+    __slots__ = ("entry", "message", "node")
+
+    def __init__(self, message: Message, entry: Entry) -> None:
+        place(message)
+        self.message = message
+        self.entry = entry
+        self.node = cast("Items", entry.node)
+
+    def _span(self) -> tuple[Lanes, int, int]:
+        lanes, row = place(self.message)
+        return lanes, *arena.span_of(lanes, self.node.span, row)
+
+    def __len__(self) -> int:
+        return self._span()[2]
+
+    def __getitem__(self, index: Any) -> Any:
+        lanes, start, count = self._span()
+        if isinstance(index, slice):
+            return [self._element(lanes, start, each) for each in range(count)[index]]
+        return self._element(lanes, start, _checked(index, count))
+
+    def __iter__(self) -> Iterator[Any]:
+        index = 0
+        while index < len(self):
+            yield self[index]
+            index += 1
+
+    def _element(self, lanes: Lanes, start: int, index: int) -> Any:
+        match self.node.element:
+            case Record():
+                return view_of(self.message, self.entry, self.node.element, index)
+            case element:
+                return values.read(element, lanes, start + index, values.Form.RAW)
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        if isinstance(index, slice):
+            self._replace(_listed(self, cast("slice", index), value))
+            return
+        at = _checked(index, len(self))
+        plain = raw(value)
+        self._append([plain])
+        count = len(self)
+        self._order([*range(at), count - 1, *range(at + 1, count - 1)])
+
+    def __delitem__(self, index: Any) -> None:
+        count = len(self)
+        gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
+        self._order([each for each in range(count) if each not in gone])
+
+    def insert(self, index: int, value: Any) -> None:
+        count = len(self)
+        at = range(count)[:index].stop if count else 0
+        self._append([raw(value)])
+        self._order([*range(at), count, *range(at, count)])
+
+    def append(self, value: Any) -> None:
+        self._append([raw(value)])
+
+    def extend(self, values: Iterable[Any]) -> None:
+        self._append([raw(each) for each in values])
+
+    def clear(self) -> None:
+        self._order([])
+
+    def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:
+        """Sort the elements in place."""
+        elements = list(self)
+        self._order(sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse))
+
+    def reverse(self) -> None:
+        self._order(list(range(len(self)))[::-1])
+
+    def _append(self, plain: list[Any]) -> None:
+        """Add elements at the end: all of them, or none where one is wrong."""
+        node = self.node
+        lanes, row = writable(self.message)
+        _, count = arena.span_of(lanes, node.span, row)
+        start = arena.resize(lanes, node.span, node.lane, row, count + len(plain))
+        try:
+            for index, each in enumerate(plain, count):
+                store_row(node.element, lanes, start + index, each)
+        except BaseException:
+            arena.resize(lanes, node.span, node.lane, row, count)
+            raise
+
+    def _replace(self, elements: list[Any]) -> None:
+        plain = [raw(each) for each in elements]
+        count = len(self)
+        self._append(plain)
+        self._order(list(range(count, count + len(plain))))
+
+    def _order(self, order: list[int]) -> None:
+        lanes, row = writable(self.message)
+        arena.rearrange(lanes, self.node.span, self.node.lane, row, order)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, str | bytes) or not isinstance(other, Iterable):
+            return NotImplemented
+        return list(self) == list(cast("Iterable[Any]", other))
+
+    __hash__ = None  # pyright: ignore[reportAssignmentType]  as of every mutable sequence
+
+    def __repr__(self) -> str:
+        return repr(list(self))
+
+
+def _checked(index: Any, count: int) -> int:
+    try:
+        return range(count)[index]
+    except IndexError:
+        raise IndexError("list index out of range") from None
+
+
+def _listed(sequence: Sequence, index: slice, value: Iterable[Any]) -> list[Any]:
+    elements = list(sequence)
+    elements[index] = value
+    return elements
+
+
+class Dictionary(MutableMapping[Any, Any]):
+    """A map. Values that are messages are views.
+
+    Finding a key reads the map once for each object of this class: keep one at hand while looking up many keys.
+    """
+
+    __slots__ = ("entry", "index", "message", "node", "seen")
+
+    def __init__(self, message: Message, entry: Entry) -> None:
+        self.message = message
+        self.entry = entry
+        self.node = cast("Pairs", entry.node)
+        self.index: dict[Any, int] = {}
+        self.seen: tuple[int, ...] = ()
+        place(message)
+
+    def _keys(self) -> dict[Any, int]:
+        """Which pair is the last of each key."""
+        lanes, row = place(self.message)
+        start, count = arena.span_of(lanes, self.node.span, row)
+        if self.seen != (start, count, lanes.moves):
+            rows = range(start, start + count)
+            self.index = {values.read(self.node.key, lanes, each, values.Form.RAW): index for index, each in enumerate(rows)}
+            self.seen = (start, count, lanes.moves)
+        return self.index
+
+    def __len__(self) -> int:
+        return len(self._keys())
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(list(self._keys()))
+
+    def __contains__(self, key: object) -> bool:
+        return self.checked(key) in self._keys()
+
+    def __getitem__(self, key: Any) -> Any:
+        index = self._keys()[self.checked(key)]
+        value = self.node.value
+        match value.node:
+            case Record():
+                return view_of(self.message, self.entry, value.node, index)
+            case node:
+                lanes, row = place(self.message)
+                start, _ = arena.span_of(lanes, self.node.span, row)
+                return values.read(node, lanes, start + index, values.Form.RAW)
+
+    def checked(self, key: object) -> Any:
+        """The key as the map holds it.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the map can have no such key.
+        """
+        prepared = values.prepare(self.node.key, key)
+        return prepared.decode("utf-8", "surrogateescape") if isinstance(prepared, bytes) else prepared
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        plain = raw(value)
+        node, index = self.node, self._keys().get(self.checked(key))
+        lanes, row = writable(self.message)
+        if index is not None:
+            start, _ = arena.span_of(lanes, node.span, row)
+            if not isinstance(node.value.node, Scalar | Text | Blob | Numbers):
+                arena.clear(lanes, node.value, start + index)
+            store_row(node.value.node, lanes, start + index, plain)
+            return
+        _, count = arena.span_of(lanes, node.span, row)
+        start = arena.resize(lanes, node.span, node.lane, row, count + 1)
+        try:
+            values.store(node.key, lanes, start + count, key)
+            store_row(node.value.node, lanes, start + count, plain)
+        except BaseException:
+            arena.resize(lanes, node.span, node.lane, row, count)
+            raise
+
+    def __delitem__(self, key: Any) -> None:
+        wanted = self.checked(key)
+        if wanted not in self._keys():
+            raise KeyError(key)
+        lanes, row = writable(self.message)
+        start, count = arena.span_of(lanes, self.node.span, row)
+        keys = [values.read(self.node.key, lanes, start + each, values.Form.RAW) for each in range(count)]
+        arena.rearrange(lanes, self.node.span, self.node.lane, row, [each for each in range(count) if keys[each] != wanted])
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        return dict(self) == dict(cast("Mapping[Any, Any]", other))
+
+    __hash__ = None  # pyright: ignore[reportAssignmentType]  as of every mutable mapping
+
+    def __repr__(self) -> str:
+        return repr(dict(self))

@@ -1,0 +1,218 @@
+"""Plain Python values of a node of a holder, and back: the one reader and the one writer that copy, compare, print and pickle share.
+
+A record is a dict of what is present; its names are those of the IDL. For a person enums are names and arrays are lists (`Form.PLAIN`);
+between holders they stay numbers and numpy arrays (`Form.RAW`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from enum import Enum as Enumeration
+from typing import TYPE_CHECKING, Any, assert_never, cast
+
+from rosetta_jit.errors import EncodeError, ValuesError
+from rosetta_jit.model.types import Enum
+from rosetta_jit.runtime.holder import arena, coerce
+from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
+
+Leaf = Scalar | Text | Blob | Numbers
+
+MAX_DEPTH = 100
+"""How deep messages may contain each other, as in protobuf."""
+
+
+class Form(Enumeration):
+    """For whom values are read."""
+
+    PLAIN = "plain"
+    RAW = "raw"
+
+
+def read(node: Node, lanes: Lanes, row: int, form: Form, depth: int = 0) -> Any:
+    """The value of a node.
+
+    Raises
+    ------
+    EncodeError
+        If messages contain each other more than `MAX_DEPTH` deep.
+    """
+    match node:
+        case Scalar(cell, type_):
+            value = lanes.cells[cell.key][row * cell.step + cell.index]
+            return _named(type_, value) if form is Form.PLAIN else value
+        case Text(span, lane, type_):
+            return decoded(arena.content(lanes, span, lane, row), octets=type_.encoding == "octets")
+        case Blob(span, lane):
+            return bytes(arena.content(lanes, span, lane, row))
+        case Numbers(span, lane, type_, _):
+            start, count = arena.span_of(lanes, span, row)
+            array = lanes.arrays[lane][start : start + count]
+            if form is Form.RAW:
+                return array.copy()
+            return [_named(type_, value) for value in array.tolist()] if isinstance(type_, Enum) else array.tolist()
+        case Items(span, lane, element, _):
+            start, count = arena.span_of(lanes, span, row)
+            return [read(element, lanes, each, form, depth + 1) for each in range(start, start + count)]
+        case Pairs(span, lane, key, value):
+            start, count = arena.span_of(lanes, span, row)
+            rows = range(start, start + count)
+            return {read(key, lanes, each, form): read(value.node, lanes, each, form, depth + 1) for each in rows}
+        case Record():
+            return read_record(node, lanes, row, form, depth)
+        case Child(span, lane, record):
+            start, count = arena.span_of(lanes, span, row)
+            return read_record(record, lanes, start, form, depth) if count else {}
+        case _:
+            assert_never(node)
+
+
+def read_record(record: Record, lanes: Lanes, row: int, form: Form, depth: int = 0) -> dict[str, Any]:
+    """The fields of a record that are present."""
+    if depth > MAX_DEPTH:
+        raise EncodeError("nesting", "", f"messages contain each other more than {MAX_DEPTH} deep")
+    return {
+        entry.name: read(entry.node, lanes, row, form, depth + 1)
+        for entry in record.entries.values()
+        if arena.present(lanes, entry.presence, row)
+    }
+
+
+def decoded(data: memoryview, *, octets: bool) -> str:
+    """The text of a string's bytes. Octets that are no UTF-8 become lone surrogates, from which they can be written again."""
+    return str(data, "utf-8", "surrogateescape" if octets else "strict")
+
+
+def _named(type_: ScalarType, value: Any) -> Any:
+    """The name of an enum's number, where it has one."""
+    if not isinstance(type_, Enum):
+        return value
+    return next((name for name, number in type_.values if number == value), value)
+
+
+def write(node: Node, lanes: Lanes, row: int, value: Any, path: str = "", *, depth: int = 0) -> None:
+    """Make a value that of a node, which is empty. Records merge.
+
+    Raises
+    ------
+    ValuesError
+        If the node's type cannot take the value.
+    """
+    match node:
+        case Scalar() | Text() | Blob() | Numbers():
+            try:
+                store(node, lanes, row, value)
+            except (TypeError, ValueError, OverflowError) as problem:
+                raise ValuesError(path, str(problem)) from None
+        case Items(span, lane, element, length):
+            values = _sequence(value, path)
+            _check_length(len(values), length, path)
+            start = arena.resize(lanes, span, lane, row, len(values))
+            for index, each in enumerate(values):
+                write(element, lanes, start + index, each, f"{path}[{index}]", depth=depth + 1)
+        case Pairs(span, lane, key, entry):
+            values = _mapping(value, path)
+            start = arena.resize(lanes, span, lane, row, len(values))
+            for index, (each, of_key) in enumerate(values.items()):
+                write(key, lanes, start + index, each, f"{path}[{each!r:.40}]")
+                write(entry.node, lanes, start + index, of_key, f"{path}[{each!r:.40}]", depth=depth + 1)
+        case Record():
+            write_record(node, lanes, row, value, path, depth=depth)
+        case Child(span, lane, record):
+            start, count = arena.span_of(lanes, span, row)
+            write_record(record, lanes, start if count else arena.resize(lanes, span, lane, row, 1), value, path, depth=depth)
+        case _:
+            assert_never(node)
+
+
+def write_record(record: Record, lanes: Lanes, row: int, values: Any, path: str = "", *, depth: int = 0) -> None:
+    """Set the fields that a mapping names; the others stay as they are."""
+    if depth > MAX_DEPTH:
+        raise ValuesError(path, f"messages contain each other more than {MAX_DEPTH} deep")
+    for name, value in _mapping(values, path).items():
+        entry = record.entries.get(name)
+        if entry is None:
+            raise ValuesError(f"{path}.{name}", f"{record.struct or 'the record'} has no such field")
+        write_entry(entry, lanes, row, value, path, depth=depth)
+
+
+def write_entry(entry: Entry, lanes: Lanes, row: int, value: Any, path: str = "", *, depth: int = 0) -> None:
+    """Set one field."""
+    arena.mark(lanes, entry.presence, row)
+    write(entry.node, lanes, row, value, f"{path}.{entry.name}", depth=depth + 1)
+
+
+def store(node: Leaf, lanes: Lanes, row: int, value: Any) -> None:
+    """Make a value that of a leaf.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `rosetta_jit.runtime.holder.coerce` does. The leaf is as it was.
+    """
+    put(node, lanes, row, prepare(node, value))
+
+
+def prepare(node: Leaf, value: Any) -> Any:
+    """The value as `put` takes it: checked, and nothing changed."""
+    match node:
+        case Scalar(_, type_):
+            return coerce.scalar(type_, value)
+        case Text(_, _, type_):
+            return coerce.text(type_, value)
+        case Blob():
+            return coerce.blob(value)
+        case Numbers(_, _, type_, length):
+            array = coerce.numbers(type_, value)
+            if length is not None and array.size not in {0, length}:
+                raise ValueError(f"{array.size} elements where the type has {length}")
+            return array
+        case _:
+            assert_never(node)
+
+
+def put(node: Leaf, lanes: Lanes, row: int, prepared: Any) -> None:
+    """Write what `prepare` made."""
+    match node:
+        case Scalar(cell, _):
+            lanes.cells[cell.key][row * cell.step + cell.index] = prepared
+        case Text(span, lane, _) | Blob(span, lane):
+            arena.replace(lanes, span, lane, row, prepared)
+        case Numbers(span, lane, _, _):
+            start = arena.resize(lanes, span, lane, row, prepared.size)
+            lanes.arrays[lane][start : start + prepared.size] = prepared
+        case _:
+            assert_never(node)
+
+
+def settle(record: Record, lanes: Lanes) -> None:
+    """Make the lanes fit to be encoded: nothing borrowed, children behind their parents, no rows that nothing refers to."""
+    fresh = Lanes(lanes.plan, lanes.arrays.array_type)
+    fresh.reset(lanes.rows)
+    for row in range(lanes.rows):
+        write_record(record, fresh, row, read_record(record, lanes, row, Form.RAW))
+    lanes.adopt(fresh)
+
+
+def _check_length(count: int, length: int | None, path: str) -> None:
+    if length is not None and count not in {0, length}:
+        raise ValuesError(path, f"{count} elements where the type has {length}")
+
+
+def _sequence(value: Any, path: str) -> list[Any]:
+    if not isinstance(value, Iterable) or isinstance(value, str | bytes | Mapping):
+        raise ValuesError(path, f"expected a sequence, {_kind(value)} found")
+    return list(cast("Iterable[Any]", value))
+
+
+def _kind(value: Any) -> str:
+    return type(value).__name__
+
+
+def _mapping(value: Any, path: str) -> Mapping[Any, Any]:
+    if not isinstance(value, Mapping):
+        raise ValuesError(path, f"expected a dict, {type(value).__name__} found")
+    return cast("Mapping[Any, Any]", value)

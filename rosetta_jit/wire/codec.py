@@ -1,0 +1,190 @@
+r"""A codec: an invertible description of bytes, without a direction.
+
+    Codec  = Number | Table | Varint | Constant | Computed | Padding | Blob | Seq | Repeat | Choice | Tagged | Recursion
+    Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes
+
+A leaf names the field that it carries by a path relative to the element around it: the message, an element of a `Repeat`, or a message of
+a `Tagged` field. The path () is that element itself. What decoding and encoding do with a leaf is none of its business.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.model.expr import Expr
+
+Path = tuple[str, ...]
+Order = Literal["<", ">"]
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A fixed-width scalar, stored as it is."""
+
+    path: Path
+    scalar: str
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A fixed-width number on the wire that stands for a value of the field: pairs of wire number and value. Others are refused."""
+
+    path: Path
+    scalar: str
+    pairs: tuple[tuple[int, int], ...]
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Varint:
+    """A base-128 integer of at most ten bytes; a signed one is sign-extended to 64 bits, or zig-zag coded."""
+
+    path: Path
+    zigzag: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """Bytes that are always the same: a number of the scalar type, or text."""
+
+    path: Path
+    value: int | float | bytes
+    scalar: str = "u8"
+    order: Order = "<"
+    kind: Literal["constant", "tag", "count"] = "constant"
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """A number that other fields of the message determine."""
+
+    path: Path
+    scalar: str
+    value: Expr
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Padding:
+    """A number that means nothing: any is read, this one is written."""
+
+    scalar: str
+    value: int
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """A number of elements or bytes before them: of a scalar type or a varint. ``value`` fixes or computes it."""
+
+    scalar: str | Literal["varint"]
+    order: Order = "<"
+    value: int | Expr | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Blob:
+    """Counted bytes of a string or bytes field. ``text`` must be UTF-8; ``terminated`` counts a NUL that is not part of the value."""
+
+    path: Path
+    count: Count
+    text: bool = False
+    terminated: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Seq:
+    items: tuple[Codec, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """Counted elements of an array. Other fields may stand between the count and the elements (``head``), and be counted with them."""
+
+    path: Path
+    count: Count
+    item: Codec
+    head: tuple[Codec, ...] = ()
+    extra: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A number that says which of several codecs of the same fields follows. Any is read.
+
+    The first is written, or the one numbered ``when_empty`` where the array at ``path`` has no elements.
+    """
+
+    path: Path
+    scalar: str
+    alternatives: tuple[tuple[int, Codec], ...]
+    when_empty: int = 0
+    order: Order = "<"
+
+
+WireType = Literal[0, 1, 2, 3, 5]
+"""Protocol Buffers' wire types: varint, 64 bits, length-delimited, group, 32 bits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A field of a tagged message: its number and the codec of one value without the tag.
+
+    ``label`` says what a second value does: it replaces the first (``single``), or follows it (``repeated``, ``packed``: both forms
+    are read, the one named is written). ``implicit`` fields are not written when they hold zero. A value not ``allowed`` (where any are
+    named) counts as an unknown field.
+    """
+
+    number: int
+    wire: WireType
+    path: Path
+    value: Codec
+    label: Literal["single", "repeated", "packed"] = "single"
+    implicit: bool = False
+    allowed: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Tagged:
+    """A message of tagged fields in any order (protobuf), unknown ones skipped; ``required`` ones must come.
+
+    Delimited by a length before it (``delimited``), by the end tag of its group (``group`` is the field number), or by the end of
+    the bytes.
+    """
+
+    path: Path
+    entries: tuple[Entry, ...]
+    required: tuple[str, ...] = ()
+    delimited: bool = False
+    group: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Recursion:
+    """A tagged message of a recursive struct, by name."""
+
+    path: Path
+    struct: str
+    group: int | None = None
+
+
+Codec = Number | Table | Varint | Constant | Computed | Padding | Blob | Seq | Repeat | Choice | Tagged | Recursion
+
+
+@dataclass(frozen=True, slots=True)
+class Encoding:
+    """All that a wire is for one type.
+
+    ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
+    ``recursive`` are the messages of recursive structs.
+    """
+
+    name: str
+    attempts: tuple[Codec, ...]
+    written: Codec | None
+    recursive: Mapping[str, Tagged] = field(default_factory=dict["str", "Tagged"])

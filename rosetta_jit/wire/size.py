@@ -1,0 +1,64 @@
+"""How many bytes a codec takes: always the same, or at least so many."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from rosetta_jit.wire.codec import (
+    Blob,
+    Choice,
+    Codec,
+    Computed,
+    Constant,
+    Count,
+    Number,
+    Padding,
+    Recursion,
+    Repeat,
+    Seq,
+    Table,
+    Tagged,
+    Varint,
+)
+
+WIDTH = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i64": 8, "u64": 8, "f32": 4, "f64": 8, "varint": 1}
+"""Bytes of a scalar, at least."""
+
+
+def fixed_size(codec: Codec) -> int | None:
+    """The size in bytes where it does not depend on values, else None."""
+    match codec:
+        case Number(_, scalar, _) | Table(_, scalar, _, _) | Computed(_, scalar, _, _) | Padding(scalar, _, _):
+            return WIDTH[scalar]
+        case Constant(_, value, scalar, _, _):
+            return len(value) if isinstance(value, bytes) else WIDTH[scalar]
+        case Seq(items):
+            sizes = [fixed_size(item) for item in items]
+            return None if None in sizes else sum(size for size in sizes if size is not None)
+        case Repeat(_, Count(scalar, _, int(count)), item, head, extra) if scalar != "varint":
+            size, before = fixed_size(item), fixed_size(Seq(head))
+            return None if size is None or before is None else WIDTH[scalar] + before + (count - extra) * size
+        case Varint() | Blob() | Repeat() | Choice() | Tagged() | Recursion():
+            return None
+        case _:
+            assert_never(codec)
+
+
+def minimum_size(codec: Codec) -> int:
+    """The least bytes that any value takes: what a count on the wire promises at least."""
+    match codec:
+        case Seq(items):
+            return sum(minimum_size(item) for item in items)
+        case Repeat(_, Count(scalar, _, count), item, head, extra):
+            elements = count - extra if isinstance(count, int) else 0
+            return WIDTH[scalar] + minimum_size(Seq(head)) + elements * minimum_size(item)
+        case Choice(_, scalar, alternatives, _, _):
+            return WIDTH[scalar] + min(minimum_size(each) for _, each in alternatives)
+        case Blob(_, count, _, terminated):
+            return WIDTH[count.scalar] + terminated
+        case Varint() | Recursion():
+            return 1
+        case Tagged(_, _, _, delimited, group):
+            return int(delimited or group is not None)
+        case _:
+            return fixed_size(codec) or 0
