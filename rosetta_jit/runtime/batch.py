@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.columns import Ragged, column, presence_mask
-from rosetta_jit.runtime.lanes import Lanes, plan
 from rosetta_jit.runtime.holder.record import Numbers, Record, Scalar
+from rosetta_jit.runtime.lanes import Lanes, plan
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.holder.classes import Family, Holder
+    from rosetta_jit.runtime.holder import Family, Holder
     from rosetta_jit.runtime.holder.record import Entry
 
 
 class Batch:
     """``n`` messages.
 
-    ``batch[i]`` is a view of one, with the manners of its holder; ``batch.angles`` is a column (``batch.column("angles")`` where the name is
-    taken). Both show the lanes as they are: they do not outlive the next decode into the batch.
+    ``batch[i]`` is a view of one, with the manners of its holder; ``batch.angles`` is a column (``batch.column("angles")`` where the
+    name is taken). Both show the lanes as they are: they do not outlive the next decode into the batch.
 
     Attributes
     ----------
@@ -117,9 +117,9 @@ class Batch:
         ImportError
             If pyarrow is not installed.
         """
-        import pyarrow  # pyright: ignore[reportMissingImports]
+        import pyarrow as pa  # pyright: ignore[reportMissingImports]
 
-        arrow: Any = pyarrow
+        arrow: Any = pa
         messages = [message.to_dict() for message in self] if any(map(self._is_composed, self.family_.tree.root.entries)) else []
         return arrow.table({name: self._arrow(arrow, name, messages) for name in self.family_.tree.root.entries})
 

@@ -6,20 +6,20 @@ A number is a strided array. An array of anything is `Ragged`: the column of its
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.runtime.lanes import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.holder.values import decoded
+from rosetta_jit.runtime.lanes import dtype_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.holder.record import Node, Presence
+    from rosetta_jit.runtime.lanes import Lanes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +82,7 @@ class Ragged:
         """
         if not isinstance(self.values, np.ndarray):
             raise TypeError("elements that are no numbers cannot be put into one array")
-        values: NDArray[Any] = self.values
+        values = cast("NDArray[Any]", self.values)
         if self.contiguous:
             first = int(self.starts[0]) if len(self) else 0
             return values[first : first + int(self.counts.sum())]

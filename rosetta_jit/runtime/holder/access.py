@@ -18,8 +18,8 @@ from rosetta_jit.runtime.holder.message import Message, View, bind, place, writa
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.holder.record import Entry
+    from rosetta_jit.runtime.lanes import Lanes
 
 Getter = Callable[[Any], Any]
 Setter = Callable[[Any, Any], None]

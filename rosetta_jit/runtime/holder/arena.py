@@ -13,8 +13,8 @@ import numpy as np
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text, extent
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.holder.record import Cell, Entry, Node, Presence
+    from rosetta_jit.runtime.lanes import Lanes
 
 
 def span_of(lanes: Lanes, span: Cell, row: int) -> tuple[int, int]:

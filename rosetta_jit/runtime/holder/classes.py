@@ -1,39 +1,34 @@
-"""Holders: a class for each type, whose objects own lanes and show them as attributes.
-
-`holder_class` makes the class; decoders and encoders of one type share it. What its objects can do beyond that, and how arrays behave, is a
-`Manners`: that of the framework whose type it is, or `PLAIN`.
-"""
+"""What every holder can do, whatever its type and its framework's manners: plain values, copies, views without a copy, comparison."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
-from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.model.layout import layout
-from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.runtime.callable import bind_state, holder_base
 from rosetta_jit.runtime.holder import arena, values
-from rosetta_jit.runtime.holder.access import Access, raw
-from rosetta_jit.runtime.lanes import CLEAN, Lanes, plan
-from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, place, stale_getter, view_setter
-from rosetta_jit.runtime.holder.record import Blob, Numbers, Text, Tree
-from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
+from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.message import OWN_SLOTS, Message, View, place
+from rosetta_jit.runtime.holder.record import Blob, Numbers, Text
+from rosetta_jit.runtime.lanes import CLEAN, Lanes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.types import Schema, Type
-    from rosetta_jit.runtime.holder.record import Entry, Record
+    from rosetta_jit.runtime.holder.family import Family
 
 
-class Holder(Message):
+if TYPE_CHECKING:
+    Base = object
+else:
+    Base = holder_base()
+
+
+class Holder(Message, Base):
     """A message with lanes of its own. Subclasses are made by `holder_class`."""
 
     __slots__ = OWN_SLOTS
@@ -44,6 +39,7 @@ class Holder(Message):
         family = self.family_
         self.lanes_ = self.home_ = Lanes(family.plan, family.array_type)
         self.row_ = 0
+        bind_state(self, self.lanes_.state)
 
     def new(self) -> Self:
         """An empty holder of the same type."""
@@ -134,28 +130,28 @@ class Holder(Message):
         return copied
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _revived, (self.family_.text, self.family_.manners, raw(self))
+        from rosetta_jit.runtime.holder.family import revived
+
+        return revived, (self.family_.text, self.family_.manners, raw(self))
 
 
 def clear(holder: Holder, name: str | None) -> None:
     """Make a field absent or empty, or all of them; a holder whose decode failed becomes valid so."""
-    if name is not None:
-        lanes, row = place(holder)
-        arena.clear(lanes, holder.access_.record.entries[name], row)
-    elif isinstance(holder, View):
-        arena.clear_record(*_swap(place(holder), holder.access_.record))
-    else:
+    if name is None and not isinstance(holder, View):
         holder.lanes_.reset()
-
-
-def _swap(where: tuple[Lanes, int], record: Record) -> tuple[Lanes, Record, int]:
-    return where[0], record, where[1]
+        return
+    record = holder.access_.record
+    entries = record.entries.values() if name is None else [record.entries[name]]
+    lanes, row = place(holder)
+    if lanes is holder.home_:
+        for entry in entries:
+            arena.clear(lanes, entry, row)
 
 
 def settle(holder: Holder) -> None:
-    """`Holder.materialise`, where a field has taken that name."""
+    """`Holder.materialise`, where a field has taken that name. A view is encoded through a copy, and needs none."""
     lanes, _ = place(holder)
-    if lanes.words[VALID] != CLEAN:
+    if lanes.words[VALID] != CLEAN and not isinstance(holder, View):
         values.settle(holder.family_.tree.root, lanes)
 
 
@@ -170,136 +166,3 @@ def equal(left: Any, right: Any) -> bool:
         some, others = cast("list[Any]", left), cast("list[Any]", right)
         return len(some) == len(others) and all(map(equal, some, others))
     return bool(left == right)
-
-
-@dataclass(frozen=True, slots=True)
-class Manners:
-    """How holders of a framework behave.
-
-    Attributes
-    ----------
-    base : type
-        What holder classes inherit from: a subclass of `Holder` without slots of its own.
-    array_type : type
-        What arrays of numbers are shown as: numpy's class, or a subclass with a slot ``owner_`` for message and field.
-    sequence, mapping : callable
-        What shows arrays of anything else, and maps.
-    assigns_whole : bool
-        Whether arrays, maps and messages can be assigned to.
-    members : callable
-        What else the class of a struct has, by name, given its family: constants, nested classes.
-    """
-
-    base: type[Holder]
-    array_type: type[np.ndarray[Any, Any]]
-    sequence: Callable[[Message, Entry], Any]
-    mapping: Callable[[Message, Entry], Any]
-    assigns_whole: bool
-    members: Callable[[Family], dict[str, Any]]
-
-
-def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class has nothing but its fields
-    """Nothing."""
-    return {}
-
-
-PLAIN = Manners(Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members)
-
-
-class Family:
-    """What the objects and views of one holder class share."""
-
-    def __init__(self, text: str, manners: Manners) -> None:
-        self.text = text
-        self.manners = manners
-        self.type, self.schema = from_plain(json.loads(text))
-        self.layout = layout(self.type, self.schema)
-        self.tree = Tree(self.type, self.schema, self.layout)
-        self.plan = plan(self.layout)
-        self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
-        self.assigns_whole = manners.assigns_whole
-        self._accesses: dict[int, Access] = {}
-        self._views: dict[str, type[View]] = {}
-        self.struct = cast("Struct", self.schema.resolve(self.type))
-
-    @cached_property
-    def holder(self) -> type[Holder]:
-        """The holder class."""
-        access = self.access(self.tree.root)
-        properties = {name: property(access.getters[name], access.setters[name]) for name in _shown(self.tree.root, self.manners.base)}
-        members = {"family_": self, "access_": access, "__slots__": (), "__doc__": f"A holder of `{self.struct.name}`."}
-        return _class(self.struct.name, (self.manners.base,), {**self.manners.members(self), **properties, **members})
-
-    def of_struct(self, struct: str) -> type[Holder]:
-        """The holder class of another struct of the schema, with the same manners."""
-        return self.holder if struct == self.struct.name else holder_class(Ref(struct), self.schema, self.manners)
-
-    def view_class(self, struct: str) -> type[View]:
-        """The class of views of a struct: a subclass of its holder class."""
-        view = self._views.get(struct)
-        if view is None:
-            base = self.of_struct(struct)
-            record = base.family_.tree.root
-            properties = {name: property(stale_getter(name), view_setter(name)) for name in _shown(record, self.manners.base)}
-            view = _class(struct, (View, base), {**properties, "__slots__": VIEW_SLOTS, "__doc__": base.__doc__})
-            self._views[struct] = view
-        return view
-
-    def access(self, record: Record) -> Access:
-        """How the fields of a record are read and written."""
-        access = self._accesses.get(id(record))
-        if access is None:
-            access = self._accesses[id(record)] = Access(record, self)
-        return access
-
-    @cached_property
-    def _empty(self) -> Lanes:
-        return Lanes(self.plan, self.array_type)
-
-    def empty_lanes(self) -> Lanes:
-        """Lanes in which everything is absent; they are never written."""
-        return self._empty
-
-    def row(self, lanes: Lanes, row: int) -> View:
-        """A view of one message of a batch."""
-        cls = self.view_class(self.struct.name)
-        return bind_row(cls.__new__(cls), lanes, self.access(self.tree.root), row)
-
-
-def _shown(record: Record, base: type) -> list[str]:
-    """Fields that become properties: all but those whose names Python or the holder need for themselves."""
-    own = {*OWN_SLOTS, *VIEW_SLOTS, "family_"}
-    return [name for name in record.entries if name not in own and not (name.startswith("__") and hasattr(base, name))]
-
-
-def _class(qualified: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:
-    module, _, name = qualified.rpartition(".")
-    return type(name or "Message", bases, {"__module__": module, **namespace})
-
-
-def holder_class(type_: Type, schema: Schema, manners: Manners = PLAIN) -> type[Holder]:
-    """The holder class of a struct. Equal types give the same class.
-
-    Raises
-    ------
-    ValueError
-        If the type is not a struct, or its rows would be too large.
-    """
-    return holder_class_of(to_plain(type_, schema), manners)
-
-
-def holder_class_of(plain: Mapping[str, Any], manners: Manners = PLAIN) -> type[Holder]:
-    """The holder class of a type as `rosetta_jit.model.serial` writes it."""
-    return _family(json.dumps(plain, sort_keys=True), manners).holder
-
-
-@cache
-def _family(text: str, manners: Manners) -> Family:
-    return Family(text, manners)
-
-
-def _revived(text: str, manners: Manners, plain: dict[str, Any]) -> Holder:
-    """Unpickle."""
-    holder = _family(text, manners).holder()
-    values.write_record(holder.access_.record, holder.lanes_, 0, plain)
-    return holder

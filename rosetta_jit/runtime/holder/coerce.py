@@ -91,10 +91,11 @@ def text(type_: String, value: object) -> bytes:
 
 def blob(value: object) -> memoryview:
     """Bytes of any contiguous buffer; a numpy image is one."""
-    if isinstance(value, bytes | bytearray | memoryview | np.ndarray):
-        data: Any = value
-        flat: Any = np.ascontiguousarray(data).reshape(-1) if isinstance(value, np.ndarray) else data
+    if isinstance(value, np.ndarray):
+        flat: Any = np.ascontiguousarray(cast("Any", value)).reshape(-1)
         return memoryview(flat).cast("B")
+    if isinstance(value, bytes | bytearray | memoryview):
+        return memoryview(cast("bytes", value)).cast("B")
     raise TypeError(f"expected bytes, {type(value).__name__} found")
 
 

@@ -19,8 +19,8 @@ from rosetta_jit.runtime.holder.values import MAX_DEPTH
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.access import Access
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.holder.record import Entry
+    from rosetta_jit.runtime.lanes import Lanes
 
 OWN_SLOTS = ("lanes_", "row_", "home_", "__weakref__")
 VIEW_SLOTS = ("access_", "parent_", "entry_", "index_", "seen_")
@@ -144,7 +144,7 @@ def _make_present(view: View) -> None:
         _find(view, parent)
         if view.lanes_ is not home and view.entry_ is not None:
             node = view.entry_.node
-            assert isinstance(node, Child)  # noqa: S101  elements are there or gone, never absent
+            assert isinstance(node, Child)
             arena.mark(home, view.entry_.presence, parent.row_)
             arena.resize(home, node.span, node.lane, parent.row_, 1)
             home.moves += 1
@@ -160,7 +160,7 @@ def _find(view: View, parent: Message) -> None:
     if view.entry_ is None:
         return
     node = view.entry_.node
-    assert isinstance(node, Child | Items | Pairs)  # noqa: S101  nothing else has rows
+    assert isinstance(node, Child | Items | Pairs)
     start, count = arena.span_of(parent.lanes_, node.span, parent.row_)
     if view.index_ < count:
         view.row_ = start + view.index_

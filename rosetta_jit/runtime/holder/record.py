@@ -224,11 +224,11 @@ class Tree:
 
     def _pairs(self, key: Type, value: Type, span: Cell, target: int) -> Pairs:
         entry = self._element(slots.map_entry(key, value), target)
-        assert isinstance(entry, Record)  # noqa: S101  a map's rows are structs
+        assert isinstance(entry, Record)
         return Pairs(span, target, cast("Scalar | Text", entry.entries["key"].node), entry.entries["value"])
 
     def _record(self, struct: Struct, slot: Slot, lane: int, touch: tuple[Presence, ...], *, recursive: bool) -> Record:
-        assert isinstance(slot, slots.Row)  # noqa: S101  the layout of a struct
+        assert isinstance(slot, slots.Row)
         record = Record(struct.name, lane, slot.offset, _end(slot), touch)
         if recursive:
             self.recursive[lane] = record

@@ -11,9 +11,9 @@ from rosetta_jit.runtime.holder.message import Message, bind, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.holder.message import View
     from rosetta_jit.runtime.holder.record import Entry, Node
+    from rosetta_jit.runtime.lanes import Lanes
 
 
 def view_of(message: Message, entry: Entry, record: Record, index: int) -> View:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce
-from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.lanes import Lanes
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType

@@ -1,0 +1,17 @@
+"""Holders: where decoded data lives.
+
+record      type and layout joined: what lies where in the lanes
+arena       writing into lanes: spans, presence, emptiness
+coerce      what may be assigned to a field
+values      plain Python values of a field, and back
+message     what holders and views into them are
+access      getters and setters
+sequence    arrays and maps that numpy cannot show
+classes     what every holder can do
+family      the class of a type, made once
+"""
+
+from rosetta_jit.runtime.holder.classes import Holder
+from rosetta_jit.runtime.holder.family import PLAIN, Family, Manners, holder_class, holder_class_of
+
+__all__ = ["PLAIN", "Family", "Holder", "Manners", "holder_class", "holder_class_of"]

@@ -1,0 +1,161 @@
+"""Families: the class of a type, that of its views, and what their objects share. Equal types share one family."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rosetta_jit.model.layout import layout
+from rosetta_jit.model.serial import from_plain, to_plain
+from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.runtime.holder import values
+from rosetta_jit.runtime.holder.access import Access
+from rosetta_jit.runtime.holder.classes import Holder
+from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, stale_getter, view_setter
+from rosetta_jit.runtime.holder.record import Tree
+from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
+from rosetta_jit.runtime.lanes import Lanes, plan
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.runtime.holder.record import Entry, Record
+
+
+@dataclass(frozen=True, slots=True)
+class Manners:
+    """How holders of a framework behave.
+
+    Attributes
+    ----------
+    base : type
+        What holder classes inherit from: a subclass of `Holder` without slots of its own.
+    array_type : type
+        What arrays of numbers are shown as: numpy's class, or a subclass with a slot ``owner_`` for message and field.
+    sequence, mapping : callable
+        What shows arrays of anything else, and maps.
+    assigns_whole : bool
+        Whether arrays, maps and messages can be assigned to.
+    members : callable
+        What else the class of a struct has, by name, given its family: constants, nested classes.
+    """
+
+    base: type[Holder]
+    array_type: type[np.ndarray[Any, Any]]
+    sequence: Callable[[Message, Entry], Any]
+    mapping: Callable[[Message, Entry], Any]
+    assigns_whole: bool
+    members: Callable[[Family], dict[str, Any]]
+
+
+def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class has nothing but its fields
+    """Nothing."""
+    return {}
+
+
+PLAIN = Manners(Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members)
+
+
+class Family:
+    """What the objects and views of one holder class share."""
+
+    def __init__(self, text: str, manners: Manners) -> None:
+        self.text = text
+        self.manners = manners
+        self.type, self.schema = from_plain(json.loads(text))
+        self.layout = layout(self.type, self.schema)
+        self.tree = Tree(self.type, self.schema, self.layout)
+        self.plan = plan(self.layout)
+        self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
+        self.assigns_whole = manners.assigns_whole
+        self._accesses: dict[int, Access] = {}
+        self._views: dict[str, type[View]] = {}
+        self.struct = cast("Struct", self.schema.resolve(self.type))
+
+    @cached_property
+    def holder(self) -> type[Holder]:
+        """The holder class."""
+        access = self.access(self.tree.root)
+        properties = {name: property(access.getters[name], access.setters[name]) for name in _shown(self.tree.root, self.manners.base)}
+        members = {"family_": self, "access_": access, "__slots__": (), "__doc__": f"A holder of `{self.struct.name}`."}
+        return _class(self.struct.name, (self.manners.base,), {**self.manners.members(self), **properties, **members})
+
+    def of_struct(self, struct: str) -> type[Holder]:
+        """The holder class of another struct of the schema, with the same manners."""
+        return self.holder if struct == self.struct.name else holder_class(Ref(struct), self.schema, self.manners)
+
+    def view_class(self, struct: str) -> type[View]:
+        """The class of views of a struct: a subclass of its holder class."""
+        view = self._views.get(struct)
+        if view is None:
+            base = self.of_struct(struct)
+            record = base.family_.tree.root
+            properties = {name: property(stale_getter(name), view_setter(name)) for name in _shown(record, self.manners.base)}
+            view = _class(struct, (View, base), {**properties, "__slots__": VIEW_SLOTS, "__doc__": base.__doc__})
+            self._views[struct] = view
+        return view
+
+    def access(self, record: Record) -> Access:
+        """How the fields of a record are read and written."""
+        access = self._accesses.get(id(record))
+        if access is None:
+            access = self._accesses[id(record)] = Access(record, self)
+        return access
+
+    @cached_property
+    def _empty(self) -> Lanes:
+        return Lanes(self.plan, self.array_type)
+
+    def empty_lanes(self) -> Lanes:
+        """Lanes in which everything is absent; they are never written."""
+        return self._empty
+
+    def row(self, lanes: Lanes, row: int) -> View:
+        """A view of one message of a batch."""
+        cls = self.view_class(self.struct.name)
+        return bind_row(cls.__new__(cls), lanes, self.access(self.tree.root), row)
+
+
+def _shown(record: Record, base: type) -> list[str]:
+    """Fields that become properties: all but those whose names Python or the holder need for themselves."""
+    own = {*OWN_SLOTS, *VIEW_SLOTS, "family_", "programs_", "_is_native"}
+    return [name for name in record.entries if name not in own and not (name.startswith("__") and hasattr(base, name))]
+
+
+def _class(qualified: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:
+    module, _, name = qualified.rpartition(".")
+    return type(name or "Message", bases, {"__module__": module, **namespace})
+
+
+def holder_class(type_: Type, schema: Schema, manners: Manners = PLAIN) -> type[Holder]:
+    """The holder class of a struct. Equal types give the same class.
+
+    Raises
+    ------
+    ValueError
+        If the type is not a struct, or its rows would be too large.
+    """
+    return holder_class_of(to_plain(type_, schema), manners)
+
+
+def holder_class_of(plain: Mapping[str, Any], manners: Manners = PLAIN) -> type[Holder]:
+    """The holder class of a type as `rosetta_jit.model.serial` writes it."""
+    return family_of(json.dumps(plain, sort_keys=True), manners).holder
+
+
+@cache
+def family_of(text: str, manners: Manners) -> Family:
+    """The family of a type as text; the same one for the same text."""
+    return Family(text, manners)
+
+
+def revived(text: str, manners: Manners, plain: dict[str, Any]) -> Holder:
+    """Unpickle."""
+    holder = family_of(text, manners).holder()
+    values.write_record(holder.access_.record, holder.lanes_, 0, plain)
+    return holder
