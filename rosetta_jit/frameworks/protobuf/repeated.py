@@ -14,8 +14,8 @@ import numpy as np
 
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.message import Message, place, writable
-from rosetta_jit.runtime.holder.record import Numbers, Record, Scalar
-from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence, view_of
+from rosetta_jit.runtime.holder.record import Numbers, Record
+from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry
@@ -108,7 +108,7 @@ class NumberArray(np.ndarray[Any, Any]):
     def __bool__(self) -> bool:
         return self.size > 0
 
-    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:  # noqa: ARG002, FBT001, FBT002  numpy's protocol
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
         """Results of arithmetic are arrays like any other."""
         return array[()] if return_scalar else np.asarray(array)
 
@@ -199,7 +199,7 @@ class MapField(Dictionary):
         super().__setitem__(key, value)
 
     def get(self, key: Any, default: Any = None) -> Any:
-        return self[key] if key in self else default
+        return self[key] if key in self else default  # noqa: SIM401  that would call itself
 
     def pop(self, key: Any, *default: Any) -> Any:
         if key not in self:

@@ -5,68 +5,97 @@ https://protobuf.dev/reference/protobuf/textformat-spec/
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
+from typing import TYPE_CHECKING, Any, assert_never
 
+import numpy as np
+
+from rosetta_jit.frameworks.protobuf.presence import set_entries
 from rosetta_jit.model.types import Enum, Float
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Mapping
 
-    from rosetta_jit.model.types import Field, Type
-    from rosetta_jit.runtime.holder.record import Entry, ScalarType
+    from rosetta_jit.runtime.holder.record import Node, ScalarType
 
 _ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t", '"': '\\"', "'": "\\'", "\\": "\\\\"}
 
 
-def scalar_text(type_: ScalarType, value: Any) -> str:
-    """A number, boolean or enum."""
+def text(record: Record, values: Mapping[str, Any]) -> str:
+    """The text of a message, given its raw values."""
+    return "".join(f"{line}\n" for line in _message(record, values))
+
+
+def _message(record: Record, values: Mapping[str, Any]) -> Iterator[str]:
+    for entry, value in set_entries(record, values):
+        node = entry.node
+        group = bool(entry.field.option("group"))
+        yield from _value(_group_name(node) if group else entry.name, node, value)
+
+
+def _group_name(node: Node) -> str:
+    """A group is printed by the name of its message."""
+    match node:
+        case Items(_, _, Record() as record, _) | Child(_, _, record):
+            return record.struct.rpartition(".")[2]
+        case Record():
+            return node.struct.rpartition(".")[2]
+        case _:
+            return ""
+
+
+def _value(label: str, node: Node, value: Any) -> Iterator[str]:
+    match node:
+        case Scalar(_, type_):
+            yield f"{label}: {_scalar(type_, value)}"
+        case Text() | Blob():
+            yield f"{label}: {_quoted(value)}"
+        case Numbers(_, _, type_, _):
+            yield from (f"{label}: {_scalar(type_, each)}" for each in value.tolist())
+        case Items(_, _, element, _):
+            for each in value:
+                yield from _value(label, element, each)
+        case Pairs(_, _, key, entry):
+            for each in sorted(value):
+                yield from _braced(label, [*_value("key", key, each), *_value("value", entry.node, value[each])])
+        case Record() | Child():
+            yield from _braced(label, _message(node.record if isinstance(node, Child) else node, value))
+        case _:
+            assert_never(node)
+
+
+def _braced(label: str, lines: Any) -> Iterator[str]:
+    yield f"{label} {{"
+    yield from (f"  {line}" for line in lines)
+    yield "}"
+
+
+def _scalar(type_: ScalarType, value: Any) -> str:
     match type_:
         case Enum(_, values, _):
             return next((name for name, number in values if number == value), str(value))
         case Float(bits, _):
-            return _float_text(float(value), bits)
+            return _float(float(value), bits)
         case _:
             return str(value).lower()
 
 
-def _float_text(value: float, bits: int) -> str:
+def _float(value: float, bits: int) -> str:
     """As few digits as a C library prints to read the same value again: 6 or 9 of a float, 15 or 17 of a double."""
-    few, all_ = (6, 9) if bits == 32 else (15, 17)
-    text = f"{value:.{few}g}"
-    same = float(text) == value if bits == 64 else _as_float(text) == value
-    return text if same or value != value else f"{value:.{all_}g}"  # noqa: PLR0124  NaN
-
-
-def _as_float(text: str) -> float:
-    import numpy as np
-
+    few, enough = (6, 9) if bits == 32 else (15, 17)
+    short = f"{value:.{few}g}"
     with np.errstate(over="ignore"):
-        return float(np.float32(text))
+        again = float(np.float32(short)) if bits == 32 else float(short)
+    return short if again == value or math.isnan(value) else f"{value:.{enough}g}"
 
 
-def quoted(value: str | bytes) -> str:
-    """A string or bytes in quotes; what is not printable ASCII is written in octal, but for the letters of a string."""
-    if isinstance(value, str):
-        return '"' + "".join(_ESCAPES.get(char) or _octal(char, printable=ord(char) >= 0x7F + 1) for char in value) + '"'
-    return '"' + "".join(_ESCAPES.get(char) or _octal(char, printable=False) for char in value.decode("latin-1")) + '"'
+def _quoted(value: str | bytes) -> str:
+    """In quotes; what is not printable ASCII in octal, but for the letters of a string."""
+    letters = isinstance(value, str)
+    chars = value if isinstance(value, str) else value.decode("latin-1")
+    return '"' + "".join(_ESCAPES.get(char) or _printable(char, letters=letters) for char in chars) + '"'
 
 
-def _octal(char: str, *, printable: bool) -> str:
-    return char if printable or " " <= char <= "~" else f"\\{ord(char):03o}"
-
-
-def indented(lines: Iterable[str]) -> Iterator[str]:
-    """The lines of a message inside another."""
-    return (f"  {line}" for line in lines)
-
-
-def label(entry: Entry, struct: str | None, field: Field) -> str:
-    """What stands before a field's value: its name; of a group, the name of its message."""
-    if struct is not None and field.option("group"):
-        return struct.rpartition(".")[2]
-    return entry.name
-
-
-def element_type(type_: Type) -> Type:
-    """Only for symmetry of names with the model."""
-    return type_
+def _printable(char: str, *, letters: bool) -> str:
+    return char if " " <= char <= "~" or (letters and ord(char) >= 0x80) else f"\\{ord(char):03o}"

@@ -143,7 +143,7 @@ class Sequence(MutableSequence[Any]):
         return repr(list(self))
 
 
-def _checked(index: Any, count: int) -> int:
+def _checked(index: int, count: int) -> int:
     try:
         return range(count)[index]
     except IndexError:

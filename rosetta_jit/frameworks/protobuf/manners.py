@@ -1,0 +1,252 @@
+"""Holders that behave as protobuf's generated Python classes do, so that code written against those keeps working.
+
+What differs, and why: repeated numbers are numpy arrays (see `rosetta_jit.frameworks.protobuf.repeated`); bytes fields also take
+bytearrays, memoryviews and numpy arrays; views of nested messages do not outlive the next decode into their holder; errors of parsing and serialising
+are `rosetta_jit.errors.DecodeError` and `EncodeError`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
+
+from rosetta_jit.errors import EncodeError, RosettaError
+from rosetta_jit.frameworks.protobuf import text_format
+from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescriptor, MessageDescriptor, nested_names
+from rosetta_jit.frameworks.protobuf.presence import missing, set_entries
+from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
+from rosetta_jit.model.types import Enum
+from rosetta_jit.runtime.holder import Holder, Manners, arena
+from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.classes import clear
+from rosetta_jit.runtime.holder.merge import fill, merge
+from rosetta_jit.runtime.holder.message import Message, View, place, writable
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.record import Entry, Record
+
+
+class Programs(Protocol):
+    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
+
+    def encode(self, holder: Any) -> bytes:
+        """The bytes of a holder."""
+        ...
+
+    def size(self, holder: Any) -> int:
+        """How many they are."""
+        ...
+
+    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
+        """Fill a holder from bytes, or add to what it has."""
+        ...
+
+
+class ProtobufMessage(Holder):
+    """A message of a type that protobuf's IDL describes.
+
+    Attributes
+    ----------
+    DESCRIPTOR : MessageDescriptor
+        Its fields, by name and number.
+    """
+
+    __slots__ = ()
+
+    DESCRIPTOR: ClassVar[MessageDescriptor]
+    programs_: ClassVar[Programs | None] = None
+
+    def __init__(self, **fields: Any) -> None:
+        super().__init__()
+        if fields:
+            fill(self, {name: value for name, value in fields.items() if value is not None})
+
+    def HasField(self, name: str) -> bool:  # noqa: N802  as protobuf names it
+        """Whether a field, or any field of a oneof, is set.
+
+        Raises
+        ------
+        ValueError
+            If there is no such field, or it is always there.
+        """
+        record = self.access_.record
+        if name in record.unions:
+            return self.WhichOneof(name) is not None
+        entry = self._entry(name)
+        if entry.presence is None:
+            raise ValueError(f"Field {record.struct}.{name} does not have presence.")
+        lanes, row = place(self)
+        return arena.present(lanes, entry.presence, row)
+
+    def ClearField(self, name: str) -> None:  # noqa: N802
+        """Make a field absent, or whichever field of a oneof is set."""
+        if name in self.access_.record.unions:
+            case = self.WhichOneof(name)
+            if case is not None:
+                clear(self, case)
+            return
+        clear(self, self._entry(name).name)
+
+    def Clear(self) -> None:  # noqa: N802
+        """Make all fields absent."""
+        clear(self, None)
+
+    def WhichOneof(self, name: str) -> str | None:  # noqa: N802
+        """The name of the field of a oneof that is set."""
+        record = self.access_.record
+        if name not in record.unions:
+            raise ValueError(f'Protocol message {type(self).__name__} has no oneof "{name}" field.')
+        lanes, row = place(self)
+        return next((case for case in record.unions[name] if arena.present(lanes, record.entries[case].presence, row)), None)
+
+    def ListFields(self) -> list[tuple[FieldDescriptor, Any]]:  # noqa: N802
+        """Descriptors and values of the fields that are set, by number."""
+        fields = self.DESCRIPTOR.fields_by_name
+        entries = set_entries(self.access_.record, raw(self))
+        return [(fields[entry.name], self.access_.getters[entry.name](self)) for entry, _ in entries]
+
+    def SetInParent(self) -> None:  # noqa: N802
+        """Make this message present in the one around it."""
+        writable(self)
+
+    def MergeFrom(self, other: Any) -> None:  # noqa: N802
+        """Take over what another message of the type has: singular fields replace, repeated ones are appended, messages merge."""
+        values = self._raw_of(other, "MergeFrom")
+        writable(self)
+        merge(self, {entry.name: value for entry, value in set_entries(self.access_.record, values)})
+
+    def CopyFrom(self, other: Any) -> None:  # noqa: N802
+        """Become equal to another message of the type."""
+        if other is not self:
+            values = self._raw_of(other, "CopyFrom")
+            writable(self)
+            clear(self, None)
+            merge(self, values)
+
+    def IsInitialized(self) -> bool:  # noqa: N802
+        """Whether all required fields are set."""
+        return not self.FindInitializationErrors()
+
+    def FindInitializationErrors(self) -> list[str]:  # noqa: N802
+        """Paths of the required fields that are not set."""
+        return list(missing(self.access_.record, raw(self)))
+
+    def SerializeToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802
+        """The message's bytes. They are the same every time, whatever ``deterministic`` says.
+
+        Raises
+        ------
+        EncodeError
+            If a required field is not set.
+        """
+        errors = self.FindInitializationErrors()
+        if errors:
+            raise EncodeError(
+                "missing", f".{errors[0]}", f"Message {self.DESCRIPTOR.full_name} is missing required fields: {','.join(errors)}"
+            )
+        return self.SerializePartialToString(deterministic=deterministic)
+
+    def SerializePartialToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802, ARG002  always deterministic
+        """The message's bytes, even if required fields are missing."""
+        return self._programs().encode(self._whole())
+
+    def ByteSize(self) -> int:  # noqa: N802
+        """How many bytes the message takes."""
+        return self._programs().size(self._whole())
+
+    def ParseFromString(self, data: Any) -> int:  # noqa: N802
+        """Become what bytes say; how many they were.
+
+        Raises
+        ------
+        DecodeError
+            If they are no message of the type.
+        """
+        if isinstance(self, View):
+            self.CopyFrom(type(self.new()).FromString(data))
+        else:
+            self._programs().decode_into(_bytes(data), self, merge=False)
+        return len(data)
+
+    def MergeFromString(self, data: Any) -> int:  # noqa: N802
+        """Merge with what bytes say; how many they were."""
+        if isinstance(self, View):
+            self.MergeFrom(type(self.new()).FromString(data))
+        else:
+            self._programs().decode_into(_bytes(data), self, merge=True)
+        return len(data)
+
+    @classmethod
+    def FromString(cls, data: Any) -> Self:  # noqa: N802
+        """A new message of bytes."""
+        message = cast("type[Self]", cls.family_.holder)()
+        message.ParseFromString(data)
+        return message
+
+    def __str__(self) -> str:
+        return text_format.text(self.access_.record, raw(self))
+
+    __repr__ = __str__
+
+    def set_fields_(self, fields: Mapping[str, Any]) -> None:
+        """Set fields as the constructor does."""
+        fill(self, fields)
+
+    def _entry(self, name: str) -> Entry:
+        try:
+            return self.access_.record.entries[name]
+        except KeyError:
+            raise ValueError(f'Protocol message {type(self).__name__} has no "{name}" field.') from None
+
+    def _raw_of(self, other: Any, method: str) -> dict[str, Any]:
+        record: Record = self.access_.record
+        if not isinstance(other, Message) or other.access_.record.struct != record.struct:
+            expected = f"expected {record.struct} got {type(other).__name__}"
+            raise TypeError(f"Parameter to {method}() must be instance of same class: {expected}.")
+        return raw(other)
+
+    def _whole(self) -> ProtobufMessage:
+        """The message in lanes of its own, as programs take it."""
+        return self.__deepcopy__({}) if isinstance(self, View) else self
+
+    def _programs(self) -> Programs:
+        if self.programs_ is None:
+            raise RosettaError(f"no decoder or encoder of {self.DESCRIPTOR.full_name} has been compiled")
+        return self.programs_
+
+
+def _bytes(data: Any) -> Any:
+    if isinstance(data, str):
+        raise TypeError("expected bytes, str found")
+    return data
+
+
+class _Nested:
+    """The class of a message declared in another, made when first asked for."""
+
+    def __init__(self, family: Family, name: str) -> None:
+        self.family = family
+        self.name = name
+
+    def __get__(self, instance: object, owner: type) -> type[Holder]:
+        return self.family.of_struct(self.name)
+
+
+def members(family: Family) -> dict[str, Any]:
+    """What a generated class has besides its fields: its descriptor, its enums and their constants, the classes declared in it."""
+    descriptor = MessageDescriptor(family.struct, family.schema)
+    found: dict[str, Any] = {f"{each.name.upper()}_FIELD_NUMBER": each.number for each in descriptor.fields}
+    for name in nested_names(family.struct.name, family.schema):
+        declared, own = family.schema.types[name], name.rpartition(".")[2]
+        if isinstance(declared, Enum):
+            found |= dict(declared.values)
+            found[own] = EnumClass(declared)
+        else:
+            found[own] = _Nested(family, name)
+    return {name: value for name, value in found.items() if not name.startswith("__")} | {"DESCRIPTOR": descriptor}
+
+
+PROTOBUF = Manners(ProtobufMessage, NumberArray, repeated, MapField, assigns_whole=False, members=members)
+"""The manners of protobuf's messages."""

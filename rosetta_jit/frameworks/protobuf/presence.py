@@ -1,0 +1,51 @@
+"""Which fields of a message are set, and which are missing: asked of raw values, as `rosetta_jit.runtime.holder.values` reads them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosetta_jit.runtime.holder.record import Entry, Node
+
+
+def set_entries(record: Record, values: Mapping[str, Any]) -> Iterator[tuple[Entry, Any]]:
+    """The fields that protobuf regards as set, by number: those present, and of those without presence, what is not zero or empty."""
+    for entry in sorted(record.entries.values(), key=lambda entry: entry.field.number or 0):
+        if entry.name in values and (entry.presence is not None or not is_zero(values[entry.name])):
+            yield entry, values[entry.name]
+
+
+def is_zero(value: Any) -> bool:
+    """Whether a proto3 field of this value is not on the wire. Minus zero is."""
+    if isinstance(value, float):
+        return not value and math.copysign(1, value) > 0
+    return value == 0 if isinstance(value, int) else len(value) == 0
+
+
+def missing(record: Record, values: Mapping[str, Any], path: str = "") -> Iterator[str]:
+    """Paths of the required fields that are not set, as `FindInitializationErrors` gives them."""
+    for entry in record.entries.values():
+        if entry.field.required and entry.name not in values:
+            yield path + entry.name
+    for entry in record.entries.values():
+        if entry.name in values:
+            yield from _missing_in(entry.node, values[entry.name], path + entry.name)
+
+
+def _missing_in(node: Node, value: Any, path: str) -> Iterator[str]:
+    match node:
+        case Record() | Child():
+            yield from missing(node.record if isinstance(node, Child) else node, value, f"{path}.")
+        case Items(_, _, Record() as element, _):
+            for index, each in enumerate(value):
+                yield from missing(element, each, f"{path}[{index}].")
+        case Pairs(_, _, _, entry):
+            for key, each in value.items():
+                yield from _missing_in(entry.node, each, f"{path}[{key}]")
+        case _:
+            pass

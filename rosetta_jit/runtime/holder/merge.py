@@ -1,0 +1,115 @@
+"""Adding values to a message that has some: what merging, copying and constructing from keywords share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, assert_never, cast
+
+from rosetta_jit.errors import EncodeError
+from rosetta_jit.runtime.holder import arena, values
+from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.message import Message, writable
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.sequence import Dictionary, store_row
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder.record import Entry
+
+
+def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
+    """Set what raw values name: leaves replace, arrays are appended, maps take over pairs, messages merge."""
+    if depth > values.MAX_DEPTH:
+        raise EncodeError("nesting", "", f"messages contain each other more than {values.MAX_DEPTH} deep")
+    for name, value in fields.items():
+        _merge_field(message, message.access_.record.entries[name], value, depth)
+
+
+def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None:
+    node = entry.node
+    match node:
+        case Scalar() | Text() | Blob():
+            message.access_.setters[entry.name](message, value)
+        case Numbers():
+            _append_numbers(message, node, value)
+        case Items():
+            _append(message, node, value)
+        case Pairs():
+            shown = Dictionary(message, entry)
+            for key, each in value.items():
+                shown[key] = each
+        case Record() | Child():
+            inner = message.access_.getters[entry.name](message)
+            writable(inner)
+            merge(inner, value, depth + 1)
+        case _:
+            assert_never(node)
+
+
+def _append_numbers(message: Message, node: Numbers, elements: Any) -> None:
+    prepared = values.prepare(node, elements)
+    lanes, row = writable(message)
+    count = arena.span_of(lanes, node.span, row)[1]
+    start = arena.resize(lanes, node.span, node.lane, row, count + prepared.size) + count
+    lanes.arrays[node.lane][start : start + prepared.size] = prepared
+
+
+def _append(message: Message, node: Items, elements: list[Any]) -> None:
+    lanes, row = writable(message)
+    count = arena.span_of(lanes, node.span, row)[1]
+    start = arena.resize(lanes, node.span, node.lane, row, count + len(elements)) + count
+    for index, each in enumerate(elements):
+        store_row(node.element, lanes, start + index, each)
+
+
+def fill(message: Message, fields: Mapping[str, Any]) -> None:
+    """Set fields of an empty message, as the keywords of a constructor give them.
+
+    Raises
+    ------
+    ValueError
+        If there is no such field, or a value is out of range.
+    TypeError
+        If a value is of another kind.
+    """
+    record = message.access_.record
+    for name, value in fields.items():
+        entry = record.entries.get(name)
+        if entry is None:
+            raise ValueError(f'Protocol message {type(message).__name__} has no "{name}" field.')
+        if value is not None:
+            _fill_field(message, entry, value)
+
+
+def _fill_field(message: Message, entry: Entry, value: Any) -> None:
+    match entry.node:
+        case Record() | Child():
+            if not isinstance(value, Message | Mapping):
+                raise TypeError(
+                    f"Parameter to initialize message field must be dict or instance of same class: got {type(value).__name__}."
+                )
+            inner = message.access_.getters[entry.name](message)
+            writable(inner)
+            _fill_message(inner, value)
+        case Items(_, _, Record(), _):
+            shown: Any = message.access_.getters[entry.name](message)
+            for each in _iterable(value):
+                _fill_message(shown.add(), each)
+        case Numbers() | Items():
+            _merge_field(message, entry, list(_iterable(value)), 0)
+        case Pairs():
+            _merge_field(message, entry, raw(dict(value)), 0)
+        case _:
+            _merge_field(message, entry, value, 0)
+
+
+def _fill_message(inner: Message, value: Any) -> None:
+    if isinstance(value, Mapping):
+        fill(inner, cast("Mapping[str, Any]", value))
+    else:
+        merge(inner, raw(value))
+
+
+def _iterable(value: Any) -> Iterable[Any]:
+    if not isinstance(value, Iterable):
+        raise TypeError("must assign iterable")
+    return cast("Iterable[Any]", value)

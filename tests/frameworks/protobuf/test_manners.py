@@ -1,0 +1,424 @@
+"""Code written against protobuf's classes, run on them and on ours."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+
+def test_defaults_of_what_is_absent(All):
+    message = All()
+    assert (message.i32, message.i64, message.u64, message.fl, message.flag) == (0, -7, 0, 1.5, True)
+    assert (message.text, message.data, message.color, message.outside) == ("hé", b"\0x", 3, 4)
+    assert message.inner.x == 0
+    assert message.inner.deep.d == 0.0
+    assert message.child.child.child.i64 == -7
+    assert not message.HasField("child")
+    assert list(message.ints) == []
+    assert len(message.inners) == 0
+
+
+def test_types_of_what_is_read(All):
+    message = All(i32=1, fl=0.5, flag=False, text="a", data=b"b", color=1)
+    read = [message.i32, message.fl, message.flag, message.text, message.data, message.color]
+    assert [type(value) for value in read] == [int, float, bool, str, bytes, int]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("i32", -(2**31)), ("i64", 2**63 - 1), ("u32", 2**32 - 1), ("u64", 2**64 - 1), ("s32", -5), ("s64", -(2**63)), ("f32", 9),
+        ("f64", 2**64 - 1), ("sf32", -9), ("sf64", -10), ("fl", 0.25), ("fl", math.inf), ("db", 1e300), ("db", 3), ("flag", False),
+        ("flag", 1), ("text", "π\0"), ("text", b"bytes"), ("text", ""), ("data", b"\xff\0"), ("color", 7), ("color", "GREEN"),
+        ("outside", 0), ("number", 4), ("word", "w"), ("chosen", 1), ("i32", np.int8(3)), ("db", np.float32(0.5)), ("f32", np.uint64(3)),
+    ],
+)  # fmt: skip
+def test_assigned_values_are_read_back(All, name, value):
+    message = All()
+    setattr(message, name, value)
+    expected = {"GREEN": 1, b"bytes": "bytes"}.get(value, value) if isinstance(value, str | bytes) else value
+    assert getattr(message, name) == expected
+    assert message.HasField(name)
+    message.ClearField(name)
+    assert not message.HasField(name)
+    assert getattr(message, name) == getattr(All(), name)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "error"),
+    [
+        ("i32", 2**31, ValueError), ("i32", -(2**31) - 1, ValueError), ("u32", -1, ValueError), ("u64", 2**64, ValueError),
+        ("i64", 2**63, ValueError), ("i32", 1.0, TypeError), ("i32", "1", TypeError), ("i32", True, TypeError), ("i32", None, TypeError),
+        ("fl", "1", TypeError), ("db", None, TypeError), ("db", b"1", TypeError), ("flag", 1.0, TypeError), ("flag", "x", TypeError),
+        ("text", 1, TypeError), ("text", b"\xff", ValueError), ("text", "\udc80", ValueError), ("data", "a", TypeError),
+        ("data", 1, TypeError), ("color", 2, ValueError), ("color", "BLUE", ValueError), ("color", 1.0, TypeError),
+        ("outside", 1, ValueError), ("inner", None, AttributeError), ("ints", [1], AttributeError), ("inners", [], AttributeError),
+        ("counts", {}, AttributeError), ("nothing", 1, AttributeError), ("child", 1, AttributeError),
+    ],
+)  # fmt: skip
+def test_wrong_values_are_refused(All, name, value, error):
+    message = All()
+    with pytest.raises(error):
+        setattr(message, name, value)
+    assert message == All()
+
+
+def test_unknown_names(All):
+    message = All()
+    with pytest.raises(AttributeError):
+        _ = message.nothing
+    for call in (message.HasField, message.ClearField, message.WhichOneof):
+        with pytest.raises(ValueError, match="nothing"):
+            call("nothing")
+    with pytest.raises(ValueError, match="presence"):
+        message.HasField("ints")
+    with pytest.raises(ValueError, match="nothing"):
+        All(nothing=1)
+
+
+def test_keywords(All):
+    message = All(
+        i32=3, color="GREEN", ints=(1, 2), texts=["a"], inner={"x": 4, "names": ["n"]}, inners=[{"x": 1}, All.Inner(x=2)],
+        child=All(i32=9), counts={"a": 1}, by_id={5: All.Inner(x=6)}, word="w", text=None,
+    )  # fmt: skip
+    assert (message.i32, message.color, message.inner.x, message.inner.names[0], message.child.i32) == (3, 1, 4, "n", 9)
+    assert [each.x for each in message.inners] == [1, 2]
+    assert list(message.ints) == [1, 2]
+    assert dict(message.counts) == {"a": 1}
+    assert message.by_id[5].x == 6
+    assert not message.HasField("text")
+    for wrong, error in [({"ints": 1}, TypeError), ({"inner": 1}, TypeError), ({"i32": "x"}, TypeError), ({"u32": -1}, ValueError)]:
+        with pytest.raises(error):
+            All(**wrong)
+
+
+def test_writing_to_a_nested_message_makes_it_present(All):
+    message = All()
+    message.inner.deep.d = 2.5
+    assert message.HasField("inner")
+    assert message.inner.HasField("deep")
+    message.child.child.i32 = 1
+    assert message.child.child.i32 == 1
+    assert not message.child.child.HasField("child")
+    message.ClearField("child")
+    assert message.child.child.i32 == 0
+    message.child.SetInParent()
+    assert message.HasField("child")
+
+
+def test_views_see_what_others_write(All):
+    message = All()
+    first, second = message.child, message.child
+    first.i32 = 5
+    assert second.i32 == 5
+    element = message.inners.add()
+    for _ in range(50):
+        message.inners.add().names.append("x")
+        message.children.add().children.add(i32=2)
+    element.x = 7
+    element.names.extend(["a", "b"])
+    assert (message.inners[0].x, list(message.inners[0].names)) == (7, ["a", "b"])
+    assert [each.children[0].i32 for each in message.children] == [2] * 50
+
+
+def test_oneof(All):
+    message = All()
+    assert message.WhichOneof("choice") is None
+    assert not message.HasField("choice")
+    message.number = 4
+    message.message.x = 3
+    assert message.WhichOneof("choice") == "message"
+    assert (message.number, message.HasField("number"), message.HasField("choice")) == (0, False, True)
+    message.word = "w"
+    assert message.message.x == 0
+    message.message.SetInParent()
+    assert message.message.x == 0
+    message.ClearField("number")
+    assert message.WhichOneof("choice") == "message"
+    message.ClearField("choice")
+    assert message.WhichOneof("choice") is None
+    message.chosen = 7
+    assert All(number=0).WhichOneof("choice") == "number"
+
+
+def test_repeated_numbers(All):
+    message = All()
+    message.ints.append(1)
+    message.ints.extend([2, 3, 4])
+    message.ints.insert(1, 9)
+    assert list(message.ints) == [1, 9, 2, 3, 4]
+    assert message.ints.pop() == 4
+    message.ints.remove(9)
+    del message.ints[0]
+    assert list(message.ints) == [2, 3]
+    message.ints[0] = 5
+    message.ints.sort()
+    assert (list(message.ints), list(message.ints[:1]), message.ints[-1]) == ([3, 5], [3], 5)
+    assert message.ints
+    assert 5 in message.ints
+    message.ints.MergeFrom([7])
+    message.ints.reverse()
+    assert list(message.ints) == [7, 5, 3]
+    del message.ints[:]
+    assert not message.ints
+    message.colors.append(1)
+    message.flags.extend([True, False])
+    message.floats.extend([0.1, 2])
+    assert (list(message.colors), list(message.flags)) == ([1], [True, False])
+    assert list(message.floats) == [np.float32(0.1), 2.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "error"),
+    [("ints", "a", TypeError), ("ints", 2**31, ValueError), ("ints", 1.5, TypeError), ("colors", 2, ValueError), ("texts", 1, TypeError),
+     ("datas", "a", TypeError), ("inners", 1, TypeError), ("flags", "x", TypeError), ("floats", None, TypeError)],
+)  # fmt: skip
+def test_wrong_elements_are_refused(All, name, value, error):
+    message = All()
+    with pytest.raises(error):
+        getattr(message, name).append(value)
+    with pytest.raises(error):
+        getattr(message, name).extend([value])
+    assert len(getattr(message, name)) == 0
+
+
+def test_repeated_strings(All):
+    message = All()
+    message.texts.extend(["a", "b", "c"])
+    message.texts[1] = "longer than before"
+    message.texts.insert(0, "z")
+    del message.texts[1]
+    assert message.texts == ["z", "longer than before", "c"]
+    assert (message.texts[-1], message.texts[:2], message.texts.pop(0)) == ("c", ["z", "longer than before"], "z")
+    message.texts.sort()
+    assert list(message.texts) == ["c", "longer than before"]
+    message.datas.append(b"\0")
+    assert list(message.datas) == [b"\0"]
+    with pytest.raises(IndexError):
+        _ = message.texts[2]
+    with pytest.raises(IndexError):
+        message.texts[5] = "x"
+
+
+def test_repeated_messages(All):
+    message = All()
+    added = message.inners.add(x=1)
+    added.names.append("n")
+    message.inners.extend([All.Inner(x=2), All.Inner(x=3)])
+    message.inners.append(added)
+    assert [each.x for each in message.inners] == [1, 2, 3, 1]
+    message.inners[3].x = 4
+    assert message.inners[0].x == 1
+    message.inners.insert(0, All.Inner(x=9))
+    del message.inners[1:3]
+    assert [each.x for each in message.inners] == [9, 3, 4]
+    message.inners.sort(key=lambda each: each.x)
+    message.inners.reverse()
+    assert [each.x for each in message.inners] == [9, 4, 3]
+    message.inners.remove(All.Inner(x=3))
+    assert message.inners == [All.Inner(x=9), All.Inner(x=4, names=["n"])]
+    with pytest.raises(TypeError):
+        message.inners[0] = All.Inner()
+    with pytest.raises(TypeError):
+        message.inners.append(All())
+
+
+def test_maps(All):
+    message = All()
+    message.counts["a"] = 1
+    message.counts["b"] = 2
+    message.counts["a"] = 3
+    assert dict(message.counts) == {"a": 3, "b": 2}
+    assert "a" in message.counts
+    assert message.counts.get("z") is None
+    assert len(message.counts) == 2
+    del message.counts["a"]
+    assert list(message.counts) == ["b"]
+    message.by_id[7].x = 1
+    message.by_id.get_or_create(8).x = 2
+    assert sorted((key, value.x) for key, value in message.by_id.items()) == [(7, 1), (8, 2)]
+    with pytest.raises(ValueError, match="key"):
+        message.by_id[7] = All.Inner()
+    with pytest.raises(TypeError):
+        message.counts[1] = 1
+    with pytest.raises(TypeError):
+        message.counts["x"] = "y"
+    assert message.counts["new"] == 0
+    assert "new" in message.counts
+    with pytest.raises(KeyError):
+        del message.counts["zz"]
+
+
+def filled(All):
+    message = All(i32=1, text="t", ints=[1, 2], texts=["a"], inner={"x": 1, "names": ["p"]}, counts={"a": 1}, word="w")
+    message.children.add(i32=4).child.i32 = 5
+    message.by_id[1].x = 1
+    message.grouped.y = 3
+    message.several.add(z=4)
+    return message
+
+
+def test_merge(All):
+    message = filled(All)
+    other = All(i32=2, ints=[3], inner={"names": ["q"]}, counts={"a": 9, "b": 2}, number=3, by_id={1: {"names": ["n"]}})
+    other.children.add(i32=8)
+    message.MergeFrom(other)
+    assert (message.i32, message.text, list(message.ints)) == (2, "t", [1, 2, 3])
+    assert (message.inner.x, list(message.inner.names)) == (1, ["p", "q"])
+    assert dict(message.counts) == {"a": 9, "b": 2}
+    assert (message.by_id[1].x, list(message.by_id[1].names)) == (0, ["n"])
+    assert message.WhichOneof("choice") == "number"
+    assert [each.i32 for each in message.children] == [4, 8]
+    assert message.children[0].child.i32 == 5
+
+
+def test_copies_are_equal_and_independent(All):
+    message = filled(All)
+    copies = [All(), copy.copy(message), copy.deepcopy(message)]
+    copies[0].CopyFrom(message)
+    for copied in copies:
+        assert copied == message
+        copied.children[0].child.i32 = 6
+        assert copied != message
+    message.child.CopyFrom(message)
+    assert message.child.children[0].child.i32 == 5
+    message.CopyFrom(message.child)
+    assert message == filled(All)
+    message.CopyFrom(message)
+    assert message == filled(All)
+    for wrong in (1, None, All.Inner()):
+        with pytest.raises(TypeError):
+            message.CopyFrom(wrong)
+        with pytest.raises(TypeError):
+            message.MergeFrom(wrong)
+
+
+def test_equality(All):
+    assert All() == All()
+    assert All(i32=0) != All()
+    assert All(db=math.nan) != All(db=math.nan)
+    assert All(ints=[1]) != All(ints=[2])
+    assert All(counts={"a": 1, "b": 2}) == All(counts={"b": 2, "a": 1})
+    assert All() != 1
+    assert All() != All.Inner()
+    assert All(inner={}) != All()
+    with pytest.raises(TypeError):
+        hash(All())
+
+
+def test_clear(All):
+    message = filled(All)
+    message.inner.Clear()
+    assert message.HasField("inner")
+    assert message.inner.x == 0
+    message.Clear()
+    assert message == All()
+
+
+def test_listed_fields(All):
+    message = filled(All)
+    listed = message.ListFields()
+    names = [field.name for field, _ in listed]
+    assert names == ["i32", "text", "inner", "ints", "texts", "children", "word", "counts", "by_id", "grouped", "several"]
+    assert [field.number for field, _ in listed] == [1, 14, 18, 20, 24, 28, 31, 40, 41, 50, 51]
+    assert listed[0][1] == 1
+    assert All().ListFields() == []
+
+
+def test_required_fields(message_class):
+    needy = message_class("second.Needy")
+    message = needy()
+    message.other.SetInParent()
+    message.others.add().others.add(must=1)
+    assert not message.IsInitialized()
+    assert message.FindInitializationErrors() == ["must", "other.must", "others[0].must"]
+    message.must = message.other.must = message.others[0].must = 1
+    assert message.IsInitialized()
+    assert message.FindInitializationErrors() == []
+
+
+def test_constants_and_enums(All):
+    assert (All.RED, All.ALIAS, All.Color.GREEN) == (3, 7, 1)
+    assert All.Color.Value("GREEN") == 1
+    assert All.Color.Name(3) == "RED"
+    assert All.Color.keys() == ["RED", "GREEN", "ALIAS"]
+    assert All.Color.values() == [3, 1, 7]
+    assert All.Color.items()[0] == ("RED", 3)
+    assert All.I32_FIELD_NUMBER == 1
+    with pytest.raises(ValueError, match="9"):
+        All.Color.Name(9)
+    with pytest.raises(ValueError, match="q"):
+        All.Color.Value("q")
+    assert isinstance(All().inner, All.Inner)
+    assert isinstance(All().inner.deep, All.Inner.Deep)
+    assert isinstance(All().inners.add(), All.Inner)
+    assert All.Inner(x=1).x == 1
+
+
+def described(descriptor):
+    def default(field):
+        return None if field.message_type is not None else field.default_value
+
+    return {
+        "names": (descriptor.name, descriptor.full_name),
+        "oneofs": [(each.name, [field.name for field in each.fields]) for each in descriptor.oneofs if not each.name.startswith("_")],
+        "enums": sorted((name, [(v.name, v.number) for v in enum.values]) for name, enum in descriptor.enum_types_by_name.items()),
+        "fields": sorted(
+            (each.number, each.name, each.full_name, each.type, each.is_repeated, each.is_required, each.has_presence, each.index,
+             each.message_type and each.message_type.full_name, each.enum_type and each.enum_type.full_name, str(default(each)),
+             each.has_default_value)
+            for each in descriptor.fields
+        ),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["second.All", "second.All.Inner", "second.Needy"])
+def test_descriptors_say_the_same(native, ours, name):
+    assert described(ours(name).DESCRIPTOR) == described(native(name).DESCRIPTOR)
+
+
+def test_text_is_the_same(native, ours):
+    texts = []
+    for All in (native("second.All"), ours("second.All")):  # noqa: N806
+        message = filled(All)
+        message.fl, message.db, message.flag, message.color, message.data = 0.1, 1e300, False, 7, b"\0\xff'a\\"
+        message.text, message.i64, message.u64 = 'é\n"\x7f', -5, 2**64 - 1
+        message.floats.extend([1, 2.5, 2**31, math.inf, -math.inf, math.nan, 1 / 3])
+        message.colors.append(1)
+        message.message.names.append("in")
+        texts.append(str(message))
+    assert texts[0] == texts[1]
+
+
+def test_proto3(Plain):
+    message = Plain()
+    assert (message.i, message.kind, message.maybe) == (0, 0, 0)
+    message.kind = 99
+    message.maybe = 0
+    assert message.kind == 99
+    assert message.HasField("maybe")
+    with pytest.raises(ValueError, match="presence"):
+        message.HasField("i")
+    message.i, message.s, message.d = 0, "", -0.0
+    assert [field.name for field, _ in message.ListFields()] == ["d", "kind", "maybe"]
+    message.part.SetInParent()
+    message.left = 0
+    message.named["k"].x = 4
+    other = Plain(i=5, part={"x": 1}, kind="SOME", numbers=[1])
+    other.MergeFrom(message)
+    assert (other.i, other.part.x, other.kind, other.maybe, other.left) == (5, 1, 99, 0, 0)
+    assert other.WhichOneof("either") == "left"
+    assert other.named["k"].x == 4
+    assert Plain(i=0) == Plain()
+    other.ClearField("i")
+    assert other.i == 0
+
+
+def test_pickles(ours):
+    message = filled(ours("second.All"))
+    assert pickle.loads(pickle.dumps(message)) == message  # noqa: S301
+    assert pickle.loads(pickle.dumps(message.inner)) == message.inner  # noqa: S301
