@@ -18,12 +18,12 @@ check:
   %valid = icmp eq i64 %validity, 1
   br i1 %valid, label %choose, label %slow, !prof !0
 choose:
-  br i1 %alone, label %measure, label %into, !prof !1
-
-measure:
-  %size = call i64 @size(ptr null, i64 0, i64 4611686018427387904, ptr %state, i64 0)
+  ; also where the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
+  %size = call i64 @prepare(ptr %state, i64 0)
   %measured = icmp sge i64 %size, 0
-  br i1 %measured, label %allocate, label %failed, !prof !0
+  br i1 %measured, label %measure, label %failed, !prof !0
+measure:
+  br i1 %alone, label %allocate, label %into, !prof !1
 allocate:
   %bytes = call ptr @PyBytes_FromStringAndSize(ptr null, i64 %size)
   %allocated = icmp ne ptr %bytes, null
@@ -75,7 +75,7 @@ beyond:
   br label %slow
 
 failed:
-  %result = phi i64 [ %size, %measure ], [ %written, %drop ], [ %end, %fill ]
+  %result = phi i64 [ %size, %choose ], [ %written, %drop ], [ %end, %fill ]
   call void @note(i64 %result, ptr %state)
   br label %slow
 slow:
@@ -83,6 +83,12 @@ slow:
   ret ptr %answer
 raise:
   ret ptr null
+}
+
+; The size of a message, or the size kernel's failure.
+define internal i64 @prepare(ptr %state, i64 %row) alwaysinline {
+  %size = call i64 @size(ptr null, i64 0, i64 4611686018427387904, ptr %state, i64 %row)
+  ret i64 %size
 }
 
 ; Where messages first to count - 1 end when they are written one behind the other from offsets[first]: fills offsets[first + 1] to offsets[count].
@@ -94,7 +100,7 @@ head:
   %more = icmp slt i64 %index, %count
   br i1 %more, label %each, label %done
 each:
-  %result = call i64 @size(ptr null, i64 0, i64 4611686018427387904, ptr %state, i64 %index)
+  %result = call i64 @prepare(ptr %state, i64 %index)
   %good = icmp sge i64 %result, 0
   br i1 %good, label %place, label %broken, !prof !0
 place:

@@ -49,9 +49,9 @@ def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kern
     recorded: Sequence[ir.Value] = ()
     width = min(MAX_INDICES, max((_index_count(body) for body in kernel.bodies), default=0))
     for body in kernel.bodies:
-        frame = Frame(
-            entry.module, entry, builder, parameters, kernel.strides, loaded, _exit(entry, "done", 1), _exit(entry, "failed", 2 + width)
-        )
+        done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + width)
+        decodes = kernel.direction == "decode"
+        frame = Frame(entry.module, entry, builder, parameters, kernel.strides, loaded, done, failed, decodes)
         frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
         llvm_stmt.block(frame, body)
         if not builder.block.is_terminated:

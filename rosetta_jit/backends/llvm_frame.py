@@ -103,6 +103,7 @@ class Frame:
     loaded: dict[tuple[int, int], ir.Value]
     done: Exit
     failed: Exit
+    decodes: bool
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
     advanced: set[int] = field(default_factory=set[int])
@@ -116,9 +117,12 @@ class Frame:
         return self._word(lane, CAPACITY, I64, f"capacity{lane}")
 
     def used_slot(self, lane: int) -> ir.Value:
-        """The stack slot of the lane's used length; each body starts with what the state says."""
+        """The stack slot of the lane's used length; each body starts with what the state says, and decoding into row 0 with nothing."""
         if lane not in self.used:
             start = self._word(lane, USED, I64, f"used{lane}")
+            if self.decodes and lane:
+                first = self.entry.icmp_signed("==", self.parameters.row, constant(0))
+                start = self.entry.select(first, constant(0), start)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
             self.entry.store(start, self.used[lane])
         return self.used[lane]

@@ -19,7 +19,11 @@ each:
   %inside = icmp sle i64 %end, %size
   %known = and i1 %positive, %ordered
   %sound = and i1 %known, %inside
-  br i1 %sound, label %decode, label %broken, !prof !0
+  br i1 %sound, label %ready, label %broken, !prof !0
+ready:
+  %size.or.failure = call i64 @prepare(ptr %state, i64 %index)
+  %prepared = icmp sge i64 %size.or.failure, 0
+  br i1 %prepared, label %decode, label %broken, !prof !0
 decode:
   %result = call i64 @kernel(ptr %buffer, i64 %begin, i64 %end, ptr %state, i64 %index)
   %good = icmp sge i64 %result, 0
@@ -27,7 +31,7 @@ decode:
 done:
   ret i64 %index
 broken:
-  %why = phi i64 [ 0, %each ], [ %result, %decode ]
+  %why = phi i64 [ 0, %each ], [ %size.or.failure, %ready ], [ %result, %decode ]
   call void @note(i64 %why, ptr %state)
   ret i64 %index
 }

@@ -109,7 +109,8 @@ class _Attempt:
         outer, self.writer = self.writer, Writer(depth=self.writer.depth)
         self._block(self.body)
         for lane in sorted(self.names.used | set(self.advanced)):
-            outer.line(f"used_{lane} = int(state[{lane_word(lane, USED)}])")
+            start = f"int(state[{lane_word(lane, USED)}])"
+            outer.line(f"used_{lane} = {start} if row else 0" if lane and self.kernel.direction == "decode" else f"used_{lane} = {start}")
         for lane in sorted(self.names.capacities):
             outer.line(f"capacity_{lane} = int(state[{lane_word(lane, CAPACITY)}])")
         outer.lines += self.writer.lines

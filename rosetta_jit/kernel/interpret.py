@@ -123,7 +123,8 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
     views = [memoryview(lane).cast("B") for lane in lanes]
     message = memoryview(buffer).cast("B")
     capacities = [int(state[lane_word(k, CAPACITY)]) for k in range(len(views))]
-    used = [int(state[lane_word(k, USED)]) for k in range(len(views))]
+    starts_empty = kernel.direction == "decode" and row == 0
+    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in range(len(views))]
     worst: _Failed | None = None
     for body in kernel.bodies:
         parameters: dict[str, Value] = {"begin": begin, "end": end, "row": row}

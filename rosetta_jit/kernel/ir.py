@@ -16,8 +16,9 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
 
 **Memory.** A kernel sees the message (bytes `begin` to `end` of a buffer, by int64 offset from the buffer's start) and the lanes
 of one holder, each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be
-addressed, nothing is allocated. Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte
-order that the access names, and no alignment.
+addressed, nothing is allocated. Used lengths are what the state says, but a kernel that decodes into row 0 starts with all lanes
+behind lane 0 empty. Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte order that
+the access names, and no alignment.
 
 **Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <=
 end), and the row of lane 0 that stands for the message (0 <= row). To encode, `begin` is where to write and `end` the end of the
