@@ -243,15 +243,15 @@ def unlike_messages(number: int, path: str, first: str, second: str) -> Diagnost
     )
 
 
-def undescribable_message(number: int, path: str) -> Diagnostic:
-    """A message with a dict that is none."""
+def undescribable_message(number: int, path: str, first: str, second: str) -> Diagnostic:
+    """A message with a dict for which the language has no type."""
     return _error(
         "undescribable-message",
-        f"message {number} has a dict whose elements are not (key value)",
+        f"message {number} has a dict that no schema describes",
         None,
         "",
-        "no schema describes it; read it without one",
-        f"at `{path or '.'}`",
+        "a dict has (key value) elements, with printable keys that differ or values of one type; read this one without a schema",
+        f"at `{path or '.'}`: {first} and {second}",
     )
 
 

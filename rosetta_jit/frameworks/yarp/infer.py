@@ -79,7 +79,7 @@ def _look(bottle: List, number: int) -> _Common:
     for index, item in enumerate(bottle.items):
         seen = shape(item)
         if isinstance(seen, Clash):
-            raise SchemaError((catalogue.undescribable_message(number, f".f{index}{seen.path}"),))
+            raise SchemaError((catalogue.undescribable_message(number, f".f{index}{seen.path}", seen.first, seen.second),))
         places.append(seen)
     empty = shape(bottle) if not places else None
     element = empty.element if isinstance(empty, Many) else join_all(places)

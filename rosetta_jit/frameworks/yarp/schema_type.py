@@ -187,7 +187,7 @@ def _marks(field: Field, options: Mapping[str, Node], problems: list[Diagnostic]
     """The options that an encoding must know, as the model wants them: sorted pairs."""
     marks: list[tuple[str, Constant]] = []
     if keyed:
-        marks.append(("key", _text_option(options, ":key", problems) or field.name))
+        marks.append(("key", _text_option(options, ":key", problems) if ":key" in options else field.name))
     elif ":key" in options:
         problems.append(catalogue.misplaced_option(options[":key"].span, ":key", "a field of a :dict"))
     rest = options.get(":rest")

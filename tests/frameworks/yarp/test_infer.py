@@ -159,6 +159,13 @@ def test_refuses_what_it_cannot_describe():
         infer([write(List((Dict(specialised([Value("int32", 1)])),)), YARP3)], name="x")
 
 
+def test_unprintable_keys_are_described_by_their_values_alone():
+    one, text = Value("int32", 1), Value("string", b"")
+    assert drafted(infer([write(List((pairs(**{"\x1b": one}),)), YARP3)], name="x")) == drafted('"x" (("f0" (:dict :int)))')
+    with pytest.raises(SchemaError, match=r"at `\.f0`: int32 and string"):
+        infer([write(List((pairs(**{"\x1b": one, "b": text}),)), YARP3)], name="x")
+
+
 def test_dialects_may_be_mixed():
     messages = [write(parse_text("a 0.5", dialect), dialect) for dialect in DIALECTS.values()]
     assert drafted(infer(messages, name="x")) == drafted('"x" (("f0" :string) ("f1" :double))')
@@ -172,7 +179,7 @@ HOSTILE = st.recursive(
     ),
     lambda items: st.one_of(
         st.lists(items, max_size=3).map(specialised),
-        st.dictionaries(st.text(max_size=4), items, max_size=3).map(lambda found: pairs(**found)),
+        st.dictionaries(st.text(max_size=4).filter(str.isprintable), items, max_size=3).map(lambda found: pairs(**found)),
     ),
     max_leaves=8,
 )
