@@ -54,9 +54,8 @@ def unfinished(span: Span, expected: Collection[str]) -> Diagnostic:
 
 def _alternatives(expected: Collection[str]) -> str:
     words = [word for token, word in TOKENS.items() if token in expected]
-    if {"MESSAGE", "OPTION"} <= set(expected):
-        # A field, or a keyword that starts something else: naming all of them would bury the others.
-        words.insert(0, "a name" if "EXTENSIONS" in expected and "SEMICOLON" not in expected else "a statement")
+    if {"OPTION", "SEMICOLON"} <= set(expected):
+        words.insert(0, "a statement")
     elif "IDENT" in expected:
         words.insert(0, "a name")
     return " or ".join(words) if words else "something else"

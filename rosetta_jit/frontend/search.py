@@ -92,6 +92,14 @@ class SearchPath:
         candidates = (folder / name for folder in (*beside, *self.folders))
         return next((_read(path) for path in candidates if _is_file(path)), None)
 
+    def preferred(self, lookup: Lookup) -> tuple[str, ...]:
+        """The paths at which a file would have been found before the one that was."""
+        if lookup.importer is None:
+            return ()
+        beside = () if lookup.importer in dict(self.files) else (Path(lookup.importer).parent,)
+        candidates = [str(folder / lookup.asked) for folder in (*beside, *self.folders)]
+        return tuple(candidates[: candidates.index(lookup.found)]) if lookup.found in candidates else ()
+
     def open(self, path: str | os.PathLike[str]) -> Source:
         """The mapping that the user names: a text in memory, a path of any form, or a name on the search path.
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
-from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import Where, Writer
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
@@ -93,22 +93,25 @@ class WireFields:
             self.found.counts[key] = self.bind(key, "count", self.supply.size(key))
         return self.found.counts[key]
 
-    def copy_bytes(self, path: Path, size: Expr) -> None:
+    def stored(self, path: Path) -> Stored:
+        return Stored(self.size_of(path))
+
+    def copy_bytes(self, path: Path, stored: Stored) -> None:
         key = self.path + path
         assert self.supply is not None
         source = self.supply.bytes_at(key)
         if source is None:
-            self.bind_bytes(key, self.writer.position, size)
+            self.bind_bytes(key, self.writer.position, stored.size)
         else:
-            self.writer.emit(Copy(Wire(self.writer.position), source, size))
+            self.writer.emit(Copy(Wire(self.writer.position), source, stored.size))
 
     def open(self, path: Path, count: Expr) -> WireElements:
         key = self.path + path
         self.found.counts[key] = self.bind(key, "count", count)
         return WireElements(self, key, self.where.members(path))
 
-    def elements(self, path: Path, count: Expr) -> WireElements:
-        del count
+    def elements(self, path: Path, stored: Stored) -> WireElements:
+        del stored
         return WireElements(self, self.path + path, self.where.members(path))
 
     def branch(self, choice: Choice) -> None:

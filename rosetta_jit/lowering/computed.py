@@ -25,7 +25,7 @@ def evaluate(value: expr.Expr, fields: Fields, writer: Writer, where: Where) -> 
             assert found is not None, path
             return integer(found)
         case expr.Len(path):
-            return fields.size_of(tuple(step.name for step in path.steps if isinstance(step, expr.Member)))
+            return fields.stored(tuple(step.name for step in path.steps if isinstance(step, expr.Member))).size
         case expr.Unary(_, operand):
             return binary(writer, "-", index(0), evaluate(operand, fields, writer, where), where)
         case expr.Binary(operator, left, right):

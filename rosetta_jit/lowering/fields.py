@@ -37,6 +37,14 @@ if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Choice, Codec, Path
 
 
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """How many bytes or elements a field has, and the row where they start, where it is known: read once, so that both are of one moment."""
+
+    size: Expr
+    start: Expr | None = None
+
+
 class Fields(Protocol):
     """Where the values of one message or element live."""
 
@@ -54,11 +62,11 @@ class Fields(Protocol):
         """Decode: bytes have come."""
         ...
 
-    def size_of(self, path: Path) -> Expr:
-        """Encode: how many bytes or elements to write."""
+    def stored(self, path: Path) -> Stored:
+        """Encode: the bytes or elements to write."""
         ...
 
-    def copy_bytes(self, path: Path, size: Expr) -> None:
+    def copy_bytes(self, path: Path, stored: Stored) -> None:
         """Encode: write bytes to the current position."""
         ...
 
@@ -66,7 +74,7 @@ class Fields(Protocol):
         """Decode: so many elements come, one after another."""
         ...
 
-    def elements(self, path: Path, count: Expr) -> Elements:
+    def elements(self, path: Path, stored: Stored) -> Elements:
         """Encode: the elements to write."""
         ...
 
@@ -135,13 +143,14 @@ class HolderFields:
         self.writer.emit(Copy(Place(span.lane, start), Wire(at), size))
         self.set_span(cell, start, size)
 
-    def size_of(self, path: Path) -> Expr:
-        return self.read_span(self.find(path), self.where.members(path))[1]
+    def stored(self, path: Path) -> Stored:
+        start, count = self.read_span(self.find(path), self.where.members(path))
+        return Stored(count, start)
 
-    def copy_bytes(self, path: Path, size: Expr) -> None:
-        cell = self.find(path)
-        start = self.read_span(cell, self.where.members(path))[0]
-        self.writer.emit(Copy(Wire(self.writer.position), Place(span_of(cell).lane, start), size))
+    def copy_bytes(self, path: Path, stored: Stored) -> None:
+        assert stored.start is not None
+        source = Place(span_of(self.find(path)).lane, stored.start)
+        self.writer.emit(Copy(Wire(self.writer.position), source, stored.size))
 
     def open(self, path: Path, count: Expr) -> HolderElements:
         cell = self.mark(path)
@@ -149,10 +158,9 @@ class HolderFields:
         self.set_span(cell, start, count)
         return HolderElements(self, span_of(cell).lane, start, self.where.members(path))
 
-    def elements(self, path: Path, count: Expr) -> HolderElements:
-        cell = self.find(path)
-        where = self.where.members(path)
-        return HolderElements(self, span_of(cell).lane, self.read_span(cell, where)[0], where)
+    def elements(self, path: Path, stored: Stored) -> HolderElements:
+        assert stored.start is not None
+        return HolderElements(self, span_of(self.find(path)).lane, stored.start, self.where.members(path))
 
     def branch(self, choice: Choice) -> None:
         """Fields of a holder are written in whichever branch they come."""

@@ -96,8 +96,8 @@ class HolderSide:
         key = self.key(place, values)
         if key not in self.arrays:
             fields, path, _ = self.descend(place, values)
-            count = fields.size_of(path)
-            self.arrays[key] = fields.elements(path, count), count
+            stored = fields.stored(path)
+            self.arrays[key] = fields.elements(path, stored), stored.size
         return self.arrays[key]
 
     def key(self, place: typed.Place, values: Values) -> Key:

@@ -202,12 +202,12 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
         fields.put_bytes(blob.path, writer.position, size)
         writer.advance(total)
         return
-    size = fields.size_of(blob.path)
-    write_count(writer, blob.count, add(size, extra), where)
-    writer.require(size, where, "no room for the message")
+    stored = fields.stored(blob.path)
+    write_count(writer, blob.count, add(stored.size, extra), where)
+    writer.require(stored.size, where, "no room for the message")
     if writer.direction == "encode":
-        fields.copy_bytes(blob.path, size)
-    writer.advance(size)
+        fields.copy_bytes(blob.path, stored)
+    writer.advance(stored.size)
     if blob.terminated:
         writer.store(Const("u8", 0), where)
 
@@ -256,10 +256,11 @@ def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
         writer.require(mul(count, max(least, 1)), where, "the message ends before its elements")
         elements = fields.open(repeat.path, count)
     else:
-        count = fields.size_of(repeat.path)
+        stored = fields.stored(repeat.path)
+        count = stored.size
         write_count(writer, repeat.count, add(count, repeat.extra), where)
         walk(Seq(repeat.head), fields, writer)
-        elements = fields.elements(repeat.path, count)
+        elements = fields.elements(repeat.path, stored)
     size = fixed_size(repeat.item)
     if size is None:
         _each_in_turn(writer, repeat.item, elements, count)
@@ -320,7 +321,7 @@ def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
         return
     fields.branch(choice)
     at = writer.var("next", writer.position)
-    empty = Compare("eq", fields.size_of(choice.path), index(0))
+    empty = Compare("eq", fields.stored(choice.path).size, index(0))
     branches: list[Block] = []
     for number in (choice.when_empty, 0):
         with writer.nested() as body:

@@ -81,7 +81,7 @@ def callable_class(base: type, *, native: bool | None = None) -> type:
         return type(base.__name__, (base,), {"__call__": _call_slow, "_is_native": False, **_names(base)})
     members = (_Member * 2)(_Member(b"__vectorcalloffset__", _SSIZE_T, VECTORCALL, _READONLY, None))
     slots = ((_TP_MEMBERS, ctypes.addressof(members)), (_TP_CALL, _address("PyVectorcall_Call")))
-    created = _from_spec(base, CALLABLE_BYTES, _DEFAULT | _VECTORCALL, slots)
+    created = _from_spec(base, CALLABLE_BYTES, _DEFAULT | _VECTORCALL | _BASETYPE, slots)
     return _with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
 
 

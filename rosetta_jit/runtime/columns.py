@@ -168,7 +168,7 @@ def column(node: Node, lanes: Lanes, rows: int, path: list[str]) -> Any:
             return Ragged(_elements(lanes, lane), *_spans(lanes, span, rows))
         case Items(span, lane, element, _):
             return Ragged(column(element, lanes, lanes.used(lane), path), *_spans(lanes, span, rows))
-        case Pairs(span, lane, key, value):
+        case Pairs(span, lane, _, key, value):
             used = lanes.used(lane)
             pairs = {"key": column(key, lanes, used, []), "value": column(value.node, lanes, used, path)}
             return Ragged(pairs, *_spans(lanes, span, rows))

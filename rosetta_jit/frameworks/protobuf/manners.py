@@ -115,7 +115,7 @@ class ProtobufMessage(Holder):
         """Take over what another message of the type has: singular fields replace, repeated ones are appended, messages merge."""
         values = self._raw_of(other, "MergeFrom")
         writable(self)
-        merge(self, {entry.name: value for entry, value in set_entries(self.access_.record, values)})
+        merge(self, values)
 
     def CopyFrom(self, other: Any) -> None:  # noqa: N802
         """Become equal to another message of the type."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.runtime.holder.merge import is_zero
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
 
 if TYPE_CHECKING:
@@ -18,13 +18,6 @@ def set_entries(record: Record, values: Mapping[str, Any]) -> Iterator[tuple[Ent
     for entry in sorted(record.entries.values(), key=lambda entry: entry.field.number or 0):
         if entry.name in values and (entry.presence is not None or not is_zero(values[entry.name])):
             yield entry, values[entry.name]
-
-
-def is_zero(value: Any) -> bool:
-    """Whether a proto3 field of this value is not on the wire. Minus zero is."""
-    if isinstance(value, float):
-        return not value and math.copysign(1, value) > 0
-    return value == 0 if isinstance(value, int) else len(value) == 0
 
 
 def missing(record: Record, values: Mapping[str, Any], path: str = "") -> Iterator[str]:
@@ -44,7 +37,7 @@ def _missing_in(node: Node, value: Any, path: str) -> Iterator[str]:
         case Items(_, _, Record() as element, _):
             for index, each in enumerate(value):
                 yield from missing(element, each, f"{path}[{index}].")
-        case Pairs(_, _, _, entry):
+        case Pairs(_, _, _, _, entry):
             for key, each in value.items():
                 yield from _missing_in(entry.node, each, f"{path}[{key}]")
         case _:

@@ -56,7 +56,7 @@ def _value(label: str, node: Node, value: Any) -> Iterator[str]:
         case Items(_, _, element, _):
             for each in value:
                 yield from _value(label, element, each)
-        case Pairs(_, _, key, entry):
+        case Pairs(_, _, _, key, entry):
             for each in sorted(value):
                 yield from _braced(label, [*_value("key", key, each), *_value("value", entry.node, value[each])])
         case Record() | Child():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
@@ -17,11 +18,23 @@ if TYPE_CHECKING:
 
 
 def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
-    """Set what raw values name: leaves replace, arrays are appended, maps take over pairs, messages merge."""
+    """Set what raw values name: leaves replace, arrays are appended, maps take over pairs, messages merge.
+
+    Of fields that cannot be absent, zero changes nothing: as in protobuf, it is not regarded as a value that was set.
+    """
     if depth > values.MAX_DEPTH:
         raise EncodeError("nesting", "", f"messages contain each other more than {values.MAX_DEPTH} deep")
     for name, value in fields.items():
-        _merge_field(message, message.access_.record.entries[name], value, depth)
+        entry = message.access_.record.entries[name]
+        if entry.presence is not None or not is_zero(value):
+            _merge_field(message, entry, value, depth)
+
+
+def is_zero(value: Any) -> bool:
+    """Whether a raw value is zero or empty. Minus zero is not."""
+    if isinstance(value, float):
+        return not value and math.copysign(1, value) > 0
+    return value == 0 if isinstance(value, int) else len(value) == 0
 
 
 def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None:

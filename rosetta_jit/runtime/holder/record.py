@@ -107,10 +107,11 @@ class Items:
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """A map: rows of key and value."""
+    """A map: rows of key and value, each a ``record``."""
 
     span: Cell
     lane: int
+    record: Record
     key: Scalar | Text
     value: Entry
 
@@ -225,7 +226,7 @@ class Tree:
     def _pairs(self, key: Type, value: Type, span: Cell, target: int) -> Pairs:
         entry = self._element(slots.map_entry(key, value), target)
         assert isinstance(entry, Record)
-        return Pairs(span, target, cast("Scalar | Text", entry.entries["key"].node), entry.entries["value"])
+        return Pairs(span, target, entry, cast("Scalar | Text", entry.entries["key"].node), entry.entries["value"])
 
     def _record(self, struct: Struct, slot: Slot, lane: int, touch: tuple[Presence, ...], *, recursive: bool) -> Record:
         assert isinstance(slot, slots.Row)

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime.holder import arena, values
 from rosetta_jit.runtime.holder.access import raw
-from rosetta_jit.runtime.holder.message import Message, bind, place, writable
+from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.message import View
     from rosetta_jit.runtime.holder.record import Entry, Node
     from rosetta_jit.runtime.lanes import Lanes
 
@@ -156,6 +155,12 @@ def _listed(sequence: Sequence, index: slice, value: Iterable[Any]) -> list[Any]
     return elements
 
 
+class Pair(View):
+    """The view of one key and value, through which the view of a value that is a message finds its row."""
+
+    __slots__ = OWN_SLOTS + VIEW_SLOTS
+
+
 class Dictionary(MutableMapping[Any, Any]):
     """A map. Values that are messages are views.
 
@@ -193,14 +198,9 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def __getitem__(self, key: Any) -> Any:
         index = self._keys()[self.checked(key)]
-        value = self.node.value
-        match value.node:
-            case Record():
-                return view_of(self.message, self.entry, value.node, index)
-            case node:
-                lanes, row = place(self.message)
-                start, _ = arena.span_of(lanes, self.node.span, row)
-                return values.read(node, lanes, start + index, values.Form.RAW)
+        family = self.message.access_.family
+        pair = bind(Pair(), self.message, family.access(self.node.record), self.entry, index)
+        return pair.access_.getters["value"](pair)
 
     def checked(self, key: object) -> Any:
         """The key as the map holds it.

@@ -57,7 +57,7 @@ def read(node: Node, lanes: Lanes, row: int, form: Form, depth: int = 0) -> Any:
         case Items(span, lane, element, _):
             start, count = arena.span_of(lanes, span, row)
             return [read(element, lanes, each, form, depth + 1) for each in range(start, start + count)]
-        case Pairs(span, lane, key, value):
+        case Pairs(span, lane, _, key, value):
             start, count = arena.span_of(lanes, span, row)
             rows = range(start, start + count)
             return {read(key, lanes, each, form): read(value.node, lanes, each, form, depth + 1) for each in rows}
@@ -113,7 +113,7 @@ def write(node: Node, lanes: Lanes, row: int, value: Any, path: str = "", *, dep
             start = arena.resize(lanes, span, lane, row, len(values))
             for index, each in enumerate(values):
                 write(element, lanes, start + index, each, f"{path}[{index}]", depth=depth + 1)
-        case Pairs(span, lane, key, entry):
+        case Pairs(span, lane, _, key, entry):
             values = _mapping(value, path)
             start = arena.resize(lanes, span, lane, row, len(values))
             for index, (each, of_key) in enumerate(values.items()):

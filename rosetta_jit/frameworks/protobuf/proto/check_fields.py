@@ -81,8 +81,8 @@ def _field(field: Field, version: Version, declared: Declarations) -> Iterator[D
         enum = declared.enums.get(field.type.value.text[1:])
     else:
         enum = declared.enums.get(field.type.text[1:])
-    if field.group:
-        yield from _group(field, version)
+    if field.group and version == "proto3":
+        yield say.group_in_proto3(field.name)
     if enum and isinstance(field.type, MapType) and enum.enum.values and enum.enum.values[0].number != 0:
         yield say.map_enum(field.type.value, enum.full)
     if enum and enum.version == "proto2" and version == "proto3":
@@ -97,15 +97,6 @@ def _field(field: Field, version: Version, declared: Declarations) -> Iterator[D
 def _map(type_: MapType) -> Iterator[Diagnostic]:
     if type_.key.text and (type_.key.text not in SCALARS or type_.key.text in NO_KEYS):
         yield say.map_key(type_.key)
-
-
-def _group(field: Field, version: Version) -> Iterator[Diagnostic]:
-    if version == "proto3":
-        yield say.group_in_proto3(field.name)
-    span = field.name.span
-    # From a descriptor the name of the group is that of its message, and was checked there.
-    if span and not span.source.text[span.start].isupper():
-        yield say.lower_case_group(field.name)
 
 
 def _default(field: Field, version: Version, option: Option, declared: Declarations) -> Iterator[Diagnostic]:

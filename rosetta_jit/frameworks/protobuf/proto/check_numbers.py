@@ -58,8 +58,8 @@ def check_overlaps(ranges: Sequence[Range], low: int, high: int) -> Iterator[Dia
         elif range_.first < low or range_.last > high:
             yield say.range_out_of_range(range_.span, low, high)
     widest = Range(low - 1, low - 1)
-    for range_ in in_order(ranges):
-        if widest.first <= range_.first <= widest.last:
+    for range_ in in_order([range_ for range_ in ranges if low <= range_.first <= range_.last <= high]):
+        if range_.first <= widest.last:
             yield say.overlap(range_.span, range_, widest)
         widest = max(widest, range_, key=lambda item: item.last)
 

@@ -67,7 +67,9 @@ def spelled(value: Value) -> str:
             return text
         case Aggregate():
             return "{...}"
-        case int() | float() | bytes():
+        case bytes():
+            return f'"{value.decode(errors="backslashreplace")}"'
+        case int() | float():
             return repr(value)
         case _:
             assert_never(value)

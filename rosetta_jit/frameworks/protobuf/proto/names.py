@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
-from rosetta_jit.frameworks.protobuf.proto.symbols import TYPES, Kind, Symbols, join, package_of
+from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, Field, File, MapType, Message, Method, Name, Oneof, Option, Service
 
 if TYPE_CHECKING:
@@ -122,8 +122,11 @@ class _Resolver:
         return Name(f".{full}", name.span)
 
     def unknown(self, scope: str, name: Name, kinds: frozenset[Kind]) -> Diagnostic:
-        """Why a name was not found: an inner scope hides it, its file is not imported, or it is nowhere."""
+        """Why a name was not found: it means something else, an inner scope hides it, its file is not imported, or it is nowhere."""
         bare = name.text.removeprefix(".")
+        other = self.symbols.find(self.file_name, scope, name.text, ALL_KINDS)
+        if other:
+            return say.wrong_kind(name, other, self.symbols.table[other].kind, kinds)
         inner = self.symbols.scope_of(self.file_name, scope, name.text, kinds)
         if inner and "." in bare:
             return say.hidden_name(name, join(inner, bare))

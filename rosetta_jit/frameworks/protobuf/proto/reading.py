@@ -133,6 +133,9 @@ class _Reader(ValueReader):
         number = tokens[-1]
         if node.data == "group":
             written = self.name(tokens[-2])
+            if not written.text[0].isupper():
+                # Its field would have the same name.
+                self.problems.append(say.lower_case_group(written))
             name, type_ = Name(written.text.lower(), written.span), written
         else:
             name, type_ = self.name(tokens[-2]), self.type(node)

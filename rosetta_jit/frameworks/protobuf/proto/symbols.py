@@ -7,7 +7,7 @@ https://protobuf.dev/programming-guides/proto2/#name-resolution
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Kind = Literal["package", "message", "enum", "value", "field", "oneof", "extension", "service", "method"]
 
 TYPES: frozenset[Kind] = frozenset(("message", "enum"))
+ALL_KINDS: frozenset[Kind] = frozenset(get_args(Kind))
 SCOPES: frozenset[Kind] = frozenset(("package", "message", "enum", "service"))
 
 
@@ -32,7 +33,6 @@ class Symbol:
     kind: Kind
     files: frozenset[str]
     name: Name
-    node: Message | Enum | Field | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,17 +146,17 @@ def _symbols(file: File) -> Iterator[tuple[str, Symbol]]:
     for count in range(len(parts)):
         yield ".".join(parts[: count + 1]), Symbol("package", files, file.package or Name(""))
     for full, message in messages_of(file):
-        yield full, Symbol("message", files, message.name, message)
+        yield full, Symbol("message", files, message.name)
         yield from _members(full, message, files)
     for full, enum in enums_of(file):
-        yield full, Symbol("enum", files, enum.name, enum)
+        yield full, Symbol("enum", files, enum.name)
         # The values of an enum stand beside it, not in it: so it is in C++.
         scope = full.rpartition(".")[0]
         for value in enum.values:
             yield join(scope, value.name.text), Symbol("value", files, value.name)
     for scope, extend in extends_of(file):
         for field in extend.fields:
-            yield join(scope, field.name.text), Symbol("extension", files, field.name, field)
+            yield join(scope, field.name.text), Symbol("extension", files, field.name)
     for service in file.services:
         full = join(package, service.name.text)
         yield full, Symbol("service", files, service.name)
@@ -166,10 +166,15 @@ def _symbols(file: File) -> Iterator[tuple[str, Symbol]]:
 
 def _members(scope: str, message: Message, files: frozenset[str]) -> Iterator[tuple[str, Symbol]]:
     for member in message.members:
-        if isinstance(member, Oneof):
-            yield join(scope, member.name.text), Symbol("oneof", files, member.name)
-    for field in fields_of(message):
-        yield join(scope, field.name.text), Symbol("field", files, field.name, field)
-        if isinstance(field.type, MapType):
-            entry = entry_name(field.name.text)
-            yield join(scope, entry), Symbol("field", files, Name(entry, field.name.span))
+        match member:
+            case Oneof(name, fields):
+                yield join(scope, name.text), Symbol("oneof", files, name)
+            case Field():
+                fields = (member,)
+            case _:
+                assert_never(member)
+        for field in fields:
+            yield join(scope, field.name.text), Symbol("field", files, field.name)
+            if isinstance(field.type, MapType):
+                entry = entry_name(field.name.text)
+                yield join(scope, entry), Symbol("field", files, Name(entry, field.name.span))

@@ -56,6 +56,8 @@ class _Parser(Protocol):
 
     def feed_eof(self) -> Tree[Token]: ...
 
+    def accepts(self) -> set[str]: ...
+
 
 def parse(source: Source, problems: list[Diagnostic]) -> Tree[Token] | None:
     """The tree of a file; what could be read of it where problems were found, None where nothing could."""
@@ -122,7 +124,7 @@ def _feed(source: Source, tokens: list[Token], problems: list[Diagnostic]) -> Tr
             return parser.feed_eof()
         except UnexpectedToken as error:
             wrong: Token = error.token
-            problems.append(_unexpected(source, wrong, error.expected))
+            problems.append(_unexpected(source, wrong, parser.accepts()))
             if wrong.type == "$END":
                 break
             _drop(statement, parser)

@@ -1,0 +1,58 @@
+"""Mistakes in what is asked of a mapping or a type as a whole."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosetta_jit.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.source import Span
+
+
+def unknown_encoding(name: str, framework: str, known: Sequence[str]) -> Diagnostic:
+    """An encoding that the framework of the wire's type does not have."""
+    return Diagnostic("error", "unknown-encoding", f"{framework} has no encoding `{name}`", help=f"choose one of {', '.join(known)}")
+
+
+def ambiguous_encoding(name: str, known: Sequence[str]) -> Diagnostic:
+    """An encoding that stands for several, where one must be written."""
+    return Diagnostic(
+        "error",
+        "ambiguous-encoding",
+        f"`{name}` reads several dialects, but only one can be written",
+        notes=("nothing on the wire tells a reader which one it is, so the writer must know what its peer reads",),
+        help=f"say which: encoding= one of {', '.join(known)}",
+    )
+
+
+def no_rules(span: Span | None, direction: str) -> Diagnostic:
+    """A direction for which the mapping has no rules."""
+    block = "unpack-rules" if direction == "decode" else "pack-rules"
+    return Diagnostic("error", "no-rules", f"the mapping does not say how to {direction}", span, help=f"add rules under `{block}:`")
+
+
+def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
+    """A type that no file declares."""
+    near = get_close_matches(name, known, 1)
+    help_ = f"did you mean `{near[0]}`?" if near else "name the files that declare it: imports=[…]"
+    return Diagnostic("error", "unknown-type", f"no file declares a message `{name}`", help=help_)
+
+
+def unknown_suffix(name: str, known: Sequence[str]) -> Diagnostic:
+    """A file that no front end reads."""
+    return Diagnostic("error", "unknown-suffix", f"no front end reads `{name}`", help=f"IDL files end in {', '.join(known)}")
+
+
+def no_such_file(name: str, folders: Sequence[str]) -> Diagnostic:
+    """A file that is nowhere on the search path."""
+    notes = tuple(f"searched {folder}" for folder in folders)
+    return Diagnostic("error", "no-such-file", f"`{name}` is not on the search path", notes=notes, help="add its folder: search_path=[…]")
+
+
+def too_large(name: str, span: Span | None, why: str) -> Diagnostic:
+    """A type whose holder would be absurd."""
+    return Diagnostic("error", "too-large", f"`{name}` is too large for a holder: {why}", span, help="split it, or bound what repeats")

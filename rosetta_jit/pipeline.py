@@ -1,0 +1,246 @@
+"""The driver: from what a user asks for to a program, stage by stage. Whoever finds the answer in the cache never imports this.
+
+    texts → schemas and mapping → checked rules → encoding, layout → kernels → passes → proof → code
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.frameworks.base import Framework, front_ends, installed
+from rosetta_jit.frontend.mapping import parse as parse_mapping
+from rosetta_jit.frontend.search import Reading, SearchPath
+from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.lowering import passes
+from rosetta_jit.lowering.check import Checked, check
+from rosetta_jit.lowering.lower import lower
+from rosetta_jit.model.layout import Layout, layout
+from rosetta_jit.model.serial import from_plain, to_plain
+from rosetta_jit.model.types import Ref, Schema, Struct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.kernel.ir import Kernel, Site
+    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.request import Backend, Request
+    from rosetta_jit.wire.codec import Encoding
+
+Stage = Literal["model", "codec", "kernel", "python", "llvm", "asm"]
+STAGES: tuple[Stage, ...] = get_args(Stage)
+
+
+@dataclass(frozen=True, slots=True)
+class Types:
+    """The types of a program, and the rules between them, if they are two."""
+
+    holder: Struct
+    wire: Struct
+    schema: Schema
+    rules: tuple[Rule, ...] | None
+
+
+@dataclass
+class Build:
+    """A program in the making. Each stage is made when it is first asked for."""
+
+    request: Request
+
+    def __post_init__(self) -> None:
+        self.reading = Reading()
+        self.search = SearchPath.of(self.request.folders, files=dict(self.request.files))
+
+    @cached_property
+    def types(self) -> Types:
+        return _mapped_types(self) if self.request.mapping is not None else _own_types(self)
+
+    @cached_property
+    def encoding(self) -> Encoding:
+        framework = self.wire_framework
+        name = self.request.encoding or next(iter(framework.encodings))
+        if name not in framework.encodings:
+            raise _report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
+        encoding = framework.encoding(name)(self.types.wire, self.types.schema, name)
+        if self.request.direction == "encode" and encoding.written is None:
+            raise _report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
+        return encoding
+
+    @cached_property
+    def layout(self) -> Layout:
+        try:
+            return layout(Ref(self.types.holder.name), self.types.schema)
+        except ValueError as error:
+            raise _report(self.request, words.too_large(self.types.holder.name, self.types.holder.span, str(error))) from error
+
+    @cached_property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """Proven kernels: the decoder, or the encoder and what measures for it."""
+        directions = ("decode",) if self.request.direction == "decode" else ("encode", "size")
+        return tuple(passes.run(self._lowered(direction)) for direction in directions)
+
+    def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
+        types = self.types
+        return lower(self.encoding, self.layout, direction, name=types.wire.name, rules=types.rules, borrow=self.request.borrow)
+
+    # --- frameworks --------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def wire_framework(self) -> Framework:
+        return self._framework(self.types.wire)
+
+    @cached_property
+    def manners(self) -> str:
+        """Where the manners of the holder's framework are found."""
+        return self._framework(self.types.holder).manners
+
+    def _framework(self, struct: Struct) -> Framework:
+        """The framework whose IDL declares a type."""
+        frameworks = installed()
+        if self.request.framework is not None:
+            return frameworks[self.request.framework]
+        file = struct.span.source.name if struct.span is not None else ""
+        return next(each for each in frameworks.values() if file.endswith(tuple(each.idl)))
+
+    # --- results -----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def backend(self) -> Backend:
+        return self.request.backend or ("numba" if find_spec("numba") is not None else "llvm")
+
+    @cached_property
+    def text(self) -> str:
+        """All that the code depends on besides this process."""
+        return "\n".join([self.backend, self.entry, *(to_text(kernel) for kernel in self.kernels)])
+
+    @cached_property
+    def entry(self) -> Literal["decode", "borrow", "encode"]:
+        if self.request.direction == "encode":
+            return "encode"
+        return "borrow" if self.request.borrow else "decode"
+
+    @cached_property
+    def header(self) -> dict[str, Any]:
+        """What a process needs besides the code, as JSON holds it."""
+        return {
+            "type": to_plain(Ref(self.types.holder.name), self.types.schema),
+            "manners": self.manners,
+            "entry": self.entry,
+            "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
+        }
+
+    def image(self) -> bytes:
+        """The object code."""
+        from rosetta_jit.backends.link import compile_program
+
+        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba")
+
+    def stage(self, stage: Stage) -> str:
+        """What the program became, as text."""
+        match stage:
+            case "model":
+                from rosetta_jit.model.printer import show_types
+
+                return show_types(self.types.schema, (self.types.holder, self.types.wire))
+            case "codec":
+                from rosetta_jit.wire.printer import show_encoding
+
+                return show_encoding(self.encoding)
+            case "kernel":
+                return "\n".join(to_text(kernel) for kernel in self.kernels)
+            case "python":
+                from rosetta_jit.backends.python import python_text
+
+                return "\n".join(python_text(kernel) for kernel in self.kernels)
+            case "llvm":
+                from rosetta_jit.backends.link import llvm_text
+
+                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba")
+            case "asm":
+                from rosetta_jit.backends.link import assembly
+
+                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba")
+            case _:
+                raise ValueError(f"no stage `{stage}`; there are {', '.join(STAGES)}")
+
+    def files(self) -> dict[str, str | None]:
+        """The files that were read, by digest, and those that would have been read instead if they existed."""
+        in_memory = dict(self.request.files)
+        found: dict[str, str | None] = {}
+        for lookup in self.reading.lookups:
+            if lookup.found not in in_memory:
+                found |= dict.fromkeys(self.search.preferred(lookup), None)
+        for lookup in self.reading.lookups:
+            if lookup.found not in in_memory:
+                found[lookup.found] = lookup.digest
+        return found
+
+
+def check_mapping(path: str, folders: Iterable[str] = ()) -> tuple[Diagnostic, ...]:
+    """The warnings of a mapping; raises MappingError with all that is wrong."""
+    search, reading = SearchPath.of(folders), Reading()
+    checked = check(parse_mapping(search.open(path)), front_ends(installed()), search, reading)
+    return checked.warnings
+
+
+def _mapped_types(build: Build) -> Types:
+    request = build.request
+    source = build.search.open(request.mapping or "")
+    build.reading.record(source.name, None, source)
+    checked = check(parse_mapping(source), front_ends(installed()), build.search, build.reading)
+    rules = checked.unpack if request.direction == "decode" else checked.pack
+    if rules is None or not rules:
+        raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
+    return Types(checked.holder.root, checked.wire.root, _both(checked), rules)
+
+
+def _both(checked: Checked) -> Schema:
+    return Schema({**checked.holder.schema.types, **checked.wire.schema.types})
+
+
+def _own_types(build: Build) -> Types:
+    request = build.request
+    if request.plain is not None:
+        type_, schema = from_plain(json.loads(request.plain))
+        struct = schema.resolve(type_)
+        assert isinstance(struct, Struct)
+        return Types(struct, struct, schema, None)
+    schema = _imported(build)
+    struct = schema.types.get(request.type or "")
+    if not isinstance(struct, Struct):
+        raise SchemaError((words.unknown_type(request.type or "", tuple(schema.types)),))
+    return Types(struct, struct, schema, None)
+
+
+def _imported(build: Build) -> Schema:
+    """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
+    request, ends = build.request, front_ends(installed())
+    guess = (request.type or "").replace(".", "/")
+    names = request.imports or tuple(name for name, _ in request.files) or tuple(guess + suffix for suffix in ends)
+    types: dict[str, Any] = {}
+    load = build.search.loader(build.reading)
+    for name in names:
+        end = next((end for suffix, end in ends.items() if name.endswith(suffix)), None)
+        if end is None:
+            raise SchemaError((words.unknown_suffix(name, tuple(ends)),))
+        source = load(name)
+        if source is not None:
+            types |= end(source, build.search.loader(build.reading, source)).types
+        elif request.imports:
+            raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
+    return Schema(types)
+
+
+def _plain_site(site: Site) -> list[Any]:
+    parts = [[part.offset, part.size, part.path, part.step] for part in site.parts]
+    return [site.kind, site.path, site.detail, site.line, parts]
+
+
+def _report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:
+    return (MappingError if request.mapping is not None else SchemaError)((diagnostic,))

@@ -1,0 +1,337 @@
+"""Decoders and encoders as users make them: from the cache where it has the answer, else from the compiler."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from rosetta_jit.frameworks.base import manners_of
+from rosetta_jit.request import Request
+from rosetta_jit.runtime import native, run
+from rosetta_jit.runtime.cache import Cache
+from rosetta_jit.runtime.cache_names import entry_name, request_name
+from rosetta_jit.runtime.callable import callable_class
+from rosetta_jit.runtime.holder import holder_class_of
+from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosetta_jit.pipeline import Build, Stage
+    from rosetta_jit.request import Backend, Direction
+    from rosetta_jit.runtime.holder import Holder
+
+SYMBOLS = {"decode": ("kernel", "call", "many"), "borrow": ("kernel", "call", "many"), "encode": ("kernel", "size", "call", "many", "sizes")}
+"""What the object code of each entry defines."""
+
+_PYTHON = ("python", "interpreter")
+"""Backends that compile nothing."""
+
+
+class _Made:
+    """How a program is made, and what it became."""
+
+    _request: Request
+    _in_python: ClassVar[type]
+
+    def __new__(cls, *_: object, backend: Backend | None = None, **__: object) -> Self:
+        """Kernels that run in Python have no entry to call: their programs are of a subclass with an ordinary ``__call__``."""
+        return object.__new__(cls._in_python if backend in _PYTHON else cls)
+
+    @property
+    def kernel(self) -> Any:
+        """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
+
+        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.data_pointer`, and a holder's ``lanes_.state``.
+        """
+        from rosetta_jit.backends.numba import typed
+
+        return typed(_build(self._request).kernels[0])
+
+    def stage(self, stage: Stage) -> str:
+        """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
+        return _build(self._request).stage(stage)
+
+
+class Decoder(_Made, DecoderBase):
+    """Decodes messages into holders: ``decode(message)`` fills and returns the decoder's own holder.
+
+    Parameters
+    ----------
+    mapping : path
+        A mapping, by its path or by its name on the search path: the folders given, those of ROSETTA_JIT_PATH, what is shipped.
+    encoding : str, optional
+        How messages are encoded; the usual way of the wire's framework by default (``yarp``: any of YARP's dialects).
+    schema : mapping of str to str, optional
+        File names and texts, as if they lay on the search path.
+    search_path : iterable of paths, optional
+        Folders to search before all others.
+    borrow : bool
+        Leave bytes fields in the message: the holder keeps it alive and shows views.
+    backend : {"numba", "llvm", "python", "interpreter"}, optional
+        What runs the kernel; numba where it is installed, else LLVM.
+
+    Raises
+    ------
+    MappingError, SchemaError
+        With every mistake and its place.
+    """
+
+    def __init__(
+        self,
+        mapping: str | os.PathLike[str],
+        *,
+        encoding: str | None = None,
+        schema: Mapping[str, str] | None = None,
+        search_path: Iterable[str | os.PathLike[str]] = (),
+        borrow: bool = False,
+        backend: Backend | None = None,
+    ) -> None:
+        self._make(_mapping_request("decode", mapping, encoding, schema, search_path, borrow=borrow, backend=backend))
+
+    @classmethod
+    def of(
+        cls,
+        type_: str | type,
+        *,
+        encoding: str | None = None,
+        imports: Iterable[str] = (),
+        schema: Mapping[str, str] | bytes | None = None,
+        search_path: Iterable[str | os.PathLike[str]] = (),
+        borrow: bool = False,
+        backend: Backend | None = None,
+    ) -> Self:
+        """A decoder of a type into its own holder, without a mapping.
+
+        Parameters
+        ----------
+        type_
+            Qualified name, or a message class of protobuf's Python package.
+        imports
+            The files that declare it, by their names on the search path. By default those in ``schema``, or the file that the name suggests.
+        schema
+            File names and texts, as if they lay on the search path; or a serialised ``FileDescriptorSet``.
+        """
+        made = cls.__new__(cls, backend=backend)
+        made._make(_type_request("decode", type_, encoding, imports, schema, search_path, borrow=borrow, backend=backend))
+        return made
+
+    def _make(self, request: Request) -> None:
+        self._request = request
+        self._start(_loaded(request))
+
+
+class Encoder(_Made, EncoderBase):
+    """Encodes holders as messages: ``encode(holder)`` gives bytes. Parameters as of `Decoder`.
+
+    Where a framework has several dialects, ``encoding`` must say which one to write.
+    """
+
+    def __init__(
+        self,
+        mapping: str | os.PathLike[str],
+        *,
+        encoding: str | None = None,
+        schema: Mapping[str, str] | None = None,
+        search_path: Iterable[str | os.PathLike[str]] = (),
+        backend: Backend | None = None,
+    ) -> None:
+        self._make(_mapping_request("encode", mapping, encoding, schema, search_path, backend=backend))
+
+    @classmethod
+    def of(
+        cls,
+        type_: str | type,
+        *,
+        encoding: str | None = None,
+        imports: Iterable[str] = (),
+        schema: Mapping[str, str] | bytes | None = None,
+        search_path: Iterable[str | os.PathLike[str]] = (),
+        backend: Backend | None = None,
+    ) -> Self:
+        """An encoder of a type from its own holder; parameters as of `Decoder.of`."""
+        made = cls.__new__(cls, backend=backend)
+        made._make(_type_request("encode", type_, encoding, imports, schema, search_path, backend=backend))
+        return made
+
+    def _make(self, request: Request) -> None:
+        self._request = request
+        self._start(_loaded(request))
+
+
+def _mapping_request(
+    direction: Direction,
+    mapping: str | os.PathLike[str],
+    encoding: str | None,
+    schema: Mapping[str, str] | None,
+    search_path: Iterable[str | os.PathLike[str]],
+    *,
+    borrow: bool = False,
+    backend: Backend | None,
+) -> Request:
+    return Request(
+        direction,
+        mapping=os.fspath(mapping),
+        encoding=encoding,
+        files=tuple((schema or {}).items()),
+        folders=tuple(map(os.fspath, search_path)),
+        borrow=borrow,
+        backend=backend,
+    )
+
+
+def _type_request(
+    direction: Direction,
+    type_: str | type,
+    encoding: str | None,
+    imports: Iterable[str],
+    schema: Mapping[str, str] | bytes | None,
+    search_path: Iterable[str | os.PathLike[str]],
+    *,
+    borrow: bool = False,
+    backend: Backend | None,
+) -> Request:
+    descriptors = _from_descriptors(type_, schema)
+    return Request(
+        direction,
+        type=type_ if isinstance(type_, str) else None,
+        encoding=encoding,
+        imports=tuple(imports),
+        files=() if schema is None or isinstance(schema, bytes) else tuple(schema.items()),
+        plain=descriptors,
+        framework="protobuf" if descriptors is not None else None,
+        folders=tuple(map(os.fspath, search_path)),
+        borrow=borrow,
+        backend=backend,
+    )
+
+
+def _from_descriptors(type_: str | type, schema: Mapping[str, str] | bytes | None) -> str | None:
+    """A type that comes as protobuf's own descriptors, as text."""
+    if isinstance(type_, str) and not isinstance(schema, bytes):
+        return None
+    from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set, from_message_class
+    from rosetta_jit.model.serial import to_plain
+    from rosetta_jit.model.types import Ref
+
+    if isinstance(schema, bytes):
+        declared = from_file_descriptor_set(schema)
+        name = type_ if isinstance(type_, str) else type_.__name__
+    else:
+        message: Any = type_
+        declared, name = from_message_class(message), message.DESCRIPTOR.full_name
+    if name not in declared.types:
+        from rosetta_jit.catalogue.pipeline import unknown_type
+        from rosetta_jit.errors import SchemaError
+
+        raise SchemaError((unknown_type(name, tuple(declared.types)),))
+    return json.dumps(to_plain(Ref(name), declared), sort_keys=True)
+
+
+def _build(request: Request) -> Build:
+    from rosetta_jit.pipeline import Build
+
+    return Build(request)
+
+
+def _loaded(request: Request) -> Loaded:
+    """The program that answers a request, compiled at most once a machine."""
+    if request.backend in _PYTHON:
+        return _interpreted(_build(request))
+    cache = Cache.default()
+    asked = request_name(request.key())
+    name = cache.get_manifest(asked)
+    entry = cache.get(name) if name is not None else None
+    if entry is not None:
+        try:
+            return _linked(entry.header, entry.image)
+        except native.ForeignCodeError as error:
+            _warn(str(error))
+    return _compiled(_build(request), cache, asked)
+
+
+def _compiled(build: Build, cache: Cache, asked: str) -> Loaded:
+    name = entry_name(build.text)
+    entry = cache.get(name)
+    if entry is not None and entry.header == build.header:
+        image = entry.image
+    else:
+        image = build.image()
+        cache.put(name, build.header, image)
+    cache.put_manifest(asked, build.files(), name)
+    return _linked(build.header, image)
+
+
+def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
+    """A program from its object code."""
+    holder_type = _holder_type(header)
+    library = native.load(image, SYMBOLS[header["entry"]])
+    size = run.native_run(library["size"]) if header["entry"] == "encode" else None
+    return Loaded(
+        holder_type=holder_type,
+        sites=_sites(header, 0),
+        kernel=run.native_run(library["kernel"]),
+        size=size,
+        size_sites=_sites(header, 1),
+        library=library,
+        borrow=header["entry"] == "borrow",
+    )
+
+
+def _interpreted(build: Build) -> Loaded:
+    """A program that runs in Python: slowly, but anywhere."""
+    kernels = [_python_kernel(build, number) for number in range(len(build.kernels))]
+    return Loaded(
+        holder_type=_holder_type(build.header),
+        sites=_sites(build.header, 0),
+        kernel=kernels[0],
+        size=kernels[1] if len(kernels) > 1 else None,
+        size_sites=_sites(build.header, 1),
+        borrow=build.request.borrow,
+    )
+
+
+def _python_kernel(build: Build, number: int) -> run.Run:
+    kernel = build.kernels[number]
+    if build.request.backend == "python":
+        from rosetta_jit.backends.python import compile_python
+
+        return run.python_run(compile_python(kernel))
+    from functools import partial
+
+    from rosetta_jit.kernel.interpret import run as interpret
+
+    return run.python_run(partial(interpret, kernel))
+
+
+def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
+    return holder_class_of(header["type"], manners_of(header["manners"]))
+
+
+def _sites(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:
+    sites = header["sites"]
+    return tuple(run.Site.of(site) for site in sites[kernel]) if kernel < len(sites) else ()
+
+
+def _warn(why: str) -> None:
+    import warnings
+
+    from rosetta_jit.errors import CacheWarning
+
+    warnings.warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning, stacklevel=4)
+
+
+def _callable(base: type) -> type:
+    """The class that users see, and its subclass for kernels in Python."""
+    made = callable_class(base)
+
+    def call(program: Any, *arguments: object, **named: object) -> object:
+        return program.call_slowly(*arguments, **named)
+
+    made._in_python = type(base.__name__, (made,), {"__call__": call, "__module__": base.__module__, "__qualname__": base.__qualname__})
+    return made
+
+
+if not TYPE_CHECKING:
+    Decoder, Encoder = _callable(Decoder), _callable(Encoder)

@@ -1,0 +1,58 @@
+"""What a user asks for when making a program, as data: all that the answer depends on besides the files that it names."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+Direction = Literal["decode", "encode"]
+Backend = Literal["numba", "llvm", "python", "interpreter"]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """One program.
+
+    Attributes
+    ----------
+    mapping
+        Path or name of a mapping; None for a type into its own holder.
+    type
+        Qualified name of that type.
+    encoding
+        Name of the encoding; None for the framework's usual one.
+    imports
+        IDL files, by their names on the search path.
+    files
+        Names and texts, as if they lay on the search path.
+    plain
+        A type that came as descriptors: as `rosetta_jit.model.serial` writes it.
+    framework
+        The framework of such a type.
+    folders
+        The user's search path.
+    borrow
+        Bytes fields of decoded holders are views into the message.
+    backend
+        What runs the kernels; None for numba where it is installed, else LLVM.
+    """
+
+    direction: Direction
+    mapping: str | None = None
+    type: str | None = None
+    encoding: str | None = None
+    imports: tuple[str, ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
+    plain: str | None = None
+    framework: str | None = None
+    folders: tuple[str, ...] = ()
+    borrow: bool = False
+    backend: Backend | None = None
+
+    def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
+        """The request as plain data, with the surroundings that relative names depend on."""
+        return {**asdict(self), "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more

@@ -1,0 +1,153 @@
+"""Running kernels from Python: buffers, growth, and results turned into errors.
+
+This is the slow path of calls that go through the entry, and the only path of kernels that were not compiled.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rosetta_jit.errors import DecodeError, EncodeError
+from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW_LANE, GROW_ROWS, RESULT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rosetta_jit.errors import Kind
+    from rosetta_jit.runtime.lanes import Lanes
+
+GROW = -1
+ANY_SIZE = 1 << 62
+"""The room that a kernel has that only measures."""
+
+Run = Callable[["NDArray[np.uint8] | None", int, int, "Lanes", int], int]
+"""A kernel: buffer, begin, end, lanes of the holder, row; a position, or a failure."""
+
+_KERNEL = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)
+
+
+def native_run(address: int) -> Run:
+    """A compiled kernel."""
+    kernel = _KERNEL(address)
+
+    def run(buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
+        return kernel(None if buffer is None else buffer.ctypes.data, begin, end, lanes.state.ctypes.data, row)
+
+    return run
+
+
+def python_run(kernel: Callable[..., int]) -> Run:
+    """A kernel in Python, which gets the lanes themselves."""
+
+    def run(buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
+        memory = np.empty(0, np.uint8) if buffer is None else buffer
+        return kernel(memory, begin, end, lanes.state, lanes.buffers, row)
+
+    return run
+
+
+def run_growing(run: Run, buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
+    """Run until no lane is too small."""
+    result = run(buffer, begin, end, lanes, row)
+    while result == GROW:
+        grow(lanes)
+        result = run(buffer, begin, end, lanes, row)
+    return result
+
+
+def grow(lanes: Lanes) -> None:
+    """Make the room that the last run lacked."""
+    lanes.grow(*missing(lanes))
+
+
+def readable(message: object) -> NDArray[np.uint8]:
+    """The bytes of a message: TypeError if it has none, BufferError if they do not lie together."""
+    view = memoryview(cast("Any", message))
+    if not view.c_contiguous:
+        raise BufferError("the message's bytes do not lie one after another")
+    return np.frombuffer(view, np.uint8) if view.nbytes else np.empty(0, np.uint8)
+
+
+def writable(buffer: object) -> NDArray[np.uint8]:
+    """The bytes of an output: TypeError if it has none, BufferError if they cannot be written."""
+    array = readable(buffer)
+    if not array.flags.writeable and memoryview(cast("Any", buffer)).readonly:
+        raise BufferError(f"{type(buffer).__name__} is read-only")
+    return array
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A stretch of a merged check, as `kernel.ir.Part`."""
+
+    offset: int
+    size: int
+    path: str
+    step: int
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """Where a message can fail, as `kernel.ir.Site`."""
+
+    kind: str
+    path: str
+    detail: str
+    line: str
+    parts: tuple[Part, ...]
+
+    @classmethod
+    def of(cls, plain: Sequence[Any]) -> Site:
+        """From the header of a cached program."""
+        kind, path, detail, line, parts = plain
+        return cls(kind, path, detail, line, tuple(Part(*part) for part in parts))
+
+
+def decode_error(site: Site, lanes: Lanes, begin: int, end: int) -> DecodeError:
+    """What a failed kernel has left in the state, as an error. Offsets count from the message's begin."""
+    at = lanes.words[ERROR_OFFSET]
+    path, at = _located(site, lanes, at, end)
+    return DecodeError(cast("Kind", site.kind), path, _sentence(site), at - begin)
+
+
+def encode_error(site: Site, lanes: Lanes) -> EncodeError:
+    """The same of an encoder."""
+    path, _ = _located(site, lanes, 0, 0)
+    return EncodeError(cast("Kind", site.kind), path, _sentence(site))
+
+
+def missing(lanes: Lanes) -> tuple[int, int]:
+    """The lane that was too small for the last run, and how many rows it lacked."""
+    return lanes.words[GROW_LANE], lanes.words[GROW_ROWS]
+
+
+def note(lanes: Lanes, result: int) -> None:
+    """Leave a result where a run over many messages leaves it."""
+    lanes.words[RESULT] = result
+
+
+def result_of(lanes: Lanes) -> int:
+    """The result of the kernel that stopped a run over many messages."""
+    return lanes.words[RESULT]
+
+
+def _located(site: Site, lanes: Lanes, at: int, end: int) -> tuple[str, int]:
+    indices = [lanes.words[ERROR_INDICES + number] for number in range(site.path.count("{}"))]
+    available = end - at
+    for part in site.parts:
+        number = max(0, (available - part.offset - part.size) // part.step + 1) if part.step else 0
+        if part.step or part.offset + part.size > available:
+            known = [lanes.words[ERROR_INDICES + index] for index in range(part.path.count("{}") - bool(part.step))]
+            return part.path.format(*known, *([number] if part.step else [])), at + part.offset + number * part.step
+    return site.path.format(*indices), at
+
+
+def _sentence(site: Site) -> str:
+    return f"{site.detail} ({site.line})" if site.line else site.detail
