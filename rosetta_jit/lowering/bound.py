@@ -13,7 +13,7 @@ from typing import Protocol
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import Where, Writer
-from rosetta_jit.wire.codec import Blob, Choice, Codec, Number, Path, Repeat, Seq, Table
+from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
 
 EACH = "[]"
@@ -147,7 +147,7 @@ class WireFields:
             case Choice(_, _, alternatives, _, _):
                 for _, each in alternatives:
                     self.declare(each, prefix)
-            case Number(path, scalar, _):
+            case Number(path, scalar, _) | Computed(path, scalar, _, _):
                 self.variable(prefix + path, "value", Const(scalar_name(scalar), 0))
             case Table(path, _, _, _):
                 self.variable(prefix + path, "value", index(0))

@@ -60,7 +60,8 @@ def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, ru
         if writer.direction == "decode":
             writer.emit(Fill(KernelPlace(0, ROW), index(layout.lanes[0].stride)))
         if rules is None:
-            walk(attempt, holder, writer)
+            with writer.whole():
+                walk(attempt, holder, writer)
         else:
             _mapped(writer, attempt, holder, rules)
         if writer.direction == "decode":
@@ -74,7 +75,8 @@ def _mapped(writer: Writer, attempt: Codec, fields: HolderFields, rules: tuple[R
     holder, found = HolderSide(writer, fields), Found()
     if writer.direction == "decode":
         wire = WireSide(writer, WireFields(writer, found))
-        walk(attempt, wire.root, writer)
+        with writer.whole():
+            walk(attempt, wire.root, writer)
         end = writer.position
         Runner(writer, wire, holder).run(rules, Values(writer, wire, {}))
         writer.position = end

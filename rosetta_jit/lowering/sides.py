@@ -61,11 +61,11 @@ class HolderSide:
 
     def number(self, place: typed.Place, values: Values) -> Expr:
         fields, path, last = self.descend(place, values)
+        value = self.writer.let(path[-1] if path else "element", _got(fields, path))
         if not path:
-            return _got(fields, path)
+            return value
         owner = fields.find(path[:-1])
         member = member_of(owner.slot, path[-1])
-        value = _got(fields, path)
         if member.presence is None or last is None or not isinstance(owner.slot, Row):
             return value
         return self.present_or_default(owner.place, owner.slot, member, last, value, values)

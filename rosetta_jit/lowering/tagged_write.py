@@ -66,6 +66,14 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
             writer.assign(after, writer.position)
         writer.emit(If(present, block(body)))
         writer.position = after
+        _settle(writer, fields, lengths)
+
+
+def _settle(writer: Writer, fields: HolderFields, lengths: Lengths) -> None:
+    """Behind an optional field: say again what holds whether it was there or not, for the proof."""
+    writer.settle()
+    known = Binary("and", Compare("ge", lengths.next, index(0)), Compare("le", lengths.next, Capacity(lengths.lane)))
+    writer.expect(known, "length", fields.where, "the holder changed while it was written")
 
 
 def _present(fields: HolderFields, entry: Entry) -> Expr | None:
@@ -210,6 +218,7 @@ def _write_packed(writer: Writer, fields: HolderFields, entry: Entry, where: Whe
         writer.assign(after, writer.position)
     writer.emit(If(Compare("gt", count, index(0)), block(body)))
     writer.position = after
+    _settle(writer, fields, lengths)
 
 
 def _packed_fixed(writer: Writer, fields: HolderFields, cell: Cell, start: Expr, count: Expr, number: Number, where: Where) -> None:

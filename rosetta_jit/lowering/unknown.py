@@ -85,6 +85,7 @@ def _skip_group(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Whe
     writer.emit(Reserve(scratch, index(MAX_NESTING)))
     base = writer.let("base", Used(scratch))
     writer.emit(SetField(Place(scratch, base), Binary("shr", tag, index(3))))
+    writer.expect(Compare("le", writer.position, stop), "truncated", where, "a field goes beyond its message")
     at, depth = writer.var("at", writer.position), writer.var("depth", index(1))
     with writer.nested() as body:
         writer.position = at
@@ -103,6 +104,8 @@ def _skip_group(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Whe
         writer.emit(Switch(Binary("and", inner, index(7)), cases, _refused(writer, where)))
         writer.position = after
         writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
+        within = Binary("and", Compare("ge", depth, index(0)), Compare("le", depth, index(MAX_NESTING)))
+        writer.expect(within, "nesting", where, f"more than {MAX_NESTING} groups within each other")
         writer.assign(at, after)
     open_group = Binary("and", Compare("gt", depth, index(0)), Compare("lt", at, stop))
     invariant = (

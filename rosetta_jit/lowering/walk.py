@@ -171,15 +171,21 @@ def _computed(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Sca
     if writer.direction == "size":
         writer.advance(WIDTH[scalar])
         return
-    at = writer.position
-    found = integer(writer.load(scalar, where, order)) if writer.direction == "decode" else None
-    expected = evaluate(value, fields, writer, where)
-    if found is not None:
-        writer.expect(Compare("eq", found, expected), "constant", where, "must agree with the fields that determine it", at=at)
-        fields.put(path, found)
+    if writer.direction == "decode":
+        fields.put(path, writer.load(scalar, where, order))
+        writer.deferred.append(lambda: _agrees(writer, fields, fields.get(path), value, where, "constant"))
     else:
+        expected = evaluate(value, fields, writer, where)
         _in_range(writer, where, expected, scalar)
         writer.store(_as(scalar, expected), where, order)
+
+
+def _agrees(writer: Writer, fields: Fields, found: Expr | None, value: expr.Expr, where: Where, kind: str) -> None:
+    """Checked when the message has been read, since any of its fields may determine the value."""
+    assert found is not None
+    known = writer.let("found", integer(found))
+    expected = evaluate(value, fields, writer, where)
+    writer.expect(Compare("eq", known, expected), kind, where, "must agree with the fields that determine it")
 
 
 def _padding(writer: Writer, where: Where, scalar: Scalar, value: int, order: str) -> None:
@@ -194,7 +200,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
     where = fields.where.members(blob.path)
     extra = int(blob.terminated)
     if writer.direction == "decode":
-        total = read_count(writer, fields, blob.count, where, "length", least=extra)
+        total = read_count(writer, fields, blob.path, blob.count, "length", least=extra)
         writer.require(total, where)
         size = _without_terminator(writer, total, where) if blob.terminated else total
         if blob.text:
@@ -218,18 +224,18 @@ def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:
     return writer.let("length", Binary("sub", total, index(1)))
 
 
-def read_count(writer: Writer, fields: Fields, count: Count, where: Where, kind: str, *, least: int = 0) -> Expr:
+def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
     """A count that has come: not negative, and what the schema says it must be."""
-    scalar, at = scalar_name(count.scalar), writer.position
+    where, scalar, at = fields.where.members(path), scalar_name(count.scalar), writer.position
     found = writer.let("count", integer(writer.load(scalar, where, count.order)))
     if isinstance(count.value, int):
         writer.expect(Compare("eq", found, index(count.value)), kind, where, f"must be {count.value}", at=at)
         return index(count.value)
     rule = f"must be at least {least}" if least else "must not be negative"
     writer.expect(Compare("ge", found, index(least)), kind, where, rule, at=at)
-    if count.value is not None:
-        expected = evaluate(count.value, fields, writer, where)
-        writer.expect(Compare("eq", found, expected), kind, where, "must agree with the fields that determine it", at=at)
+    value = count.value
+    if value is not None:
+        writer.deferred.append(lambda: _agrees(writer, fields, fields.stored(path).size, value, where, kind))
     return found
 
 
@@ -249,7 +255,7 @@ def write_count(writer: Writer, count: Count, value: Expr, where: Where) -> None
 def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
     where = fields.where.members(repeat.path)
     if writer.direction == "decode":
-        total = read_count(writer, fields, repeat.count, where, "count", least=repeat.extra)
+        total = read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
         count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
         walk(Seq(repeat.head), fields, writer)
         least = minimum_size(repeat.item)
@@ -279,7 +285,8 @@ def _each_at_its_place(writer: Writer, item: Codec, elements: Elements, count: E
         number = Local("i64", writer.fresh("i"))
         with writer.nested() as body:
             writer.position = writer.let("item", Binary("add", first, mul(number, size)))
-            walk(item, placed.at(number), writer)
+            with writer.whole():
+                walk(item, placed.at(number), writer)
         writer.emit(For(number.name, count, block(body)))
     writer.advance(total)
 
@@ -289,7 +296,8 @@ def _each_in_turn(writer: Writer, item: Codec, elements: Elements, count: Expr) 
     number, at = writer.var("i", index(0)), writer.cursor()
     with writer.nested() as body:
         writer.position = at
-        walk(item, elements.at(number), writer)
+        with writer.whole():
+            walk(item, elements.at(number), writer)
         writer.settle()
         writer.emit(Assign(at.name, writer.position), Assign(number.name, add(number, 1)))
     invariant = (Compare("ge", number, index(0)), *writer.position_invariant(at))

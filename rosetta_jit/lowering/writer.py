@@ -37,7 +37,7 @@ from rosetta_jit.kernel.ir import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 MAX_SIZE = 1 << 56
 """No message that fits in memory is larger, so sums of sizes below this cannot wrap."""
@@ -77,6 +77,16 @@ class Writer:
     position: Expr = BEGIN
     sites: list[Site] = field(default_factory=lambda: [Site("grow", "", "a lane is too small")])
     names: set[str] = field(default_factory=set[str])
+    deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
+
+    @contextmanager
+    def whole(self) -> Iterator[None]:
+        """Around a message or an element: what must be checked when all its fields are known is checked at the end."""
+        outer, self.deferred = self.deferred, []
+        yield
+        for check in self.deferred:
+            check()
+        self.deferred = outer
 
     def emit(self, *statements: Stmt) -> None:
         self.block.extend(statements)
@@ -185,7 +195,7 @@ class Writer:
         match op:
             case "add" | "sub" | "mul":
                 self.expect(Fits(op, left, right), "range", where, "a number grows beyond 64 bits", line=line)
-                return Binary(op, left, right)
+                return self.let("sum" if op != "mul" else "product", Binary(op, left, right))
             case _:
                 raise AssertionError(op)
 
