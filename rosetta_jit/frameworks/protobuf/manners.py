@@ -1,8 +1,9 @@
 """Holders that behave as protobuf's generated Python classes do, so that code written against those keeps working.
 
 What differs, and why: repeated numbers are numpy arrays (see `rosetta_jit.frameworks.protobuf.repeated`); bytes fields also take
-bytearrays, memoryviews and numpy arrays; views of nested messages do not outlive the next decode into their holder; errors of parsing and serialising
-are `rosetta_jit.errors.DecodeError` and `EncodeError`.
+bytearrays, memoryviews and numpy arrays; views of nested messages do not outlive the next decode into their holder, and show the element
+at their index where elements before it are deleted; NaN differs from NaN; errors of parsing and serialising are
+`rosetta_jit.errors.DecodeError` and `EncodeError`.
 """
 
 from __future__ import annotations

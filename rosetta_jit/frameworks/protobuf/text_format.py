@@ -29,20 +29,7 @@ def text(record: Record, values: Mapping[str, Any]) -> str:
 
 def _message(record: Record, values: Mapping[str, Any]) -> Iterator[str]:
     for entry, value in set_entries(record, values):
-        node = entry.node
-        group = bool(entry.field.option("group"))
-        yield from _value(_group_name(node) if group else entry.name, node, value)
-
-
-def _group_name(node: Node) -> str:
-    """A group is printed by the name of its message."""
-    match node:
-        case Items(_, _, Record() as record, _) | Child(_, _, record):
-            return record.struct.rpartition(".")[2]
-        case Record():
-            return node.struct.rpartition(".")[2]
-        case _:
-            return ""
+        yield from _value(entry.name, entry.node, value)
 
 
 def _value(label: str, node: Node, value: Any) -> Iterator[str]:

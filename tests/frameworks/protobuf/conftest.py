@@ -44,10 +44,10 @@ def message_class(request):
 
 
 @pytest.fixture
-def All(message_class):  # noqa: N802  it is a class
+def everything(message_class):
     return message_class("second.All")
 
 
 @pytest.fixture
-def Plain(message_class):  # noqa: N802
+def plain(message_class):
     return message_class("third.Plain")
