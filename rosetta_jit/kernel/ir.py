@@ -49,6 +49,9 @@ next body starts afresh, with used lengths as they were at the start; after the 
 failure, among those of all bodies, whose offset is greatest (the earliest of equals), and leaves its offset and indices in the
 holder's state. A failing Reserve returns -1 at once, having left lane and missing rows there: the runtime grows the lane and
 calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
+
+**Used lengths** at the start are those of the holder's state, but a decode into row 0 starts with every used length 0: the message
+replaces what the holder held. Later rows of a batch are added to the rows before.
 """
 
 from __future__ import annotations

@@ -93,7 +93,9 @@ class WireFields:
             self.found.counts[key] = self.bind(key, "count", self.supply.size(key))
         return self.found.counts[key]
 
-    def stored(self, path: Path) -> Stored:
+    def stored(self, path: Path, fixed: int | None = None) -> Stored:
+        if fixed is not None:
+            self.found.counts[self.path + path] = index(fixed)
         return Stored(self.size_of(path))
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:

@@ -62,8 +62,8 @@ class Fields(Protocol):
         """Decode: bytes have come."""
         ...
 
-    def stored(self, path: Path) -> Stored:
-        """Encode: the bytes or elements to write."""
+    def stored(self, path: Path, fixed: int | None = None) -> Stored:
+        """Encode: the bytes or elements to write; their number, where the schema fixes it."""
         ...
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
@@ -143,7 +143,8 @@ class HolderFields:
         self.writer.emit(Copy(Place(span.lane, start), Wire(at), size))
         self.set_span(cell, start, size)
 
-    def stored(self, path: Path) -> Stored:
+    def stored(self, path: Path, fixed: int | None = None) -> Stored:
+        del fixed
         start, count = self.read_span(self.find(path), self.where.members(path))
         return Stored(count, start)
 

@@ -262,7 +262,8 @@ def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
         writer.require(mul(count, max(least, 1)), where, "the message ends before its elements")
         elements = fields.open(repeat.path, count)
     else:
-        stored = fields.stored(repeat.path)
+        fixed = repeat.count.value - repeat.extra if isinstance(repeat.count.value, int) else None
+        stored = fields.stored(repeat.path, fixed)
         count = stored.size
         write_count(writer, repeat.count, add(count, repeat.extra), where)
         walk(Seq(repeat.head), fields, writer)

@@ -52,12 +52,17 @@ class _Messages:
                 label = "packed" if field.option("packed") else "repeated"
                 return [self.entry(field, element, (field.name,), label)]
             case Map(key, value):
-                item = self.message(_map_message(key, value), (), delimited=True)
-                return [Entry(_number(field), 2, (field.name,), item, "repeated")]
+                return [Entry(_number(field), 2, (field.name,), self.map_entry(key, value), "repeated")]
             case Optional(value):
                 return [self.entry(field, value, (field.name,), "single")]
             case other:
                 return [self.entry(field, other, (field.name,), "single", implicit=True)]
+
+    def map_entry(self, key: Type, value: Type) -> Tagged:
+        """An entry of a map is a message of two fields, which are always written; one that does not come is zero."""
+        fields = [Field(each.name, each.type, number) for number, each in enumerate(map_entry(key, value).fields, 1)]
+        entries = tuple(self.entry(each, each.type, (each.name,), "single") for each in fields)
+        return Tagged((), entries, delimited=True)
 
     def cases(self, union: str, case: Field) -> list[Entry]:
         return [self.entry(case, case.type, (union, case.name), "single")]
@@ -107,12 +112,6 @@ def _struct(schema: Schema, name: str) -> Struct:
     struct = schema.types[name]
     assert isinstance(struct, Struct)
     return struct
-
-
-def _map_message(key: Type, value: Type) -> Struct:
-    """An entry of a map is a message of two fields, each zero where it is missing."""
-    fields = map_entry(key, value).fields
-    return Struct("", tuple(Field(each.name, each.type, number) for number, each in enumerate(fields, 1)))
 
 
 def _number(field: Field) -> int:
