@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from rosetta_jit.request import Backend, Direction
     from rosetta_jit.runtime.holder import Holder
 
-SYMBOLS = {"decode": ("kernel", "call", "many"), "borrow": ("kernel", "call", "many"), "encode": ("kernel", "size", "call", "many", "sizes")}
+SYMBOLS = {
+    "decode": ("kernel", "call", "many"),
+    "borrow": ("kernel", "call", "many"),
+    "encode": ("kernel", "size", "call", "many", "sizes"),
+}
 """What the object code of each entry defines."""
 
 _PYTHON = ("python", "interpreter")
@@ -109,7 +113,7 @@ class Decoder(_Made, DecoderBase):
         type_
             Qualified name, or a message class of protobuf's Python package.
         imports
-            The files that declare it, by their names on the search path. By default those in ``schema``, or the file that the name suggests.
+            The files that declare it, by their names on the search path; by default those in ``schema``, or the file that the name suggests.
         schema
             File names and texts, as if they lay on the search path; or a serialised ``FileDescriptorSet``.
         """

@@ -12,7 +12,7 @@ from typing import Protocol
 
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
-from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
 
@@ -64,7 +64,7 @@ class WireFields:
     found: Found
     supply: Supply | None = None
     path: Path = ()
-    where: Where = Where()
+    where: Where = MESSAGE
     element: bool = False
 
     def put(self, path: Path, value: Expr) -> None:

@@ -30,7 +30,7 @@ from rosetta_jit.kernel.ir import (
     index,
     type_of,
 )
-from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """How many bytes or elements a field has, and the row where they start, where it is known: read once, so that both are of one moment."""
+    """How many bytes or elements a field has, and the row where they start, where it is known: both read at one moment."""
 
     size: Expr
     start: Expr | None = None
@@ -114,7 +114,7 @@ class HolderFields:
     writer: Writer
     layout: Layout
     cell: Cell
-    where: Where = Where()
+    where: Where = MESSAGE
     borrow: bool = False
 
     def put(self, path: Path, value: Expr) -> None:
@@ -250,6 +250,7 @@ def member_of(slot: Slot, name: str) -> Member:
 
 
 def span_of(cell: Cell) -> Span:
+    """The span at a cell that is one."""
     match cell.slot:
         case Span():
             return cell.slot

@@ -12,11 +12,15 @@ from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Dir
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.lowering.bound import Found, WireFields
 from rosetta_jit.lowering.fields import root_fields
+from rosetta_jit.lowering.recursion import cursors, read_rows
+from rosetta_jit.lowering.recursion_write import write_root
 from rosetta_jit.lowering.rules import Runner, Supplies, look_up_arrays
 from rosetta_jit.lowering.sides import HolderSide, WireSide
+from rosetta_jit.lowering.tagged import read_message
 from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.walk import walk
 from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.fields import HolderFields
@@ -60,14 +64,26 @@ def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, ru
         if writer.direction == "decode":
             writer.emit(Fill(KernelPlace(0, ROW), index(layout.lanes[0].stride)))
         if rules is None:
-            with writer.whole():
-                walk(attempt, holder, writer)
+            _own(writer, encoding, attempt, holder)
         else:
             _mapped(writer, attempt, holder, rules)
         if writer.direction == "decode":
             writer.expect(Compare("eq", writer.position, END), "trailing", Where(), "bytes are left over")
         writer.emit(Return(writer.position))
     return block(body)
+
+
+def _own(writer: Writer, encoding: Encoding, attempt: Codec, holder: HolderFields) -> None:
+    """The holder is of the wire's own type."""
+    if not isinstance(attempt, Tagged):
+        with writer.whole():
+            walk(attempt, holder, writer)
+    elif writer.direction == "decode":
+        rows = cursors(writer, holder.layout)
+        read_message(writer, holder, attempt, END, fresh=True, depth=index(0))
+        read_rows(encoding, holder, writer, rows)
+    else:
+        write_root(encoding, holder, attempt, writer)
 
 
 def _mapped(writer: Writer, attempt: Codec, fields: HolderFields, rules: tuple[Rule, ...]) -> None:

@@ -105,14 +105,13 @@ class HolderSide:
 
     def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
         """The fields of the innermost element, the path from there, and the last field of it."""
-        fields, path, last, done = self.root, (), None, 0
-        for step in place.steps:
-            done += 1
+        fields, path, last = self.root, (), None
+        for done, step in enumerate(place.steps):
             match step:
                 case FieldStep(each):
                     path, last = (*path, each.name), each
                 case IndexStep(at):
-                    elements, count = self.array(_prefix(place, done - 1), values)
+                    elements, count = self.array(_prefix(place, done), values)
                     number = values.of(at)
                     where = fields.where.members(path)
                     self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)

@@ -66,13 +66,16 @@ class Message:
     stop: Expr
     presence: tuple[Local, ...]
     starts: dict[Path, Local]
+    depth: Expr
 
 
-def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Expr, *, fresh: bool) -> None:
-    """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into."""
-    message = Message(
-        writer, fields, tagged, stop, _presence_words(writer, fields, fresh=fresh), _array_starts(writer, fields, tagged, fresh=fresh)
-    )
+def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Expr, *, fresh: bool, depth: Expr) -> None:
+    """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into.
+
+    ``depth`` is how many messages of recursive structs there are around it.
+    """
+    presence = _presence_words(writer, fields, fresh=fresh)
+    message = Message(writer, fields, tagged, stop, presence, _array_starts(writer, fields, tagged, fresh=fresh), depth)
     at = writer.var("at", writer.position)
     ended = writer.var("ended", Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
@@ -191,7 +194,7 @@ def _read_single(message: Message, entry: Entry) -> None:
             _clear_other_case(message, entry.path)
             _mark(message, entry.path)
             inner = HolderFields(writer, fields.layout, fields.find(entry.path), where, fields.borrow)
-            read_message(writer, inner, tagged, stop, fresh=False)
+            read_message(writer, inner, tagged, stop, fresh=False, depth=message.depth)
         case Recursion() as recursion:
             from rosetta_jit.lowering.recursion import read_recursive
 
@@ -326,7 +329,7 @@ def _read_element(message: Message, entry: Entry) -> None:
             row = fields.reserve(lane, index(1))
             writer.emit(Fill(Place(lane, row), index(fields.layout.lanes[lane].stride)))
             inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element), where, fields.borrow)
-            read_message(writer, inner, tagged, stop, fresh=True)
+            read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth)
         case Recursion() as recursion:
             from rosetta_jit.lowering.recursion import read_recursive
 

@@ -6,6 +6,7 @@ A message within another comes after its length. `size` computes all lengths and
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rosetta_jit.kernel.ir import (
@@ -42,29 +43,30 @@ from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varin
 
 @dataclass(frozen=True, slots=True)
 class Lengths:
-    """The scratch lane of lengths, and the number of the next one."""
+    """The scratch lane of lengths, the number of the next one, and how messages of recursive structs are written."""
 
     lane: int
     next: Local
+    write_child: Callable[[Writer, HolderFields, Cell, Recursion, Where], None]
 
 
 def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths: Lengths) -> None:
     """Write the fields that are there."""
     for entry in tagged.entries:
-        present = _present(fields, entry)
-        if present is None:
+        there = present(fields, entry)
+        if there is None:
             _write_entry(writer, fields, entry, lengths)
             continue
         if entry.path[0] in tagged.required:
             where = fields.where.members(entry.path)
-            writer.expect(present, "missing", where, "a required field is not set")
+            writer.expect(there, "missing", where, "a required field is not set")
             _write_entry(writer, fields, entry, lengths)
             continue
         after = writer.var("next", writer.position)
         with writer.nested() as body:
             _write_entry(writer, fields, entry, lengths)
             writer.assign(after, writer.position)
-        writer.emit(If(present, block(body)))
+        writer.emit(If(there, block(body)))
         writer.position = after
         _settle(writer, fields, lengths)
 
@@ -76,7 +78,7 @@ def _settle(writer: Writer, fields: HolderFields, lengths: Lengths) -> None:
     writer.expect(known, "length", fields.where, "the holder changed while it was written")
 
 
-def _present(fields: HolderFields, entry: Entry) -> Expr | None:
+def present(fields: HolderFields, entry: Entry) -> Expr | None:
     """Whether a field is written; None where it always is, or its count tells."""
     row = fields.cell.slot
     assert isinstance(row, Row)
@@ -109,7 +111,7 @@ def _write_entry(writer: Writer, fields: HolderFields, entry: Entry, lengths: Le
     where = fields.where.members(entry.path)
     match entry.label:
         case "single":
-            _write_tag(writer, entry.number, entry.wire, where)
+            write_tag(writer, entry.number, entry.wire, where)
             _write_value(writer, fields, entry, fields.find(entry.path), where, lengths)
         case "repeated":
             _write_elements(writer, fields, entry, where, lengths)
@@ -117,7 +119,8 @@ def _write_entry(writer: Writer, fields: HolderFields, entry: Entry, lengths: Le
             _write_packed(writer, fields, entry, where, lengths)
 
 
-def _write_tag(writer: Writer, number: int, wire: int, where: Where) -> None:
+def write_tag(writer: Writer, number: int, wire: int, where: Where) -> None:
+    """The number of a field and its wire type."""
     for byte in varint_bytes(number << 3 | wire):
         writer.store(Const("u8", byte), where)
 
@@ -138,16 +141,23 @@ def _write_value(writer: Writer, fields: HolderFields, entry: Entry, cell: Cell,
             writer.advance(size)
         case Tagged(group=int(number)) as tagged:
             write_message(writer, HolderFields(writer, fields.layout, cell, where), tagged, lengths)
-            _write_tag(writer, number, 4, where)
+            write_tag(writer, number, 4, where)
         case Tagged() as tagged:
             inner = HolderFields(writer, fields.layout, cell, where)
             _delimited(writer, where, lengths, lambda: write_message(writer, inner, tagged, lengths))
         case Recursion() as recursion:
-            from rosetta_jit.lowering.recursion import write_recursive
-
-            write_recursive(writer, fields, cell, recursion, where, lengths)
+            lengths.write_child(writer, fields, _child(fields, cell, where), recursion, where)
         case _:
             raise AssertionError(entry)
+
+
+def _child(fields: HolderFields, cell: Cell, where: Where) -> Cell:
+    """The row of a message of a recursive struct: the element itself, or the one row that a singular field refers to."""
+    if not isinstance(cell.slot, Span):
+        return cell
+    start, count = fields.read_span(cell, where)
+    fields.writer.expect(Compare("eq", count, index(1)), "length", where, "the holder is damaged")
+    return Cell(cell.slot.lane, start, fields.layout.lanes[cell.slot.lane].element)
 
 
 def _number(cell: Cell) -> Expr:
@@ -190,7 +200,7 @@ def _write_elements(writer: Writer, fields: HolderFields, entry: Entry, where: W
         writer.position = at
         element = Cell(lane, Binary("add", start, number), fields.layout.lanes[lane].element)
         place = where.element(number)
-        _write_tag(writer, entry.number, entry.wire, place)
+        write_tag(writer, entry.number, entry.wire, place)
         _write_value(writer, fields, entry, element, place, lengths)
         writer.settle()
         writer.emit(Assign(at.name, writer.position), Assign(number.name, add(number, 1)))
@@ -210,7 +220,7 @@ def _write_packed(writer: Writer, fields: HolderFields, entry: Entry, where: Whe
     start, count = fields.read_span(cell, where)
     after = writer.var("next", writer.position)
     with writer.nested() as body:
-        _write_tag(writer, entry.number, 2, where)
+        write_tag(writer, entry.number, 2, where)
         if isinstance(entry.value, Number):
             _packed_fixed(writer, fields, cell, start, count, entry.value, where)
         else:

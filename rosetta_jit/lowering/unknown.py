@@ -42,7 +42,7 @@ def skip_unknown(writer: Writer, fields: HolderFields, tag: Local, stop: Expr) -
     _expect_tag(writer, tag, where)
     after = writer.var("next", writer.position)
     with writer.nested() as group:
-        _skip_group(writer, len(fields.layout.lanes), tag, stop, where)
+        skip_group(writer, len(fields.layout.lanes), tag, stop, where)
         writer.assign(after, writer.position)
     cases = (*_scalar_cases(writer, after, stop, where), (GROUP, block(group)))
     writer.emit(Switch(Binary("and", tag, index(7)), cases, _refused(writer, where)))
@@ -80,8 +80,11 @@ def _refused(writer: Writer, where: Where) -> Block:
     return (Expect(Const("bool", value=False), failure),)
 
 
-def _skip_group(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> None:
-    """The numbers of the groups that are open lie in the scratch lane, which is the stack of this loop."""
+def skip_group(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> None:
+    """Skip the fields of a group and its end tag.
+
+    The numbers of the groups that are open lie in the scratch lane, which is the stack of this loop.
+    """
     writer.emit(Reserve(scratch, index(MAX_NESTING)))
     base = writer.let("base", Used(scratch))
     writer.emit(SetField(Place(scratch, base), Binary("shr", tag, index(3))))

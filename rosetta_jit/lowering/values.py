@@ -10,7 +10,7 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Local, 
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import align, binary
 from rosetta_jit.lowering.fields import scalar_name
-from rosetta_jit.lowering.writer import Where, Writer
+from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
@@ -40,7 +40,7 @@ class Values:
     writer: Writer
     source: Source
     variables: Mapping[str, Expr]
-    where: Where = Where()
+    where: Where = MESSAGE
     line: str = ""
 
     def of(self, value: typed.Expr) -> Expr:
@@ -132,7 +132,7 @@ class Values:
             self.expect(Compare("ge", value, Const(source, float(low))), target)
             self.expect(Compare("lt", value, Const(source, float(high))), target)
             return
-        least, most = RANGES[source] if source in RANGES else (0, 2)
+        least, most = RANGES.get(source, (0, 2))
         if low > least:
             self.expect(Compare("ge", value, Const(source, low)), target)
         if high < most:

@@ -92,8 +92,7 @@ def to_varint(varint: Varint, value: Expr) -> Expr:
         return value if scalar == "u64" else Convert("u64", value if scalar in ("bool", "u8", "u16", "u32") else _wide(value))
     wide = _wide(value)
     shifted = Binary("shl", Convert("u64", wide), ONE)
-    spread = Binary("xor", shifted, Select(Compare("lt", wide, index(0)), Const("u64", (1 << 64) - 1), ZERO))
-    return spread
+    return Binary("xor", shifted, Select(Compare("lt", wide, index(0)), Const("u64", (1 << 64) - 1), ZERO))
 
 
 def _wide(value: Expr) -> Expr:

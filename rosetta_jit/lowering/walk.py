@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
-    END,
     WIDTH,
     Assign,
     Binary,
@@ -35,9 +34,7 @@ from rosetta_jit.kernel.ir import (
     type_of,
 )
 from rosetta_jit.lowering.computed import evaluate
-from rosetta_jit.lowering.fields import HolderFields, scalar_name
-from rosetta_jit.lowering.tagged import read_message
-from rosetta_jit.lowering.tagged_write import Lengths, write_message
+from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
 from rosetta_jit.wire.codec import (
     Blob,
@@ -92,10 +89,8 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
             _repeat(writer, fields, codec)
         case Choice():
             _choice(writer, fields, codec)
-        case Tagged():
-            _tagged(writer, fields, codec)
-        case Varint() | Recursion():
-            raise AssertionError(codec)
+        case Tagged() | Varint() | Recursion():
+            raise AssertionError(codec)  # `tagged` and `recursion` read and write these
         case _:
             assert_never(codec)
 
@@ -352,16 +347,6 @@ def _alternative(writer: Writer, fields: Fields, codec: Codec, at: Local) -> Blo
         walk(codec, fields, writer)
         writer.emit(Assign(at.name, writer.position))
     return block(body)
-
-
-def _tagged(writer: Writer, fields: Fields, tagged: Tagged) -> None:
-    """A message of tagged fields is the whole of what is read or written."""
-    assert isinstance(fields, HolderFields)
-    if writer.direction == "decode":
-        read_message(writer, fields, tagged, END, fresh=True)
-    else:
-        lengths = Lengths(len(fields.layout.lanes), writer.var("lengths", index(0)))
-        write_message(writer, fields, tagged, lengths)
 
 
 # --- small things -----------------------------------------------------------------------------------------------------------

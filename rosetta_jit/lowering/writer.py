@@ -68,6 +68,10 @@ class Where:
         return Where(f"{self.path}[{{}}]", (*self.indices, at))
 
 
+MESSAGE = Where()
+"""The message as a whole."""
+
+
 @dataclass(slots=True)
 class Writer:
     """Collects statements. ``position`` is always a local plus a constant."""
@@ -147,7 +151,7 @@ class Writer:
     def advance(self, size: Expr | int) -> None:
         """Move on by bytes that were required before; a size that is not constant gets a local of its own."""
         moved = add(self.position, size)
-        if isinstance(size, int) or isinstance(size, Const):
+        if isinstance(size, int | Const):
             self.position = moved
             return
         self.position = self.let("at", moved)

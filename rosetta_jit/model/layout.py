@@ -6,10 +6,11 @@
     Row    = presence words, Member*        a struct, in place; Member = name, Slot, presence bit
     Variant = case, Member*                 a union: 0 for none, else 1 + the index of the case
 
-Everything of variable length (string, bytes, array, map) is a `Span`: the start and the count, two int64, of its elements in a lane of their own. There is a lane for
-each such field *path*, so that the elements of one array lie together however the wire orders fields. A recursive struct has one lane for
-all depths below the message itself, which is always alone in its row of lane 0; a field that refers to it is a Span of at most one row
-there. All rows of such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their work list instead of a stack.
+Everything of variable length (string, bytes, array, map) is a `Span`: the start and the count, two int64, of its elements in a lane of
+their own. There is a lane for each such field *path*, so that the elements of one array lie together however the wire orders fields. Paths
+to recursive structs would have no end, so they start anew at each recursive struct: all its rows below the message that are reached through
+the same field share a lane, whatever their depth. A field that refers to a recursive struct is a Span of at most one row there. All rows of
+such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their work list instead of a stack.
 """
 
 from __future__ import annotations
@@ -104,10 +105,10 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The lanes of a type; ``recursive`` gives the lane of each recursive struct by its name."""
+    """The lanes of a type; ``recursive`` are those of recursive structs, with the struct's name."""
 
     lanes: tuple[Lane, ...]
-    recursive: tuple[tuple[str, int], ...] = ()
+    recursive: tuple[tuple[int, str], ...] = ()
 
     @property
     def root(self) -> Slot:
@@ -124,8 +125,8 @@ def layout(type_: Type, schema: Schema) -> Layout:
         If a row would be larger than `MAX_ROW_BYTES`, or the type unfolds to more than `MAX_SLOTS` fields.
     """
     building = _Building(schema, recursive_structs(type_, schema))
-    building.lane(type_, "")
-    return Layout(tuple(lane for lane in building.lanes if lane is not None), tuple(building.of_struct.items()))
+    building.lane(type_, "", "")
+    return Layout(tuple(lane for lane in building.lanes if lane is not None), tuple(building.linked))
 
 
 def scalar_of(type_: Bool | Int | Float | Enum) -> str:
@@ -189,19 +190,23 @@ class _Building:
     recursive: frozenset[str]
     lanes: list[Lane | None] = field(default_factory=list[Lane | None])
     slots: int = 0
-    of_struct: dict[str, int] = field(default_factory=dict[str, int])
+    by_key: dict[str, int] = field(default_factory=dict[str, int])
+    linked: list[tuple[int, str]] = field(default_factory=list[tuple[int, str]])
 
-    def lane(self, element: Type, name: str) -> int:
-        """The lane for elements of a type: a new one, or the one of a recursive struct."""
-        is_root = not self.lanes
-        struct = element.name if isinstance(element, Ref | Struct) and element.name in self.recursive and not is_root else None
-        if struct is not None and struct in self.of_struct:
-            return self.of_struct[struct]
+    def lane(self, element: Type, name: str, key: str) -> int:
+        """The lane for elements of a type: a new one, or that of a recursive struct which is reached through the same field.
+
+        ``name`` is the path from the message, ``key`` that from the innermost recursive struct.
+        """
+        struct = element.name if isinstance(element, Ref) and element.name in self.recursive and self.lanes else None
+        if struct is not None and key in self.by_key:
+            return self.by_key[key]
         index = len(self.lanes)
         self.lanes.append(None)
         if struct is not None:
-            self.of_struct[struct] = index
-        slot, size = self.element(element, name)
+            self.by_key[key] = index
+            self.linked.append((index, struct))
+        slot, size = self.element(element, name, key)
         links = None
         if struct is not None:
             links = _align(size, 8)
@@ -212,14 +217,14 @@ class _Building:
         self.lanes[index] = Lane(name, max(stride, 1), slot, links)
         return index
 
-    def element(self, type_: Type, name: str) -> tuple[Slot, int]:
+    def element(self, type_: Type, name: str, key: str) -> tuple[Slot, int]:
         """The slot of a lane's element, and its size."""
         resolved = self.schema.resolve(type_)
         if isinstance(resolved, Struct):
-            return self.row(resolved, 0, name)
-        return self.slot(resolved, 0, name)
+            return self.row(resolved, 0, name, key)
+        return self.slot(resolved, 0, name, key)
 
-    def slot(self, type_: Type, offset: int, name: str) -> tuple[Slot, int]:
+    def slot(self, type_: Type, offset: int, name: str, key: str) -> tuple[Slot, int]:
         """The slot of a type at the next suitable offset, and the offset behind it."""
         self.slots += 1
         if self.slots > MAX_SLOTS or offset > MAX_ROW_BYTES:
@@ -230,47 +235,48 @@ class _Building:
                 at = _align(offset, _SIZE[scalar])
                 return Number(at, scalar), at + _SIZE[scalar]
             case String() | Bytes():
-                return self.span(Int(8, signed=False), offset, name)
+                return self.span(Int(8, signed=False), offset, name, key)
             case Array(element, _):
-                return self.span(element, offset, name)
-            case Map(key, value):
-                return self.span(map_entry(key, value), offset, name)
+                return self.span(element, offset, name, key)
+            case Map(of, value):
+                return self.span(map_entry(of, value), offset, name, key)
             case Struct():
-                return self.row(type_, offset, name)
+                return self.row(type_, offset, name, key)
             case Union(_, cases):
-                return self.variant(cases, offset, name)
+                return self.variant(cases, offset, name, key)
             case Optional(value):
-                return self.slot(value, offset, name)
+                return self.slot(value, offset, name, key)
             case Ref(target):
                 if target in self.recursive:
-                    return self.span(type_, offset, name)
-                return self.slot(self.schema.types[target], offset, name)
+                    return self.span(type_, offset, name, key)
+                return self.slot(self.schema.types[target], offset, name, key)
             case _:
                 assert_never(type_)
 
-    def span(self, element: Type, offset: int, name: str) -> tuple[Span, int]:
+    def span(self, element: Type, offset: int, name: str, key: str) -> tuple[Span, int]:
         at = _align(offset, 8)
-        return Span(at, self.lane(element, name)), at + SPAN_BYTES
+        return Span(at, self.lane(element, name, key)), at + SPAN_BYTES
 
-    def row(self, struct: Struct, offset: int, name: str) -> tuple[Row, int]:
+    def row(self, struct: Struct, offset: int, name: str, key: str) -> tuple[Row, int]:
         bits = sum(isinstance(each.type, Optional) for each in struct.fields)
         words = (bits + 63) // 64
         start = _align(offset, 8) if struct.fields else offset
         behind = start + 8 * words
         members: list[Member] = []
         presence = 0
+        start_of_key = struct.name if struct.name in self.recursive else key
         for each in struct.fields:
-            slot, behind = self.slot(each.type, behind, _join(name, each.name))
+            slot, behind = self.slot(each.type, behind, _join(name, each.name), _join(start_of_key, each.name))
             members.append(Member(each.name, slot, presence if isinstance(each.type, Optional) else None))
             presence += isinstance(each.type, Optional)
         return Row(start, struct.name, words, tuple(members)), behind
 
-    def variant(self, cases: tuple[Field, ...], offset: int, name: str) -> tuple[Variant, int]:
+    def variant(self, cases: tuple[Field, ...], offset: int, name: str, key: str) -> tuple[Variant, int]:
         start = _align(offset, 8)
         behind = start + 8
         members: list[Member] = []
         for case in cases:
-            slot, behind = self.slot(case.type, behind, _join(name, case.name))
+            slot, behind = self.slot(case.type, behind, _join(name, case.name), _join(key, case.name))
             members.append(Member(case.name, slot))
         return Variant(start, tuple(members)), behind
 

@@ -1,0 +1,119 @@
+"""Simpler expressions of the same value: constants computed, identities used. Part of `simplify`.
+
+What is folded must not lose the bits of a NaN nor an obligation that would have failed: an operation that wraps is left as it is, for
+`verify` to refuse.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosetta_jit.kernel import arithmetic
+from rosetta_jit.kernel.arithmetic import FLOATS, limits
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, Local, Select, Unary, add, type_of
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.arithmetic import Value
+    from rosetta_jit.kernel.ir import Scalar
+
+TRUE, FALSE = Const("bool", value=True), Const("bool", value=False)
+
+
+def folded(expr: Expr) -> Expr:
+    """An expression, its operands being folded already, in its simplest form."""
+    match expr:
+        case Unary("not", Unary("not", operand)):
+            return operand
+        case (
+            Unary(_, Const()) | Convert(_, Const()) | Binary(_, Const(), Const()) | Compare(_, Const(), Const()) | Fits(_, Const(), Const())
+        ):
+            return _computed(expr)
+        case Binary():
+            return _binary(expr)
+        case Compare(op, Local(type_, a), Local(_, b)) if a == b and type_ not in FLOATS:
+            return TRUE if op in {"eq", "le", "ge"} else FALSE
+        case Compare("eq", left, Const("bool", value)):
+            return left if value else folded(Unary("not", left))
+        case Convert(type_, operand) if type_of(operand) == type_:
+            return operand
+        case Select(Const(_, value), then, otherwise):
+            return then if value else otherwise
+        case _:
+            return expr
+
+
+def _computed(expr: Expr) -> Expr:
+    """The value of an operation on constants, unless it breaks an obligation or is a NaN."""
+    try:
+        with np.errstate(all="ignore"):
+            value = _value(expr)
+    except AssertionError:
+        return expr
+    if isinstance(value, np.floating):
+        return expr if math.isnan(value) else Const(type_of(expr), float(value))
+    return Const(type_of(expr), value)
+
+
+def _value(expr: Expr) -> Value:
+    match expr:
+        case Const(type_, value):
+            return arithmetic.constant(type_, value)
+        case Unary(function, operand):
+            return arithmetic.unary(type_of(operand), function, _value(operand))
+        case Convert(type_, operand):
+            return arithmetic.convert(type_, _value(operand))
+        case Binary(op, left, right):
+            return arithmetic.binary(type_of(left), op, _value(left), _value(right))
+        case Compare(op, left, right):
+            return arithmetic.compare(op, _value(left), _value(right))
+        case Fits(op, left, right):
+            return arithmetic.fits(op, int(_value(left)), int(_value(right)))
+        case _:
+            raise AssertionError("no constant")
+
+
+def _binary(expr: Binary) -> Expr:
+    match expr:
+        case Binary(op, Const() as left, right) if op in {"add", "mul", "and", "or", "xor"} and not isinstance(right, Const):
+            return _binary(Binary(op, right, left))
+        case Binary("sub", left, Const("i64", value)) if value != limits("i64")[0]:
+            return add(left, -int(value))
+        case Binary("add", left, Const("i64", value)):
+            return _sum(left, int(value))
+        case Binary(op, left, Const(type_, value)) if type_ not in FLOATS:
+            return _with_constant(expr, op, left, type_, int(value))
+        case _:
+            return expr
+
+
+def _sum(left: Expr, right: int) -> Expr:
+    total = add(left, right)
+    match total:
+        case Const(_, value) | Binary(_, _, Const(_, value)) if not _fits(int(value)):
+            return Binary("add", left, Const("i64", right))
+        case _:
+            return total
+
+
+def _with_constant(expr: Expr, op: str, left: Expr, type_: Scalar, value: int) -> Expr:
+    """Operations with a constant that leave a value as it is, or make it a constant. No operand can fail, so that it may go."""
+    ones = 1 if type_ == "bool" else limits(type_)[1] if limits(type_)[0] == 0 else -1
+    match op, value:
+        case ("add" | "sub" | "or" | "xor" | "shl" | "shr", 0) | ("mul" | "div", 1):
+            return left
+        case ("mul" | "and", 0):
+            return FALSE if type_ == "bool" else Const(type_, 0)
+        case "and", _ if value == ones:
+            return left
+        case "or", _ if value == ones:
+            return TRUE if type_ == "bool" else Const(type_, value)
+        case _:
+            return expr
+
+
+def _fits(value: int) -> bool:
+    low, high = limits("i64")
+    return low <= value <= high

@@ -1,0 +1,128 @@
+"""Constants and copies go where they are used; what is decided, done once or never, or unused goes away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import (
+    BEGIN,
+    END,
+    ROW,
+    Assign,
+    Block,
+    Const,
+    Expect,
+    For,
+    If,
+    Let,
+    Local,
+    Switch,
+    Var,
+    While,
+    index,
+)
+from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.shape import expressions_of, statements
+from rosetta_jit.lowering.passes.fold import TRUE, folded
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """What is known of a body's locals: those assigned, those of fixed value, and the values known by now."""
+
+    assigned: frozenset[str]
+    fixed: set[str]
+    values: dict[str, Expr]
+
+
+def simplify(kernel: Kernel) -> Kernel:
+    """The kernel with less in it."""
+    return replace(kernel, bodies=tuple(map(_body, kernel.bodies)))
+
+
+def _body(body: Block) -> Block:
+    assigned = frozenset(stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign))
+    names = _Names(assigned, {BEGIN.name, END.name, ROW.name}, {})
+    simple = _block(body, names)
+    return _used(simple, names_read(simple), set())
+
+
+# --- forward: values ---------------------------------------------------------------------------------------------------
+
+
+def _block(block: Block, names: _Names) -> Block:
+    result: list[Stmt] = []
+    for stmt in block:
+        result.extend(_statement(with_expressions(stmt, lambda expr: _expression(expr, names)), names))
+        if ends(tuple(result[-1:])):
+            break
+    return tuple(result)
+
+
+def _expression(expr: Expr, names: _Names) -> Expr:
+    if isinstance(expr, Local):
+        return names.values.get(expr.name, expr)
+    return folded(with_operands(expr, lambda operand: _expression(operand, names)))
+
+
+def _statement(stmt: Stmt, names: _Names) -> Block:
+    match stmt:
+        case Let(name, value):
+            return _let(name, value, names)
+        case Var(name, value) if name not in names.assigned:
+            return _let(name, value, names)
+        case Expect(condition, _) if condition == TRUE:
+            return ()
+        case If(Const(_, value), then, otherwise):
+            return _block(then if value else otherwise, names)
+        case Switch(Const(_, value), cases, default):
+            return _block(dict(cases).get(int(value), default), names)
+        case For(variable, Const(_, count), body) if count <= 1:
+            names.values[variable] = index(0)
+            return _block(body, names) if count == 1 else ()
+        case While(Const(_, False), _, _, _):
+            return ()
+        case _:
+            return _nested(stmt, names)
+
+
+def _let(name: str, value: Expr, names: _Names) -> Block:
+    if isinstance(value, Const) or (isinstance(value, Local) and value.name in names.fixed):
+        names.values[name] = value
+        return ()
+    names.fixed.add(name)
+    return (Let(name, value),)
+
+
+def _nested(stmt: Stmt, names: _Names) -> Block:
+    if isinstance(stmt, For):
+        names.fixed.add(stmt.variable)
+    simple = with_blocks(stmt, lambda block: _block(block, names))
+    match simple:
+        case If(_, (), ()) | For(_, _, ()):
+            return ()
+        case _:
+            return (simple,)
+
+
+# --- backward: uses ----------------------------------------------------------------------------------------------------
+
+
+def _used(block: Block, read: set[str], live: set[str]) -> Block:
+    """The block without values that nothing reads. ``live`` gathers what is read behind; a variable is kept if it is read anywhere."""
+    result: list[Stmt] = []
+    for stmt in reversed(block):
+        match stmt:
+            case Let(name, _) if name not in live:
+                continue
+            case Var(name, _) | Assign(name, _) if name not in read:
+                continue
+            case _:
+                kept = with_blocks(stmt, lambda inner: _used(inner, read, live))
+        live.update(name for expr in expressions_of(kept) for name in locals_in(expr))
+        result.append(kept)
+    return tuple(reversed(result))
