@@ -36,7 +36,7 @@ SCRATCH_STRIDE = 8
 
 CLEAN, UNSETTLED = 1, 2
 """Values of the state's word `VALID`, besides 0. An unsettled holder reads as usual, but must be settled before it is encoded: spans are
-borrowed from a message, or rows of a recursive lane lie before their parents. Encoders accept 1 and leave 2 to their slow path."""
+borrowed from a message, or much of the lanes is not used any more. Encoders accept 1 and leave 2 to their slow path."""
 
 SCALARS: tuple[str, ...] = ("bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64")
 _FORMATS = {
@@ -263,7 +263,7 @@ class Lanes:
         self.words[VALID] = CLEAN
 
     def unsettle(self) -> None:
-        """Spans are borrowed, or rows lie before their parents: encoders must not read this as it is."""
+        """Encoders must not read this as it is."""
         self.words[VALID] = UNSETTLED
 
     def waste(self, lane: int, rows: int) -> None:

@@ -74,7 +74,7 @@ class ProtobufMessage(Holder):
         """
         record = self.access_.record
         if name in record.unions:
-            return self.WhichOneof(name) is not None
+            return ProtobufMessage.WhichOneof(self, name) is not None
         entry = self._entry(name)
         if entry.presence is None:
             raise ValueError(f"Field {record.struct}.{name} does not have presence.")
@@ -84,7 +84,7 @@ class ProtobufMessage(Holder):
     def ClearField(self, name: str) -> None:  # noqa: N802
         """Make a field absent, or whichever field of a oneof is set."""
         if name in self.access_.record.unions:
-            case = self.WhichOneof(name)
+            case = ProtobufMessage.WhichOneof(self, name)
             if case is not None:
                 clear(self, case)
             return
@@ -128,7 +128,7 @@ class ProtobufMessage(Holder):
 
     def IsInitialized(self) -> bool:  # noqa: N802
         """Whether all required fields are set."""
-        return not self.FindInitializationErrors()
+        return not ProtobufMessage.FindInitializationErrors(self)
 
     def FindInitializationErrors(self) -> list[str]:  # noqa: N802
         """Paths of the required fields that are not set."""
@@ -142,12 +142,12 @@ class ProtobufMessage(Holder):
         EncodeError
             If a required field is not set.
         """
-        errors = self.FindInitializationErrors()
+        errors = ProtobufMessage.FindInitializationErrors(self)
         if errors:
             raise EncodeError(
                 "missing", f".{errors[0]}", f"Message {self.DESCRIPTOR.full_name} is missing required fields: {','.join(errors)}"
             )
-        return self.SerializePartialToString(deterministic=deterministic)
+        return ProtobufMessage.SerializePartialToString(self, deterministic=deterministic)
 
     def SerializePartialToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802, ARG002  always deterministic
         """The message's bytes, even if required fields are missing."""
@@ -166,7 +166,7 @@ class ProtobufMessage(Holder):
             If they are no message of the type.
         """
         if isinstance(self, View):
-            self.CopyFrom(type(self.new()).FromString(data))
+            ProtobufMessage.CopyFrom(self, self._parsed(data))
         else:
             self._programs().decode_into(_bytes(data), self, merge=False)
         return len(data)
@@ -174,7 +174,7 @@ class ProtobufMessage(Holder):
     def MergeFromString(self, data: Any) -> int:  # noqa: N802
         """Merge with what bytes say; how many they were."""
         if isinstance(self, View):
-            self.MergeFrom(type(self.new()).FromString(data))
+            ProtobufMessage.MergeFrom(self, self._parsed(data))
         else:
             self._programs().decode_into(_bytes(data), self, merge=True)
         return len(data)
@@ -182,9 +182,7 @@ class ProtobufMessage(Holder):
     @classmethod
     def FromString(cls, data: Any) -> Self:  # noqa: N802
         """A new message of bytes."""
-        message = cast("type[Self]", cls.family_.holder)()
-        message.ParseFromString(data)
-        return message
+        return cast("Self", cls._parsed(data))
 
     def __str__(self) -> str:
         return text_format.text(self.access_.record, raw(self))
@@ -194,6 +192,12 @@ class ProtobufMessage(Holder):
     def set_fields_(self, fields: Mapping[str, Any]) -> None:
         """Set fields as the constructor does."""
         fill(self, fields)
+
+    @classmethod
+    def _parsed(cls, data: Any) -> ProtobufMessage:
+        message = cast("type[ProtobufMessage]", cls.family_.holder)()
+        ProtobufMessage.ParseFromString(message, data)
+        return message
 
     def _entry(self, name: str) -> Entry:
         try:

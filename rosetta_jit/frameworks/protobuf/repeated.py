@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rosetta_jit.runtime.holder import arena, coerce, values
+from rosetta_jit.runtime.holder import coerce, values
+from rosetta_jit.runtime.holder.merge import append_numbers
 from rosetta_jit.runtime.holder.message import Message, place, writable
 from rosetta_jit.runtime.holder.record import Numbers, Record
 from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
@@ -49,14 +50,7 @@ class NumberArray(np.ndarray[Any, Any]):
 
     def extend(self, elements: Iterable[Any]) -> None:
         """Append all elements, or none if one is wrong."""
-        message, node = self._field()
-        prepared = coerce.numbers(node.type, _iterable(elements))
-        if not prepared.size:
-            return
-        lanes, row = writable(message)
-        count = arena.span_of(lanes, node.span, row)[1]
-        start = arena.resize(lanes, node.span, node.lane, row, count + prepared.size) + count
-        lanes.arrays[node.lane][start : start + prepared.size] = prepared
+        append_numbers(*self._field(), _iterable(elements))
 
     MergeFrom = extend
 

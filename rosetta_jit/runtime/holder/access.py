@@ -6,7 +6,7 @@ so presence is asked only where a default is not, and of the cases of a union, w
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol, assert_never, cast
 
 import numpy as np
@@ -224,16 +224,18 @@ def _refuse(kind: str, entry: Entry) -> Setter:
 
 
 def raw(value: Any, depth: int = 0) -> Any:
-    """Values in the form that a field takes: messages among them become dicts."""
+    """Values in the form that a field takes, apart from any lanes: messages become dicts, what can be iterated a list."""
     if depth > 2 * values.MAX_DEPTH:
         raise EncodeError("nesting", "", f"values contain each other more than {2 * values.MAX_DEPTH} deep")
     match value:
         case Message():
             lanes, row = place(value)
             return values.read_record(value.access_.record, lanes, row, values.Form.RAW)
-        case dict():
-            return {key: raw(each, depth + 1) for key, each in cast("dict[Any, Any]", value).items()}
-        case list() | tuple():
-            return [raw(each, depth + 1) for each in cast("list[Any]", value)]
+        case Mapping():
+            return {key: raw(each, depth + 1) for key, each in cast("Mapping[Any, Any]", value).items()}
+        case str() | bytes() | bytearray() | memoryview() | np.ndarray():
+            return cast("Any", value)
+        case Iterable():
+            return [raw(each, depth + 1) for each in cast("Iterable[Any]", value)]
         case _:
             return value

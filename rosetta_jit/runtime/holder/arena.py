@@ -65,8 +65,6 @@ def _moved(lanes: Lanes, lane: int, start: int, old: int, count: int) -> int:
 def _abandon(lanes: Lanes, lane: int, rows: int) -> None:
     lanes.moves += 1
     lanes.waste(lane, rows)
-    if lane < len(lanes.plan.layout.lanes) and lanes.plan.layout.lanes[lane].links is not None:
-        lanes.unsettle()
 
 
 def replace(lanes: Lanes, span: Cell, lane: int, row: int, data: memoryview | bytes) -> None:
@@ -82,8 +80,6 @@ def rearrange(lanes: Lanes, span: Cell, lane: int, row: int, order: list[int]) -
     stride = lanes.plan.strides[lane]
     rows = lanes.buffers[lane][start * stride : (start + count) * stride].reshape(count, stride)
     rows[: len(order)] = rows[order]
-    if lanes.plan.layout.lanes[lane].links is not None:
-        lanes.unsettle()
     lanes.moves += 1
     resize(lanes, span, lane, row, len(order))
 

@@ -105,7 +105,7 @@ class Holder(Message, Base):
         return holder
 
     def materialise(self) -> None:
-        """Make the holder fit to be encoded, which it is unless it borrows, or has been written to in certain orders."""
+        """Make the holder fit to be encoded, which it is unless it borrows; give back what it does not use."""
         settle(self)
 
     def __eq__(self, other: object) -> bool:
@@ -119,13 +119,13 @@ class Holder(Message, Base):
         name = type(self).__name__
         if not self.lanes_.words[VALID]:
             return f"<{name}: the last decode failed>"
-        return f"{name}({', '.join(f'{key}={value!r}' for key, value in self.to_dict().items())})"
+        return f"{name}({', '.join(f'{key}={value!r}' for key, value in Holder.to_dict(self).items())})"
 
     def __copy__(self) -> Self:
         return self.__deepcopy__({})
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        copied = self.new()
+        copied = cast("type[Self]", self.family_.holder)()
         values.write_record(copied.access_.record, copied.lanes_, 0, raw(self))
         return copied
 
@@ -151,7 +151,7 @@ def clear(holder: Holder, name: str | None) -> None:
 def settle(holder: Holder) -> None:
     """`Holder.materialise`, where a field has taken that name. A view is encoded through a copy, and needs none."""
     lanes, _ = place(holder)
-    if lanes.words[VALID] != CLEAN and not isinstance(holder, View):
+    if (lanes.words[VALID] != CLEAN or lanes.source[0] is not None) and not isinstance(holder, View):
         values.settle(holder.family_.tree.root, lanes)
 
 

@@ -124,7 +124,7 @@ class Family:
 def _shown(record: Record, base: type) -> list[str]:
     """Fields that become properties: all but those whose names Python or the holder need for themselves."""
     own = {*OWN_SLOTS, *VIEW_SLOTS, "family_", "programs_", "_is_native"}
-    return [name for name in record.entries if name not in own and not (name.startswith("__") and hasattr(base, name))]
+    return [name for name in record.entries if name not in own and not (name.startswith("_") and hasattr(base, name))]
 
 
 def _class(qualified: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:

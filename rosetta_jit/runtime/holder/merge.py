@@ -43,7 +43,7 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
         case Scalar() | Text() | Blob():
             message.access_.setters[entry.name](message, value)
         case Numbers():
-            _append_numbers(message, node, value)
+            append_numbers(message, node, value)
         case Items():
             _append(message, node, value)
         case Pairs():
@@ -58,7 +58,8 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
             assert_never(node)
 
 
-def _append_numbers(message: Message, node: Numbers, elements: Any) -> None:
+def append_numbers(message: Message, node: Numbers, elements: Iterable[Any]) -> None:
+    """Add elements to an array of numbers: all, or none if one is wrong."""
     prepared = values.prepare(node, elements)
     lanes, row = writable(message)
     count = arena.span_of(lanes, node.span, row)[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, MutableSequence
+from copy import copy
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.runtime.holder import arena, values
@@ -96,6 +97,13 @@ class Sequence(MutableSequence[Any]):
 
     def extend(self, values: Iterable[Any]) -> None:
         self._append([raw(each) for each in values])
+
+    def pop(self, index: int = -1) -> Any:
+        """Remove an element and return it; a message as one of its own."""
+        value = self[index]
+        popped = copy(value) if isinstance(value, Message) else value
+        del self[index]
+        return popped
 
     def clear(self) -> None:
         self._order([])

@@ -189,7 +189,7 @@ def put(node: Leaf, lanes: Lanes, row: int, prepared: Any) -> None:
 
 
 def settle(record: Record, lanes: Lanes) -> None:
-    """Make the lanes fit to be encoded: nothing borrowed, children behind their parents, no rows that nothing refers to."""
+    """Make the lanes fit to be encoded: nothing borrowed, and no rows that nothing refers to."""
     fresh = Lanes(lanes.plan, lanes.arrays.array_type)
     fresh.reset(lanes.rows)
     for row in range(lanes.rows):

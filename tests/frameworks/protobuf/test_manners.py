@@ -220,6 +220,8 @@ def test_repeated_messages(everything):
     message.inners.reverse()
     assert [each.x for each in message.inners] == [9, 4, 3]
     message.inners.remove(everything.Inner(x=3))
+    message.inners.add(x=10)
+    assert message.inners.pop().x == 10
     assert message.inners == [everything.Inner(x=9), everything.Inner(x=4, names=["n"])]
     with pytest.raises(TypeError):
         message.inners[0] = everything.Inner()
