@@ -1,11 +1,11 @@
 """Declare how robot middlewares' data types relate; decode one's bytes into the other's data holders at machine speed.
 
-    import rosetta_jit as rj
+import rosetta_jit as rj
 
-    decode = rj.Decoder("yarp/icub/torso_state.mapping")
-    angles = decode(message)                # the decoder's own holder, filled
-    encode = rj.Encoder("yarp/icub/torso_state.mapping", encoding="yarp4")
-    encode(angles)                          # bytes
+decode = rj.Decoder("yarp/icub/torso_state.mapping")
+angles = decode(message)                # the decoder's own holder, filled
+encode = rj.Encoder("yarp/icub/torso_state.mapping", encoding="yarp4")
+encode(angles)                          # bytes
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The driver: from what a user asks for to a program, stage by stage. Whoever finds the answer in the cache never imports this.
 
-    texts → schemas and mapping → checked rules → encoding, layout → kernels → passes → proof → code
+texts → schemas and mapping → checked rules → encoding, layout → kernels → passes → proof → code
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ def unfinished(span: Span, expected: Collection[str]) -> Diagnostic:
 def _alternatives(expected: Collection[str]) -> str:
     words = [word for token, word in TOKENS.items() if token in expected]
     if {"OPTION", "SEMICOLON"} <= set(expected):
-        words.insert(0, "a statement")
+        words = ["a statement", *(word for word in words if word != TOKENS["DOT"])]
     elif "IDENT" in expected:
         words.insert(0, "a name")
     return " or ".join(words) if words else "something else"

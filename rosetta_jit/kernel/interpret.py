@@ -92,7 +92,7 @@ class _Machine:
     locals: dict[str, Value]
 
 
-def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lanes: Sequence[Memory], row: int) -> int:  # noqa: PLR0917  # the native kernel's own signature and order
+def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lanes: Sequence[Memory], row: int) -> int:
     """Run a kernel.
 
     Parameters

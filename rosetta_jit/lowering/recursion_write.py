@@ -100,7 +100,9 @@ def write_child(writer: Writer, fields: HolderFields, cell: Cell, recursion: Rec
 def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
     rows = _list_rows(encoding, fields, tagged, writer, scratch)
     count = writer.let("count", rows.number)
-    lengths = Lengths(scratch, writer.var("lengths", add(mul(count, 2), HEADER)), write_child)
+    first = writer.let("first_length", add(mul(count, 2), HEADER))
+    writer.emit(Reserve(scratch, first))
+    lengths = Lengths(scratch, writer.var("lengths", first), write_child)
     back = writer.var("back", index(0))
     with writer.nested() as body:
         writer.position = index(0)

@@ -27,9 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.native import Library
 
-_MANY = ctypes.CFUNCTYPE(
-    ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p
-)
+_MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 _SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 
 
@@ -329,4 +327,3 @@ def _offsets(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     if places.dtype != np.int64 or places.ndim != 1 or not places.size:
         raise ValueError("offsets are an int64 array of one dimension, one longer than there are messages")
     return places
-

@@ -11,7 +11,8 @@ from rosetta_jit.catalogue import proto as say
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
 from rosetta_jit.frameworks.protobuf.proto.files import file_set
-from rosetta_jit.frameworks.protobuf.proto.judge import refuse, schema_of
+from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
+from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 
 if TYPE_CHECKING:
     from google.protobuf.descriptor import FileDescriptor

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf.proto.files import gather
-from rosetta_jit.frameworks.protobuf.proto.judge import refuse, schema_of
+from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
+from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

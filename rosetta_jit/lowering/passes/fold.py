@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.arithmetic import Value
     from rosetta_jit.kernel.ir import Scalar
 
+COMMUTATIVE = frozenset({"add", "mul", "and", "or", "xor"})
 TRUE, FALSE = Const("bool", value=True), Const("bool", value=False)
 
 
@@ -77,7 +78,7 @@ def _value(expr: Expr) -> Value:
 
 def _binary(expr: Binary) -> Expr:
     match expr:
-        case Binary(op, Const() as left, right) if op in {"add", "mul", "and", "or", "xor"} and not isinstance(right, Const):
+        case Binary(op, Const(type_) as left, right) if op in COMMUTATIVE and type_ not in FLOATS and not isinstance(right, Const):
             return _binary(Binary(op, right, left))
         case Binary("sub", left, Const("i64", value)) if value != limits("i64")[0]:
             return add(left, -int(value))

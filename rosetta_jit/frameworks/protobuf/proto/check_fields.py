@@ -9,14 +9,14 @@ from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, con
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
-from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Oneof
+from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Name, Oneof
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredMessage
-    from rosetta_jit.frameworks.protobuf.proto.tree import Name, Option, Version
+    from rosetta_jit.frameworks.protobuf.proto.tree import Option, Version
 
 NO_KEYS = frozenset(("double", "float", "bytes"))
 """Scalars that a map cannot have as keys."""
@@ -81,6 +81,8 @@ def _field(field: Field, version: Version, declared: Declarations) -> Iterator[D
         enum = declared.enums.get(field.type.value.text[1:])
     else:
         enum = declared.enums.get(field.type.text[1:])
+    if field.group and isinstance(field.type, Name) and field.type.text and field.type.text[1:] not in declared.messages:
+        yield say.bad_descriptor(f"the group `{field.name.text}` has no message")
     if field.group and version == "proto3":
         yield say.group_in_proto3(field.name)
     if enum and isinstance(field.type, MapType) and enum.enum.values and enum.enum.values[0].number != 0:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf.proto.options import OPTIONS
+from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import Option, Value, Word
 
 if TYPE_CHECKING:
@@ -140,6 +141,8 @@ def _message_scopes(
     outer: str, message: DescriptorProto
 ) -> Iterator[tuple[str, Iterable[FieldDescriptorProto], Iterable[EnumDescriptorProto]]]:
     scope = f"{outer}.{message.name}"
+    if len(scope) > MAX_NAME:
+        return
     yield scope, message.extension, message.enum_type
     for inner in message.nested_type:
         yield from _message_scopes(scope, inner)

@@ -5,12 +5,14 @@ https://github.com/protocolbuffers/protobuf/blob/main/src/google/protobuf/descri
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto.descriptor_options import Extensions, custom_options, extensions_in, own_options
 from rosetta_jit.frameworks.protobuf.proto.literals import EscapeError, number, unescape
+from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     Enum,
     EnumValue,
@@ -64,6 +66,10 @@ WORDS: Mapping[int, str] = {
     18: "sint64",
 }
 """FieldDescriptorProto.Type, where it is a scalar's."""
+PATH = re.compile(r"\.?[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
+MAX_SHOWN = 40
+"""Characters of a wrong name that a report repeats."""
+LABEL_REPEATED = 3
 LABELS: Mapping[int, Label] = {1: "optional", 2: "required", 3: "repeated"}
 
 
@@ -83,31 +89,30 @@ class _Reader:
     problems: list[Diagnostic]
 
     def file(self, file: FileDescriptorProto) -> File:
-        outer = f".{file.package}" if file.package else ""
+        public = frozenset(file.public_dependency)
         return File(
-            name=file.name,
+            name=self.text(file.name),
             version=self.version,
-            package=Name(file.package) if file.package else None,
-            imports=tuple(Import(path, public=index in file.public_dependency) for index, path in enumerate(file.dependency)),
-            messages=tuple(self.message(outer, message) for message in file.message_type),
-            enums=tuple(_enum(enum) for enum in file.enum_type),
+            package=self.name(file.package) if file.package else None,
+            imports=tuple(Import(self.text(path), public=index in public) for index, path in enumerate(file.dependency)),
+            messages=tuple(self.message(message) for message in file.message_type),
+            enums=tuple(self.enum(enum) for enum in file.enum_type),
             extends=tuple(self.extend(field) for field in file.extension),
-            services=tuple(_service(service) for service in file.service),
+            services=tuple(self.service(service) for service in file.service),
             options=own_options("FileOptions", file.options),
         )
 
-    def message(self, outer: str, message: DescriptorProto) -> Message:
-        path = f"{outer}.{message.name}"
-        entries = {f"{path}.{inner.name}": inner for inner in message.nested_type if _is_entry(inner)}
+    def message(self, message: DescriptorProto) -> Message:
+        entries = {inner.name: inner for inner in message.nested_type if _is_entry(inner)}
         return Message(
-            name=Name(message.name),
+            name=self.name(message.name),
             members=tuple(self.members(message, entries)),
-            messages=tuple(self.message(path, inner) for inner in message.nested_type if not _is_entry(inner)),
-            enums=tuple(_enum(enum) for enum in message.enum_type),
+            messages=tuple(self.message(inner) for inner in message.nested_type if not _is_entry(inner)),
+            enums=tuple(self.enum(enum) for enum in message.enum_type),
             extends=tuple(self.extend(field) for field in message.extension),
             extensions=tuple(Range(range_.start, range_.end - 1) for range_ in message.extension_range),
             reserved=tuple(Range(range_.start, range_.end - 1) for range_ in message.reserved_range),
-            reserved_names=tuple(Name(name) for name in message.reserved_name),
+            reserved_names=tuple(Name(self.text(name)) for name in message.reserved_name),
             options=own_options("MessageOptions", message.options),
         )
 
@@ -126,18 +131,18 @@ class _Reader:
                 order.append(field.oneof_index)
             cases[field.oneof_index].append(read)
         order += [index for index, fields in cases.items() if not fields]
-        return [item if isinstance(item, Field) else Oneof(Name(message.oneof_decl[item].name), tuple(cases[item])) for item in order]
+        return [item if isinstance(item, Field) else Oneof(self.name(message.oneof_decl[item].name), tuple(cases[item])) for item in order]
 
     def extend(self, field: FieldDescriptorProto) -> Extend:
         read = self.field(field, {})
-        return Extend(Name(field.extendee), (replace(read, label=LABELS.get(field.label)),))
+        return Extend(self.name(field.extendee), (replace(read, label=LABELS.get(field.label)),))
 
     def field(self, field: FieldDescriptorProto, entries: Mapping[str, DescriptorProto]) -> Field:
-        entry = entries.get(field.type_name)
+        entry = entries.get(field.type_name.rpartition(".")[2]) if field.label == LABEL_REPEATED else None
         default = (Option(("default",), self.default(field)),) if field.HasField("default_value") else ()
         return Field(
-            name=Name(field.name),
-            type=_type(field) if entry is None else MapType(_type(entry.field[0]), _type(entry.field[1])),
+            name=self.name(field.name),
+            type=self.type(field) if entry is None else MapType(self.type(entry.field[0]), self.type(entry.field[1])),
             number=field.number,
             label=None if entry else self.label(field),
             group=field.type == TYPE_GROUP,
@@ -157,7 +162,7 @@ class _Reader:
 
     def default(self, field: FieldDescriptorProto) -> Value:
         """A default, which a descriptor holds as text whatever its type is."""
-        text = field.default_value
+        text = self.text(field.default_value)
         match WORDS.get(field.type):
             case "string":
                 return text.encode()
@@ -172,6 +177,39 @@ class _Reader:
             case _:
                 return _signed(text)
 
+    def type(self, field: FieldDescriptorProto) -> Name:
+        word = WORDS.get(field.type)
+        return self.name(field.type_name) if word is None else Name(word)
+
+    def enum(self, enum: EnumDescriptorProto) -> Enum:
+        return Enum(
+            name=self.name(enum.name),
+            values=tuple(EnumValue(self.name(value.name), value.number) for value in enum.value),
+            reserved=tuple(Range(range_.start, range_.end) for range_ in enum.reserved_range),
+            reserved_names=tuple(Name(self.text(name)) for name in enum.reserved_name),
+            options=own_options("EnumOptions", enum.options),
+        )
+
+    def service(self, service: ServiceDescriptorProto) -> Service:
+        methods = (
+            Method(self.name(method.name), (self.name(method.input_type), self.name(method.output_type))) for method in service.method
+        )
+        return Service(self.name(service.name), tuple(methods))
+
+    def name(self, text: str) -> Name:
+        """A name or a path; whoever made the descriptor may have put anything there."""
+        if isinstance(text, str) and len(text) <= MAX_NAME and PATH.fullmatch(text):
+            return Name(text)
+        self.problems.append(say.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no name"))
+        return Name("wrong")
+
+    def text(self, text: str) -> str:
+        """A string; where it is not UTF-8, protobuf gives bytes in spite of its annotations."""
+        if isinstance(text, str):
+            return text
+        self.problems.append(say.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no text"))
+        return ""
+
 
 def _signed(text: str) -> Value:
     value = number(text.removeprefix("-"))
@@ -183,22 +221,3 @@ def _signed(text: str) -> Value:
 def _is_entry(message: DescriptorProto) -> bool:
     """Whether a message stands for the entries of a map."""
     return message.options.map_entry and len(message.field) == 2
-
-
-def _type(field: FieldDescriptorProto) -> Name:
-    return Name(WORDS.get(field.type, field.type_name))
-
-
-def _enum(enum: EnumDescriptorProto) -> Enum:
-    return Enum(
-        name=Name(enum.name),
-        values=tuple(EnumValue(Name(value.name), value.number) for value in enum.value),
-        reserved=tuple(Range(range_.start, range_.end) for range_ in enum.reserved_range),
-        reserved_names=tuple(Name(name) for name in enum.reserved_name),
-        options=own_options("EnumOptions", enum.options),
-    )
-
-
-def _service(service: ServiceDescriptorProto) -> Service:
-    methods = (Method(Name(method.name), (Name(method.input_type), Name(method.output_type))) for method in service.method)
-    return Service(Name(service.name), tuple(methods))

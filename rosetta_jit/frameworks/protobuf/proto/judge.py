@@ -5,10 +5,10 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.protobuf.proto.check import check
 from rosetta_jit.frameworks.protobuf.proto.declarations import declarations
 from rosetta_jit.frameworks.protobuf.proto.names import absolute
+from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED, refuse
 from rosetta_jit.frameworks.protobuf.proto.schema import build
 from rosetta_jit.frameworks.protobuf.proto.symbols import declare
 
@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.files import FileSet
     from rosetta_jit.model.types import Schema
-
-MAX_REPORTED = 100
-"""Problems that one report lists; who made more reads no further."""
 
 
 def schema_of(files: FileSet) -> Schema:
@@ -34,19 +31,3 @@ def schema_of(files: FileSet) -> Schema:
     problems += islice(check(declared), MAX_REPORTED)
     refuse(problems)
     return build(declared)
-
-
-def refuse(problems: list[Diagnostic]) -> None:
-    """Raise what was found, file by file and in the order of the text.
-
-    Raises
-    ------
-    SchemaError
-        Where anything was found.
-    """
-    if problems:
-        raise SchemaError(tuple(sorted(problems[:MAX_REPORTED], key=_place)))
-
-
-def _place(problem: Diagnostic) -> tuple[str, int]:
-    return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)

@@ -25,7 +25,7 @@ class EscapeError(ValueError):
 def number(text: str) -> int | float | None:
     """The number that a token spells; None where it spells none."""
     if INTEGER.fullmatch(text):
-        return float(text) if len(text) > MAX_DIGITS and text[0] != "0" else _integer(text)
+        return _integer(text) if len(text) <= MAX_DIGITS else _too_long(text)
     return float(text) if FLOAT.fullmatch(text) else None
 
 
@@ -60,6 +60,11 @@ def _integer(text: str) -> int:
     if text[:2] in ("0x", "0X"):
         return int(text, 16)
     return int(text, 8) if text[0] == "0" else int(text)
+
+
+def _too_long(text: str) -> float | None:
+    """A decimal integer is a number where a float is wanted, however long it is."""
+    return None if text[0] == "0" else float(text)
 
 
 def _escape(match: re.Match[str]) -> bytes:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, Field, File, MapType, Message, Method, Name, Oneof, Option, Service
@@ -20,8 +21,8 @@ EXTENSION: frozenset[Kind] = frozenset(("extension",))
 MESSAGE: frozenset[Kind] = frozenset(("message",))
 
 
-MAX_SUGGESTIONS = 100
-"""Problems after which no similar names are looked for: each search reads all names."""
+MAX_COMPARED = 500
+"""Names among which a similar one is looked for; comparing is slow."""
 
 
 def absolute(file: File, symbols: Symbols, problems: list[Diagnostic]) -> File:
@@ -135,14 +136,13 @@ class _Resolver:
             symbol = self.symbols.table.get(full)
             if symbol and symbol.kind in kinds:
                 return say.not_imported(name, full, min(symbol.files))
-        return say.unknown_name(name, kinds, self.elsewhere(bare, kinds) if len(self.problems) < MAX_SUGGESTIONS else None)
+        return say.unknown_name(name, kinds, self.elsewhere(bare, kinds) if len(self.problems) < MAX_REPORTED else None)
 
     def elsewhere(self, name: str, kinds: frozenset[Kind]) -> str | None:
         """A declaration whose name ends in the same way, or almost so."""
         from difflib import get_close_matches
 
+        known = {full.rpartition(".")[2]: full for full, symbol in self.symbols.table.items() if symbol.kind in kinds}
         last = name.rpartition(".")[2]
-        known = [full for full, symbol in self.symbols.table.items() if symbol.kind in kinds]
-        same = [full for full in known if full.rpartition(".")[2] == last]
-        close = same or get_close_matches(name, known[:500], n=1)
-        return close[0] if close else None
+        close = [last] if last in known else get_close_matches(last, list(known)[:MAX_COMPARED], n=1)
+        return known[close[0]] if close else None

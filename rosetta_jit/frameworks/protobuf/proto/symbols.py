@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME, MAX_REPORTED, refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.files import FileSet
-    from rosetta_jit.frameworks.protobuf.proto.tree import Extend, File
+from rosetta_jit.frameworks.protobuf.proto.tree import Extend, File
 
 Kind = Literal["package", "message", "enum", "value", "field", "oneof", "extension", "service", "method"]
 
@@ -69,16 +70,24 @@ class Symbols:
 
 
 def declare(files: FileSet, problems: list[Diagnostic]) -> Symbols:
-    """Collect the names of all files; what has the name of something else is a problem."""
+    """Collect the names of all files; what has the name of something else is a problem.
+
+    Raises
+    ------
+    SchemaError
+        At the first name that is too long: many of those could fill the memory.
+    """
     table: dict[str, Symbol] = {}
     for file in files.files:
         for full, symbol in _symbols(file):
+            if len(full) > MAX_NAME:
+                refuse([*problems, say.name_too_long(symbol.name.span, MAX_NAME)])
             old = table.get(full)
             if old is None:
                 table[full] = symbol
             elif old.kind == symbol.kind == "package":
                 table[full] = Symbol("package", old.files | symbol.files, old.name)
-            else:
+            elif len(problems) < MAX_REPORTED:
                 problems.append(say.repeated_name(symbol.name, full, old.kind, old.name.span))
     return Symbols(table, {file.name: files.visible_from(file.name) for file in files.files})
 

@@ -13,6 +13,7 @@ from lark import Token, Tree
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
+from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Name, Option, Value, Word
 from rosetta_jit.source import Source, Span
 
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
 
 Node = Tree[Token]
-
-MAX_NAME = 512
-"""Longer names, packages included, are refused: a file of n bytes shall not need more than a small multiple of n."""
 
 
 @dataclass(frozen=True, slots=True)
