@@ -138,7 +138,7 @@ class _Reader:
         return Extend(self.name(field.extendee), (replace(read, label=LABELS.get(field.label)),))
 
     def field(self, field: FieldDescriptorProto, entries: Mapping[str, DescriptorProto]) -> Field:
-        entry = entries.get(field.type_name.rpartition(".")[2]) if field.label == LABEL_REPEATED else None
+        entry = entries.get(self.text(field.type_name).rpartition(".")[2]) if field.label == LABEL_REPEATED else None
         default = (Option(("default",), self.default(field)),) if field.HasField("default_value") else ()
         return Field(
             name=self.name(field.name),
@@ -196,14 +196,14 @@ class _Reader:
         )
         return Service(self.name(service.name), tuple(methods))
 
-    def name(self, text: str) -> Name:
+    def name(self, text: str | bytes) -> Name:
         """A name or a path; whoever made the descriptor may have put anything there."""
         if isinstance(text, str) and len(text) <= MAX_NAME and PATH.fullmatch(text):
             return Name(text)
         self.problems.append(say.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no name"))
         return Name("wrong")
 
-    def text(self, text: str) -> str:
+    def text(self, text: str | bytes) -> str:
         """A string; where it is not UTF-8, protobuf gives bytes in spite of its annotations."""
         if isinstance(text, str):
             return text

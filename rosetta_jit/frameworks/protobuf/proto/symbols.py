@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.files import FileSet
-from rosetta_jit.frameworks.protobuf.proto.tree import Extend, File
+    from rosetta_jit.frameworks.protobuf.proto.tree import Extend, File
 
 Kind = Literal["package", "message", "enum", "value", "field", "oneof", "extension", "service", "method"]
 
