@@ -7,7 +7,10 @@ is exact: Python's integers do not wrap.
 from __future__ import annotations
 
 from math import gcd
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 Terms = tuple[tuple[int, int], ...]
 """(atom, coefficient) pairs, by rising atom, no coefficient zero."""
@@ -81,53 +84,67 @@ def contradict(facts: list[Linear], budget: int) -> bool:
 
     ``budget`` bounds the combinations tried; when it is spent the answer is False, which always is the safe one.
     """
-    rows = set(facts)
+    rows = _strongest((fact.constant, dict(fact.terms)) for fact in facts)
     while rows:
-        if any(not row.terms and row.constant < 0 for row in rows):
+        if any(constant < 0 and not terms for constant, terms in rows):
             return True
         atom = _cheapest(rows)
         if atom is None:
             return False
-        above = [row for row in rows if coefficient_of(row, atom) > 0]
-        below = [row for row in rows if coefficient_of(row, atom) < 0]
+        above = [row for row in rows if row[1].get(atom, 0) > 0]
+        below = [row for row in rows if row[1].get(atom, 0) < 0]
         budget -= len(above) * len(below)
         if budget < 0:
             return False
-        rows.difference_update(above, below)
-        rows.update(_combined(over, under, atom) for over in above for under in below)
-        rows = _strongest(rows)
+        rows = [row for row in rows if atom not in row[1]]
+        if above and below:
+            rows = _strongest([*rows, *(_combined(over, under, atom) for over in above for under in below)])
     return False
 
 
-def _cheapest(rows: set[Linear]) -> int | None:
+_Row = tuple[int, dict[int, int]]
+"""Constant and coefficients by atom, none of them zero: quicker to combine than a `Linear`."""
+
+
+def _cheapest(rows: list[_Row]) -> int | None:
     """The atom whose elimination makes the fewest new rows."""
     above: dict[int, int] = {}
     below: dict[int, int] = {}
-    for row in rows:
-        for atom, coefficient in row.terms:
+    for _, terms in rows:
+        for atom, coefficient in terms.items():
             side = above if coefficient > 0 else below
             side[atom] = side.get(atom, 0) + 1
-    atoms = sorted(above.keys() | below.keys())
-
-    def cost(atom: int) -> int:
+    best, least = None, 0
+    for atom in sorted(above.keys() | below.keys()):
         over, under = above.get(atom, 0), below.get(atom, 0)
-        return over * under - over - under
+        cost = over * under - over - under
+        if best is None or cost < least:
+            best, least = atom, cost
+    return best
 
-    return min(atoms, key=cost, default=None)
 
-
-def _combined(over: Linear, under: Linear, atom: int) -> Linear:
+def _combined(over: _Row, under: _Row, atom: int) -> _Row:
     """The consequence of two facts in which the atom cancels."""
-    return tightened(plus(times(over, -coefficient_of(under, atom)), times(under, coefficient_of(over, atom))))
+    up, down = -under[1][atom], over[1][atom]
+    total = {each: coefficient * up for each, coefficient in over[1].items()}
+    for each, coefficient in under[1].items():
+        total[each] = total.get(each, 0) + coefficient * down
+    terms = {each: coefficient for each, coefficient in total.items() if coefficient}
+    constant, common = over[0] * up + under[0] * down, gcd(*terms.values())
+    if common > 1:
+        return constant // common, {each: coefficient // common for each, coefficient in terms.items()}
+    return constant, terms
 
 
-def _strongest(rows: set[Linear]) -> set[Linear]:
+def _strongest(rows: Iterable[_Row]) -> list[_Row]:
     """Of facts about the same sum the one that says most."""
-    best: dict[Terms, int] = {}
-    for constant, terms in rows:
-        if best.get(terms, constant) >= constant:
-            best[terms] = constant
-    return {Linear(constant, terms) for terms, constant in best.items()}
+    best: dict[frozenset[tuple[int, int]], _Row] = {}
+    for row in rows:
+        key = frozenset(row[1].items())
+        known = best.get(key)
+        if known is None or row[0] < known[0]:
+            best[key] = row
+    return list(best.values())
 
 
 def _terms(total: dict[int, int]) -> Terms:

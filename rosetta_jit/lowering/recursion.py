@@ -33,7 +33,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.lowering.fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.tagged import Message, read_length, read_message
-from rosetta_jit.lowering.unknown import skip_group
+from rosetta_jit.lowering.unknown import skip
 from rosetta_jit.lowering.writer import Where, Writer, block
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def _piece(message: Message, recursion: Recursion, where: Where) -> tuple[Expr, 
         return begin, writer.position
     begin = writer.let("begin_of_message", writer.position)
     tag = writer.let("tag", index(recursion.group << 3 | 3))
-    skip_group(writer, len(message.fields.layout.lanes), tag, message.stop, where)
+    skip(writer, len(message.fields.layout.lanes), tag, message.stop, where)
     return begin, writer.position
 
 

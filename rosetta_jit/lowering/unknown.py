@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
     BEGIN,
+    END,
+    Assign,
     Binary,
     Compare,
     Const,
@@ -13,6 +15,7 @@ from rosetta_jit.kernel.ir import (
     Expect,
     Expr,
     Get,
+    If,
     Place,
     Reserve,
     SetField,
@@ -37,16 +40,8 @@ VARINT, FIXED64, DELIMITED, GROUP, END_GROUP, FIXED32 = 0, 1, 2, 3, 4, 5
 
 
 def skip_unknown(writer: Writer, fields: HolderFields, tag: Local, stop: Expr) -> None:
-    """Skip the value behind a tag. Numbers of fields start at 1 and end at 2**29 - 1."""
-    where = fields.where
-    _expect_tag(writer, tag, where)
-    after = writer.var("next", writer.position)
-    with writer.nested() as group:
-        skip_group(writer, len(fields.layout.lanes), tag, stop, where)
-        writer.assign(after, writer.position)
-    cases = (*_scalar_cases(writer, after, stop, where), (GROUP, block(group)))
-    writer.emit(Switch(Binary("and", tag, index(7)), cases, _refused(writer, where)))
-    writer.position = after
+    """Skip the value behind a tag."""
+    skip(writer, len(fields.layout.lanes), tag, stop, fields.where)
 
 
 def _expect_tag(writer: Writer, tag: Expr, where: Where) -> None:
@@ -55,7 +50,7 @@ def _expect_tag(writer: Writer, tag: Expr, where: Where) -> None:
 
 
 def _scalar_cases(writer: Writer, after: Local, stop: Expr, where: Where) -> tuple[tuple[int, Block], ...]:
-    """Values that are not groups, by wire type."""
+    """Values that are not groups, by wire type. What goes beyond ``stop`` is noticed by the caller."""
     from rosetta_jit.lowering.tagged import read_length
 
     cases: list[tuple[int, Block]] = []
@@ -76,47 +71,66 @@ def _scalar_cases(writer: Writer, after: Local, stop: Expr, where: Where) -> tup
 
 
 def _refused(writer: Writer, where: Where) -> Block:
-    failure = writer.failure("tag", where, "an end of a group that did not begin, or no wire type at all")
+    failure = writer.failure("tag", where, "no wire type")
     return (Expect(Const("bool", value=False), failure),)
 
 
-def skip_group(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> None:
-    """Skip the fields of a group and its end tag.
+def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> None:
+    """Skip the value behind a tag: of a group all its fields, and its end tag.
 
     The numbers of the groups that are open lie in the scratch lane, which is the stack of this loop.
     """
     writer.emit(Reserve(scratch, index(MAX_NESTING)))
     base = writer.let("base", Used(scratch))
-    writer.emit(SetField(Place(scratch, base), Binary("shr", tag, index(3))))
-    writer.expect(Compare("le", writer.position, stop), "truncated", where, "a field goes beyond its message")
-    at, depth = writer.var("at", writer.position), writer.var("depth", index(1))
+    limit = writer.let("limit", add(Binary("sub", END, BEGIN), 2))
+    at, depth, rounds = writer.var("at", writer.position), writer.var("depth", index(0)), writer.var("rounds", index(0))
+    current, goes_on = writer.var("tag", tag), writer.var("goes_on", Const("bool", value=True))
     with writer.nested() as body:
         writer.position = at
-        inner = writer.let("tag", Convert("i64", read_varint(writer, where)))
-        _expect_tag(writer, inner, where)
-        after = writer.var("next", writer.position)
-        with writer.nested() as opened:
-            writer.expect(Compare("lt", depth, index(MAX_NESTING)), "nesting", where, f"more than {MAX_NESTING} groups within each other")
-            writer.emit(SetField(Place(scratch, Binary("add", base, depth)), Binary("shr", inner, index(3))))
-            writer.assign(depth, add(depth, 1))
-        with writer.nested() as closed:
-            innermost = Get("i64", Place(scratch, Binary("add", base, Binary("sub", depth, index(1)))))
-            writer.expect(Compare("eq", innermost, Binary("shr", inner, index(3))), "tag", where, "the end of another group")
-            writer.assign(depth, Binary("sub", depth, index(1)))
-        cases = (*_scalar_cases(writer, after, stop, where), (GROUP, block(opened)), (END_GROUP, block(closed)))
-        writer.emit(Switch(Binary("and", inner, index(7)), cases, _refused(writer, where)))
+        _expect_tag(writer, current, where)
+        after = writer.var("next", at)
+        cases = (*_scalar_cases(writer, after, stop, where), *_group_cases(writer, scratch, base, depth, current, where))
+        writer.emit(Switch(Binary("and", current, index(7)), cases, _refused(writer, where)))
         writer.position = after
-        writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
         within = Binary("and", Compare("ge", depth, index(0)), Compare("le", depth, index(MAX_NESTING)))
         writer.expect(within, "nesting", where, f"more than {MAX_NESTING} groups within each other")
+        writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
         writer.assign(at, after)
-    open_group = Binary("and", Compare("gt", depth, index(0)), Compare("lt", at, stop))
+        with writer.nested() as inner:
+            writer.position = at
+            writer.assign(current, Convert("i64", read_varint(writer, where)))
+            writer.assign(at, writer.position)
+        writer.emit(If(Compare("gt", depth, index(0)), block(inner), (Assign(goes_on.name, Const("bool", value=False)),)))
+        _expect_position(writer, at, where)
+        writer.assign(rounds, add(rounds, 1))
     invariant = (
         Compare("ge", at, BEGIN),
-        Compare("le", at, stop),
+        Compare("le", at, END),
         Compare("ge", depth, index(0)),
         Compare("le", depth, index(MAX_NESTING)),
+        Compare("ge", rounds, index(0)),
+        Compare("le", rounds, limit),
     )
-    writer.emit(While(open_group, block(body), invariant, at))
+    writer.emit(While(Binary("and", goes_on, Compare("lt", rounds, limit)), block(body), invariant, rounds))
     writer.position = at
     writer.expect(Compare("eq", depth, index(0)), "truncated", where, "the group has no end")
+
+
+def _group_cases(writer: Writer, scratch: int, base: Local, depth: Local, tag: Local, where: Where) -> tuple[tuple[int, Block], ...]:
+    """The start of a group and its end, which must be of the same number."""
+    number = Binary("shr", tag, index(3))
+    with writer.nested() as opened:
+        writer.expect(Compare("lt", depth, index(MAX_NESTING)), "nesting", where, f"more than {MAX_NESTING} groups within each other")
+        writer.emit(SetField(Place(scratch, Binary("add", base, depth)), number))
+        writer.assign(depth, add(depth, 1))
+    with writer.nested() as closed:
+        writer.expect(Compare("gt", depth, index(0)), "tag", where, "the end of a group that did not begin")
+        innermost = Get("i64", Place(scratch, Binary("add", base, Binary("sub", depth, index(1)))))
+        writer.expect(Compare("eq", innermost, number), "tag", where, "the end of another group")
+        writer.assign(depth, Binary("sub", depth, index(1)))
+    return (GROUP, block(opened)), (END_GROUP, block(closed))
+
+
+def _expect_position(writer: Writer, at: Local, where: Where) -> None:
+    """True anyway; said for the proof, which does not follow the position through branches."""
+    writer.expect(Binary("and", Compare("ge", at, BEGIN), Compare("le", at, END)), "truncated", where, "a field goes beyond its message")

@@ -1,0 +1,68 @@
+"""Innermost loops of a few rounds become their rounds, one behind the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Assign, Block, Const, For, Let, Var, While, index
+from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_expressions
+from rosetta_jit.kernel.shape import bound_name, statements
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
+
+MAX_ROUNDS = 16
+MAX_STATEMENTS = 64
+
+
+def unroll(kernel: Kernel) -> Kernel:
+    """The kernel without short loops."""
+    names = {name for body in kernel.bodies for stmt, _ in statements(body) if (name := bound_name(stmt)) is not None}
+    return replace(kernel, bodies=tuple(_block(body, names) for body in kernel.bodies))
+
+
+def _block(block: Block, names: set[str]) -> Block:
+    result: list[Stmt] = []
+    for stmt in block:
+        match stmt:
+            case For(variable, Const(_, count), body) if _is_short(int(count), body):
+                for number in range(int(count)):
+                    result.extend(_round(body, variable, number, names))
+            case _:
+                result.append(with_blocks(stmt, lambda inner: _block(inner, names)))
+    return tuple(result)
+
+
+def _is_short(count: int, body: Block) -> bool:
+    inner = [stmt for stmt, _ in statements(body)]
+    is_innermost = not any(isinstance(stmt, For | While) for stmt in inner)
+    return is_innermost and count <= MAX_ROUNDS and count * len(inner) <= MAX_STATEMENTS and not ends(body)
+
+
+def _round(body: Block, variable: str, number: int, names: set[str]) -> Block:
+    """A copy of a loop's body for one value of its variable, with names of its own."""
+    bound = [stmt.name for stmt, _ in statements(body) if isinstance(stmt, Let | Var)]
+    renamed = {name: _fresh(f"{name}_{number}", names) for name in bound}
+
+    def change(expr: Expr) -> Expr:
+        return substituted(expr, {variable: index(number)}, renamed)
+
+    def copied(block: Block) -> Block:
+        return tuple(_renamed(with_blocks(with_expressions(stmt, change), copied), renamed) for stmt in block)
+
+    return copied(body)
+
+
+def _renamed(stmt: Stmt, renamed: dict[str, str]) -> Stmt:
+    """A statement with the new name for what it binds or assigns."""
+    if isinstance(stmt, Let | Var | Assign):
+        return replace(stmt, name=renamed.get(stmt.name, stmt.name))
+    return stmt
+
+
+def _fresh(name: str, names: set[str]) -> str:
+    while name in names:
+        name += "_"
+    names.add(name)
+    return name
