@@ -70,19 +70,19 @@ class _Made(dict[str, Any]):
         return made
 
 
-def getter(entry: Entry, family: Family) -> Getter:
-    """What reads a field of a message."""
+def getter(entry: Entry, family: Family, *, first_row: bool = False) -> Getter:
+    """What reads a field of a message; quicker where all messages are in the first row of their lanes, as holders are."""
     node = entry.node
     guarded = entry.presence is not None and (bool(entry.default) or not isinstance(entry.presence, Bit))
     match node:
         case Scalar():
-            return _or_default(_scalar(node), entry) if guarded else _scalar(node)
+            return _or_default(_scalar(node), entry) if guarded else _scalar(node, first_row=first_row)
         case Text():
             return _or_default(_text(node), entry) if guarded else _text(node)
         case Blob():
             return _or_default(_blob(node), entry) if guarded else _blob(node)
         case Numbers():
-            return _numbers(entry, node, family)
+            return _numbers(entry, node, family, first_row=first_row)
         case Items():
             return lambda message: family.sequence(message, entry)
         case Pairs():
@@ -105,7 +105,7 @@ def _or_default(get: Getter, entry: Entry) -> Getter:
     return get_or_default
 
 
-def _scalar(node: Scalar) -> Getter:
+def _scalar(node: Scalar, *, first_row: bool = False) -> Getter:
     key, step, index = node.cell.key, node.cell.step, node.cell.index
 
     def get(message: Message) -> Any:
@@ -114,7 +114,13 @@ def _scalar(node: Scalar) -> Getter:
             return lanes.cells[key][message.row_ * step + index]
         raise lanes.invalid()
 
-    return get
+    def get_first(message: Message) -> Any:
+        lanes = message.lanes_
+        if lanes.words[VALID]:
+            return lanes.cells[key][index]
+        raise lanes.invalid()
+
+    return get_first if first_row else get
 
 
 def _text(node: Text) -> Getter:
@@ -141,27 +147,43 @@ def _blob(node: Blob) -> Getter:
     return get
 
 
-def _numbers(entry: Entry, node: Numbers, family: Family) -> Getter:
-    lane, key, step, index = node.lane, node.span.key, node.span.step, node.span.index
+def _numbers(entry: Entry, node: Numbers, family: Family, *, first_row: bool) -> Getter:
+    lane, key, index = node.lane, node.span.key, node.span.index
+    behind = index + 1
 
-    def get(message: Message) -> np.ndarray[Any, Any]:
+    def get(message: Message) -> Any:
+        lanes = message.lanes_
+        if not lanes.words[VALID]:
+            raise lanes.invalid()
+        start, count = arena.span_of(lanes, node.span, message.row_)
+        return lanes.arrays[lane][start : start + count]
+
+    def get_first(message: Message) -> Any:
         lanes = message.lanes_
         if not lanes.words[VALID]:
             raise lanes.invalid()
         words = lanes.cells[key]
-        at = message.row_ * step + index
-        start = words[at]
-        return lanes.arrays[lane][start : start + words[at + 1]]
+        start = words[index]
+        return lanes.arrays[lane][start : start + words[behind]]
 
-    if family.array_type is np.ndarray:
-        return get
-
-    def get_owned(message: Message) -> np.ndarray[Any, Any]:
-        array: Any = get(message)
+    def get_owned(message: Message) -> Any:
+        array = get(message)
         array.owner_ = message, entry
         return array
 
-    return get_owned
+    def get_first_owned(message: Any) -> Any:
+        lanes = message.lanes_
+        if not lanes.words[VALID]:
+            raise lanes.invalid()
+        words = lanes.cells[key]
+        start = words[index]
+        array = lanes.arrays[lane][start : start + words[behind]]
+        array.owner_ = message, entry
+        return array
+
+    if family.array_type is np.ndarray:
+        return get_first if first_row else get
+    return get_first_owned if first_row else get_owned
 
 
 def _message(entry: Entry, node: Record | Child, family: Family) -> Getter:

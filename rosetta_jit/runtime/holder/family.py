@@ -13,7 +13,7 @@ from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.runtime.holder import values
-from rosetta_jit.runtime.holder.access import Access
+from rosetta_jit.runtime.holder.access import Access, getter
 from rosetta_jit.runtime.holder.classes import Holder
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, stale_getter, view_setter
 from rosetta_jit.runtime.holder.record import Tree
@@ -81,7 +81,9 @@ class Family:
     def holder(self) -> type[Holder]:
         """The holder class."""
         access = self.access(self.tree.root)
-        properties = {name: property(access.getters[name], access.setters[name]) for name in _shown(self.tree.root, self.manners.base)}
+        entries = self.tree.root.entries
+        shown = _shown(self.tree.root, self.manners.base)
+        properties = {name: property(getter(entries[name], self, first_row=True), access.setters[name]) for name in shown}
         members = {"family_": self, "access_": access, "__slots__": (), "__doc__": f"A holder of `{self.struct.name}`."}
         return _class(self.struct.name, (self.manners.base,), {**self.manners.members(self), **properties, **members})
 

@@ -6,6 +6,8 @@
 
 A union is not a node: its cases are entries of the record around it, present where the union's case word says so. A `Child` is a field
 that refers to a recursive struct: at most one row of that struct's lane. Absent values are zero in memory.
+
+Nodes are never changed, and not frozen only because every process pays for the methods of a frozen dataclass when it starts.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ ScalarType = Bool | Int | Float | Enum
 _SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Cell:
     """One scalar of each row of a lane: ``cells[key][row * step + index]``. A span is two of them, one after the other."""
 
@@ -39,7 +41,7 @@ class Cell:
         return self.key >> 4
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Bit:
     """Present when a bit of the record's presence words is set."""
 
@@ -47,7 +49,7 @@ class Bit:
     mask: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Case:
     """Present when the union's case is this one. Bytes ``start`` to ``end`` of the row are shared by no other field than the cases."""
 
@@ -60,7 +62,7 @@ class Case:
 Presence = Bit | Case
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Scalar:
     """A number, a boolean, or an enum's number."""
 
@@ -68,7 +70,7 @@ class Scalar:
     type: ScalarType
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Text:
     """A string in a lane of bytes."""
 
@@ -77,7 +79,7 @@ class Text:
     type: String
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Blob:
     """Bytes in a lane, or borrowed from the message."""
 
@@ -85,7 +87,7 @@ class Blob:
     lane: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Numbers:
     """An array of scalars: a numpy array. Where the type fixes its ``length`` it is empty until it is set."""
 
@@ -95,7 +97,7 @@ class Numbers:
     length: int | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Items:
     """An array of anything else; ``element`` is what lies in each row of the lane."""
 
@@ -105,7 +107,7 @@ class Items:
     length: int | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Pairs:
     """A map: rows of key and value, each a ``record``."""
 
@@ -116,7 +118,7 @@ class Pairs:
     value: Entry
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Child:
     """At most one row of a recursive struct's lane."""
 
@@ -125,7 +127,7 @@ class Child:
     record: Record
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, repr=False)
 class Record:
     """A struct in place: bytes ``start`` to ``end`` of each row of a lane.
 
@@ -153,7 +155,7 @@ class Record:
 Node = Scalar | Text | Blob | Numbers | Items | Pairs | Record | Child
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Entry:
     """A field of a record, or a case of one of its unions. ``default`` is what reading gives while it is absent."""
 
