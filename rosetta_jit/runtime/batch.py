@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.columns import Ragged, column, presence_mask
-from rosetta_jit.runtime.holder.record import Numbers, Record, Scalar
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes, plan
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder import Family, Holder
-    from rosetta_jit.runtime.holder.record import Entry
+    from rosetta_jit.runtime.holder.record import Entry, Node
 
 
 class Batch:
@@ -110,7 +110,7 @@ class Batch:
         return present
 
     def to_arrow(self) -> Any:
-        """A `pyarrow.Table` of the columns; absent values are null.
+        """A `pyarrow.Table` of the columns; absent values are null, maps are lists of key and value.
 
         Raises
         ------
@@ -128,7 +128,8 @@ class Batch:
 
     def _arrow(self, arrow: Any, name: str, messages: list[dict[str, Any]]) -> Any:
         if self._is_composed(name):
-            return arrow.array([message.get(name) for message in messages])
+            node = self.family_.tree.root.entries[name].node
+            return arrow.array([for_arrow(node, message[name]) if name in message else None for message in messages])
         values = self.column(name)
         if isinstance(values, Ragged):
             return arrow.LargeListArray.from_arrays(values.offsets, arrow.array(values.flat()))
@@ -137,3 +138,20 @@ class Batch:
     def _check(self) -> None:
         if not self.lanes.words[VALID]:
             raise self.lanes.invalid()
+
+
+def for_arrow(node: Node, value: Any) -> Any:
+    """A plain value with its maps as lists of pairs: Arrow's structs have one set of names, and only text for names."""
+    match node:
+        case Pairs(_, _, _, _, of_key):
+            return [{"key": key, "value": for_arrow(of_key.node, each)} for key, each in value.items()]
+        case Items(_, _, element, _):
+            return [for_arrow(element, each) for each in value]
+        case Record():
+            return {name: for_arrow(node.entries[name].node, each) for name, each in value.items()}
+        case Child():
+            return for_arrow(node.record, value)
+        case Scalar() | Text() | Blob() | Numbers():
+            return value
+        case _:
+            assert_never(node)

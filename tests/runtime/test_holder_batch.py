@@ -114,3 +114,5 @@ def test_arrow(batch):
     assert table["maybe"].to_pylist() == [None, 1.0, None, 3.0]
     assert table["angles"].to_pylist() == batch.angles.to_list()
     assert table["text"].to_pylist() == batch.text.to_list()
+    assert table["counts"].to_pylist() == [[{"key": index, "value": 1}] for index in range(4)]
+    assert table["parts"].to_pylist()[1][0]["x"] == 1
