@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from rosetta_jit.frameworks.base import manners_of
@@ -310,7 +312,61 @@ def _python_kernel(build: Build, number: int) -> run.Run:
 
 
 def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
-    return holder_class_of(header["type"], manners_of(header["manners"]))
+    """The holder class, whose messages can serialise themselves if their manners have it."""
+    manners = manners_of(header["manners"])
+    base: Any = manners.base
+    if "programs_" in vars(base) and vars(base)["programs_"] is None:
+        base.programs_ = Serialising()
+    return holder_class_of(header["type"], manners)
+
+
+class Serialising:
+    """The programs behind ``SerializeToString`` and its like: of each holder class its own, compiled when first used."""
+
+    def __init__(self) -> None:
+        self._made: dict[str, OwnPrograms] = {}
+
+    def __get__(self, holder: Holder | None, holder_type: type[Holder]) -> OwnPrograms:
+        text = holder_type.family_.text
+        if text not in self._made:
+            self._made[text] = OwnPrograms(text)
+        return self._made[text]
+
+
+class OwnPrograms:
+    """Decoder and encoder of a message class into itself, as protobuf's Python has them: required fields may be missing."""
+
+    def __init__(self, text: str) -> None:
+        self._request = Request("decode", encoding="protobuf-partial", plain=text, framework="protobuf")
+
+    def encode(self, holder: Any) -> bytes:
+        """The bytes of a holder."""
+        return self._encoder(holder)
+
+    def size(self, holder: Any) -> int:
+        """How many they are."""
+        return self._encoder.size(holder)
+
+    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
+        """Fill a holder from bytes, or add to what it has."""
+        if merge:
+            holder.MergeFrom(self._decoder.into(data, holder.new()))
+        else:
+            self._decoder.into(data, holder)
+
+    @cached_property
+    def _decoder(self) -> Any:
+        return _of_request(Decoder, self._request)
+
+    @cached_property
+    def _encoder(self) -> Any:
+        return _of_request(Encoder, replace(self._request, direction="encode"))
+
+
+def _of_request(program: type, request: Request) -> Any:
+    made: Any = program.__new__(program)
+    made._make(request)  # noqa: SLF001 - the module's own
+    return made
 
 
 def _sites(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:

@@ -16,7 +16,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 REPORTS = {"source", "errors", "diagnostics", "catalogue"}
 RUNTIME = {"model.types", "model.layout", "model.serial", "kernel.state"}
 MIDDLE = REPORTS | {"model", "frontend", "wire", "kernel", "lowering"}
-ANYTHING = MIDDLE | {"backends", "frameworks", "runtime", "pipeline", "recording", "cli", "demo", ""}
+ANYTHING = MIDDLE | {"backends", "frameworks", "runtime", "request", "pipeline", "programs", "recording", "cli", "demo", ""}
 
 MAY_IMPORT = {
     "source": set(),
@@ -32,7 +32,9 @@ MAY_IMPORT = {
     "frameworks": REPORTS | {"model", "frontend.idl", "wire", "runtime.holder"},
     "runtime": REPORTS | RUNTIME,
     "recording": REPORTS,
-    "pipeline": ANYTHING - {"cli", "demo", ""},
+    "request": set(),
+    "pipeline": ANYTHING - {"programs", "cli", "demo", ""},
+    "programs": ANYTHING - {"cli", "demo", ""},
     "demo": ANYTHING - {"cli"},
     "cli": ANYTHING,
     "": ANYTHING - {"cli", "demo"},

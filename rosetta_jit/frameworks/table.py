@@ -5,6 +5,7 @@ from __future__ import annotations
 from rosetta_jit.frameworks.base import Framework
 
 _BOTTLES = "rosetta_jit.frameworks.yarp.encoding:encode_type"
+_MESSAGES = "rosetta_jit.frameworks.protobuf.encoding:encode_type"
 
 FRAMEWORKS = (
     Framework(
@@ -15,7 +16,7 @@ FRAMEWORKS = (
     Framework(
         "protobuf",
         idl={".proto": "rosetta_jit.frameworks.protobuf.idl:parse"},
-        encodings={"protobuf": "rosetta_jit.frameworks.protobuf.encoding:encode_type"},
+        encodings={"protobuf": _MESSAGES, "protobuf-partial": _MESSAGES},
         manners="rosetta_jit.frameworks.protobuf.manners:PROTOBUF",
     ),
 )

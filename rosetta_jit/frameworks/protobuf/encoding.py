@@ -26,9 +26,13 @@ FIXED: dict[str, tuple[str, WireType]] = {
 LENGTH = Count("varint")
 
 
+PARTIAL = "protobuf-partial"
+"""The same bytes, but required fields need not come and need not be set, as in Python's ``ParseFromString``."""
+
+
 def encode_type(struct: Struct, schema: Schema, name: str) -> Encoding:
     """The encoding of a message type."""
-    messages = _Messages(schema, recursive_structs(Ref(struct.name), schema))
+    messages = _Messages(schema, recursive_structs(Ref(struct.name), schema), partial=name == PARTIAL)
     root = messages.message(struct, (), delimited=False)
     reached = {each: messages.message(_struct(schema, each), (), delimited=True) for each in sorted(messages.recursive)}
     return Encoding(name, (root,), root, reached)
@@ -38,10 +42,11 @@ def encode_type(struct: Struct, schema: Schema, name: str) -> Encoding:
 class _Messages:
     schema: Schema
     recursive: frozenset[str]
+    partial: bool = False
 
     def message(self, struct: Struct, path: Path, *, delimited: bool, group: int | None = None) -> Tagged:
         entries = tuple(entry for each in struct.fields for entry in self.entries(each))
-        required = tuple(each.name for each in struct.fields if each.required)
+        required = tuple(each.name for each in struct.fields if each.required and not self.partial)
         return Tagged(path, tuple(sorted(entries, key=lambda entry: entry.number)), required, delimited, group)
 
     def entries(self, field: Field) -> list[Entry]:

@@ -1,0 +1,122 @@
+"""Types as text for a person: one declaration a paragraph, one field a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.model import expr
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosetta_jit.model.types import Declaration, Field, Schema, Type
+
+
+def show_types(schema: Schema, structs: Iterable[Struct]) -> str:
+    """The structs, and every declaration that they reach, each once."""
+    shown: dict[str, str] = {}
+    pending: list[Declaration] = [*structs]
+    while pending:
+        declaration = pending.pop(0)
+        if declaration.name not in shown:
+            shown[declaration.name] = _declaration(declaration)
+            pending += [schema.types[name] for name in _names(declaration)]
+    return "\n".join(shown.values())
+
+
+def show_type(type_: Type) -> str:
+    """A type in one line."""
+    match type_:
+        case Bool() | Int() | Float():
+            return _scalar(type_)
+        case String(encoding, _):
+            return "string" if encoding == "utf-8" else f"string of {encoding}"
+        case Bytes():
+            return "bytes"
+        case Enum(name) | Struct(name) | Ref(name):
+            return name
+        case Array(element, None):
+            return f"[{show_type(element)}]"
+        case Array(element, length):
+            return f"[{show_type(element)}; {length}]"
+        case Optional(value):
+            return f"{show_type(value)}?"
+        case Map(key, value):
+            return f"{{{show_type(key)}: {show_type(value)}}}"
+        case Union(_, cases):
+            return " | ".join(f"{each.name}: {show_type(each.type)}" for each in cases)
+        case _:
+            assert_never(type_)
+
+
+def show_expr(value: expr.Expr) -> str:
+    """An expression, with all parentheses."""
+    match value:
+        case expr.Literal(literal):
+            return repr(literal)
+        case expr.Name(name):
+            return name
+        case expr.Path(_, steps):
+            return "".join(f".{step.name}" if isinstance(step, expr.Member) else f"[{show_expr(step.index)}]" for step in steps)
+        case expr.Len(path):
+            return f"len({show_expr(path)})"
+        case expr.Unary(operator, operand):
+            return f"{operator}{show_expr(operand)}"
+        case expr.Binary(operator, left, right):
+            return f"({show_expr(left)} {operator} {show_expr(right)})"
+        case expr.Call(function, arguments):
+            return f"{function}({', '.join(map(show_expr, arguments))})"
+        case _:
+            assert_never(value)
+
+
+def _scalar(type_: Bool | Int | Float) -> str:
+    match type_:
+        case Bool(spelling):
+            plain = "bool"
+        case Int(bits, signed, spelling):
+            plain = f"{'int' if signed else 'uint'}{bits}"
+        case Float(bits, spelling):
+            plain = f"float{bits}"
+    return plain if spelling in ("", plain) else f"{plain} ({spelling})"
+
+
+def _declaration(declaration: Declaration) -> str:
+    match declaration:
+        case Struct(name, fields):
+            return "\n".join([f"struct {name}", *(f"  {_field(each)}" for each in fields), ""])
+        case Enum(name, values, closed):
+            kind = "enum" if closed else "open enum"
+            return "\n".join([f"{kind} {name}", *(f"  {each} = {number}" for each, number in values), ""])
+
+
+def _field(field: Field) -> str:
+    parts = [f"{field.name}: {show_type(field.type)}"]
+    parts += [f"number {field.number}"] if field.number is not None else []
+    parts += ["required"] if field.required else []
+    parts += [f"in {field.unit}"] if field.unit is not None else []
+    parts += [f"always {show_expr(field.constant)}"] if field.constant is not None else []
+    parts += [f"length {show_expr(field.length)}"] if field.length is not None else []
+    parts += [f"default {field.default!r}"] if field.default is not None else []
+    parts += [f"{name} {value!r}" for name, value in field.options]
+    return ", ".join(parts)
+
+
+def _names(declaration: Declaration) -> list[str]:
+    """The declarations that one refers to, in order."""
+    return [name for each in declaration.fields for name in _referred(each.type)] if isinstance(declaration, Struct) else []
+
+
+def _referred(type_: Type) -> list[str]:
+    match type_:
+        case Ref(name):
+            return [name]
+        case Array(inner, _) | Optional(inner):
+            return _referred(inner)
+        case Map(key, value):
+            return _referred(key) + _referred(value)
+        case Struct(_, fields) | Union(_, fields):
+            return [name for each in fields for name in _referred(each.type)]
+        case _:
+            return []

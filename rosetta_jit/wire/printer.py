@@ -1,0 +1,106 @@
+"""Codecs as text for a person: one node a line, what is within it indented."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.model.printer import show_expr
+from rosetta_jit.wire.codec import (
+    Blob,
+    Choice,
+    Codec,
+    Computed,
+    Constant,
+    Count,
+    Number,
+    Padding,
+    Recursion,
+    Repeat,
+    Seq,
+    Table,
+    Tagged,
+    Varint,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.wire.codec import Encoding, Entry, Order, Path
+
+
+def show_encoding(encoding: Encoding) -> str:
+    """What is tried in turn when reading, what is written, and the messages of recursive structs."""
+    lines = [f"encoding {encoding.name}"]
+    for number, attempt in enumerate(encoding.attempts, 1):
+        lines += [f"attempt {number}", *_lines(attempt, 1)]
+    if encoding.written is not None and encoding.written not in encoding.attempts:
+        lines += ["written", *_lines(encoding.written, 1)]
+    for name, tagged in encoding.recursive.items():
+        lines += [f"message {name}", *_lines(tagged, 1)]
+    return "\n".join(lines) + "\n"
+
+
+def _lines(codec: Codec, depth: int) -> Iterator[str]:
+    indent = "  " * depth
+    match codec:
+        case Seq(items):
+            for item in items:
+                yield from _lines(item, depth)
+        case Number(path, scalar, order):
+            yield f"{indent}{_path(path)}: {_scalar(scalar, order)}"
+        case Table(path, scalar, pairs, order):
+            yield f"{indent}{_path(path)}: {_scalar(scalar, order)}, {', '.join(f'{wire} for {value}' for wire, value in pairs)}"
+        case Varint(path, zigzag):
+            yield f"{indent}{_path(path)}: {'zigzag ' if zigzag else ''}varint"
+        case Constant(path, value, scalar, order, kind):
+            text = repr(value) if isinstance(value, bytes) else f"{_scalar(scalar, order)} {value}"
+            yield f"{indent}{kind} {text}" + (f" ({_path(path)})" if path else "")
+        case Computed(path, scalar, value, order):
+            yield f"{indent}{_path(path)}: {_scalar(scalar, order)} = {show_expr(value)}"
+        case Padding(scalar, value, order):
+            yield f"{indent}padding {_scalar(scalar, order)} {value}"
+        case Blob(path, count, text, terminated):
+            yield f"{indent}{_path(path)}: {_count(count)} bytes{' of text' if text else ''}{' and NUL' if terminated else ''}"
+        case Repeat(path, count, item, head, extra):
+            yield f"{indent}{_path(path)}: {_count(count)} elements" + (f", {extra} fields among them:" if extra else ", each:")
+            for each in head:
+                yield from _lines(each, depth + 1)
+            yield from _lines(item, depth + 1)
+        case Choice(path, scalar, alternatives, _, order):
+            yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
+            for value, each in alternatives:
+                yield f"{indent}{value}:"
+                yield from _lines(each, depth + 1)
+        case Tagged(path, entries, required, delimited, group):
+            kind = "delimited message" if delimited else "message" if group is None else f"group {group}"
+            yield f"{indent}{_path(path)}: {kind}" + (f", required: {', '.join(required)}" if required else "")
+            for entry in entries:
+                yield from _entry(entry, depth + 1)
+        case Recursion(path, struct, _):
+            yield f"{indent}{_path(path)}: message {struct}"
+        case _:
+            assert_never(codec)
+
+
+def _entry(entry: Entry, depth: int) -> Iterator[str]:
+    label = entry.label if not entry.implicit else "implicit"
+    yield f"{'  ' * depth}{entry.number} {label} {_path(entry.path)}"
+    yield from _lines(entry.value, depth + 1)
+
+
+def _path(path: Path) -> str:
+    return "".join(f".{name}" for name in path) or "element"
+
+
+def _scalar(scalar: str, order: Order) -> str:
+    return scalar if order == "<" else f"big-endian {scalar}"
+
+
+def _count(count: Count) -> str:
+    match count.value:
+        case None:
+            return f"{_scalar(count.scalar, count.order)} count of"
+        case int(value):
+            return f"{_scalar(count.scalar, count.order)} {value} for"
+        case value:
+            return f"{_scalar(count.scalar, count.order)} count (= {show_expr(value)}) of"
