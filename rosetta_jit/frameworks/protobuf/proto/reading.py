@@ -129,9 +129,11 @@ class _Reader(ValueReader):
 
     def field(self, node: Node) -> Field:
         tokens = tokens_of(node)
-        label = tokens[0] if tokens[0].type == "LABEL" else None
+        group = node.data == "group"
+        # `repeated = 1` without a label is a field of that name: only the count of words tells.
+        label = tokens[0] if len(tokens) > 2 + group else None
         number = tokens[-1]
-        if node.data == "group":
+        if group:
             written = self.name(tokens[-2])
             if not written.text[0].isupper():
                 # Its field would have the same name.
@@ -146,7 +148,7 @@ class _Reader(ValueReader):
             number_span=self.at(number),
             label=cast("Label", str(label)) if label else None,
             label_span=self.at(label) if label else None,
-            group=node.data == "group",
+            group=group,
             options=self.settings(node),
             doc=self.doc(node),
             span=self.at(tokens[-2]),

@@ -5,8 +5,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
-
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.protobuf.proto.tree import File
 
@@ -22,6 +20,8 @@ def well_known(path: str) -> File | None:
     if name not in WELL_KNOWN or path != f"{FOLDER}{name}.proto":
         return None
     from google.protobuf.descriptor_pb2 import FileDescriptorProto
+
+    from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
 
     module = import_module(f"google.protobuf.{name}_pb2")
     return read_files([FileDescriptorProto.FromString(module.DESCRIPTOR.serialized_pb)], [])[0]
