@@ -64,10 +64,11 @@ def test_what_is_missing_is_named(needy):
     assert json.loads(needy().SerializePartialToString()) == {"others": []}
 
 
-def test_wrong_arguments(needy, ours):
+def test_wrong_arguments(needy, ours, monkeypatch):
     with pytest.raises(TypeError):
         needy().ParseFromString("text")
     with pytest.raises(TypeError):
         needy().other.ParseFromString("text")
+    monkeypatch.setattr(ours("third.Plain"), "programs_", None)
     with pytest.raises(RosettaError, match="compiled"):
         ours("third.Plain")().SerializeToString()
