@@ -76,7 +76,7 @@ def quotient(facts: Facts, left: Linear, right: Linear) -> Linear:
     bound = max(abs(facts.lower(left)), abs(facts.upper(left)))
     if not right.terms and right.constant > 0:
         return _constant_quotient(facts, left, right.constant)
-    result = facts.fresh(-bound, bound)
+    result = _no_larger(facts, ("div", left, right), left, bound)
     if facts.lower(left) >= 0 and facts.lower(right) >= 1:
         facts.assume(result)
         facts.assume(minus(left, result))
@@ -86,13 +86,22 @@ def quotient(facts: Facts, left: Linear, right: Linear) -> Linear:
     return result
 
 
+def _no_larger(facts: Facts, key: tuple[str, Linear, Linear | int], operand: Linear, bound: int) -> Linear:
+    """The atom of a term that is never further from zero than an operand, and here at most by ``bound``."""
+    low, high = facts.widest(operand)
+    most = max(abs(low), abs(high))
+    atom = facts.named(key, -most, most)
+    facts.assume(shifted(atom, bound))
+    facts.assume(shifted(times(atom, -1), bound))
+    return atom
+
+
 def _constant_quotient(facts: Facts, left: Linear, divisor: int) -> Linear:
     if not left.terms:
         value = abs(left.constant) // divisor
         return Linear(value if left.constant >= 0 else -value)
-    widest = max(max(abs(low), abs(high)) * abs(c) for (low, high), c in ((facts.born(a), c) for a, c in left.terms))
-    widest = widest * len(left.terms) + abs(left.constant)
-    result = facts.named(("div", left, divisor), -widest, widest)
+    bound = max(abs(facts.lower(left)), abs(facts.upper(left)))
+    result = _no_larger(facts, ("div", left, divisor), left, bound)
     rest = minus(left, times(result, divisor))
     facts.assume(shifted(rest, divisor - 1))
     facts.assume(shifted(times(rest, -1), divisor - 1))
@@ -108,7 +117,7 @@ def remainder(facts: Facts, left: Linear, right: Linear) -> Linear:
     if not right.terms and right.constant > 0:
         return minus(left, times(_constant_quotient(facts, left, right.constant), right.constant))
     bound = max(abs(facts.lower(right)), abs(facts.upper(right))) - 1
-    result = facts.fresh(-bound, bound)
+    result = _no_larger(facts, ("rem", left, right), left, bound)
     if facts.lower(left) >= 0:
         facts.assume(result)
         facts.assume(minus(left, result))
@@ -123,7 +132,7 @@ def bits_and(facts: Facts, left: Linear, right: Linear, limits: Range) -> Linear
         left, right = right, left
     if not right.terms and not left.terms:
         return Linear(left.constant & right.constant)
-    result = facts.fresh(*limits)
+    result = facts.named(("and", left, right, limits), *limits)
     mask = right.constant if not right.terms else None
     for operand in (left, right):
         if facts.lower(operand) >= 0:
@@ -145,7 +154,7 @@ def bits_or(facts: Facts, left: Linear, right: Linear, limits: Range, *, exclusi
     """``left | right``, or ``left ^ right``."""
     if not left.terms and not right.terms:
         return Linear(left.constant ^ right.constant if exclusive else left.constant | right.constant)
-    result = facts.fresh(*limits)
+    result = facts.named(("xor" if exclusive else "or", left, right, limits), *limits)
     if facts.lower(left) >= 0 and facts.lower(right) >= 0:
         bits = max(facts.upper(left).bit_length(), facts.upper(right).bit_length())
         facts.assume(result)
@@ -163,12 +172,12 @@ def shift_left(facts: Facts, left: Linear, right: Linear, limits: Range) -> Line
         whole = times(left, 1 << right.constant)
         if limits[0] <= facts.lower(whole) and facts.upper(whole) <= limits[1]:
             return whole
-    return facts.fresh(*limits)
+    return facts.named(("shl", left, right, limits), *limits)
 
 
 def shift_right(facts: Facts, left: Linear, right: Linear, limits: Range) -> Linear:
     """``left >> right``: a division that rounds down."""
-    result = facts.fresh(*limits)
+    result = facts.named(("shr", left, right, limits), *limits)
     if facts.lower(left) >= 0:
         facts.assume(result)
         facts.assume(minus(left, result))

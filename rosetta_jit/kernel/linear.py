@@ -82,69 +82,79 @@ def tightened(linear: Linear) -> Linear:
 def contradict(facts: list[Linear], budget: int) -> bool:
     """Whether inequalities ``fact >= 0`` cannot all hold, by Fourier-Motzkin elimination.
 
-    ``budget`` bounds the combinations tried; when it is spent the answer is False, which always is the safe one.
+    ``budget`` bounds the combinations tried; when it is spent the answer is False, which always is the safe one. A row that was made
+    from more than n + 1 of the facts after n eliminations follows from others (Kohler's rule) and is left out.
     """
-    rows = _strongest((fact.constant, dict(fact.terms)) for fact in facts)
+    rows = {fact.terms: (fact.constant, 1 << number) for number, fact in enumerate(_strongest(facts))}
+    eliminated = 0
     while rows:
-        if any(constant < 0 and not terms for constant, terms in rows):
-            return True
-        atom = _cheapest(rows)
-        if atom is None:
+        atom, cost = _cheapest(rows)
+        budget -= cost
+        if atom is None or budget < 0:
             return False
-        above = [row for row in rows if row[1].get(atom, 0) > 0]
-        below = [row for row in rows if row[1].get(atom, 0) < 0]
-        budget -= len(above) * len(below)
-        if budget < 0:
-            return False
-        rows = [row for row in rows if atom not in row[1]]
-        if above and below:
-            rows = _strongest([*rows, *(_combined(over, under, atom) for over in above for under in below)])
+        eliminated += 1
+        above, below = _split(rows, atom)
+        for terms, constant, origin, factor in above:
+            for other_terms, other_constant, other_origin, other_factor in below:
+                joined = origin | other_origin
+                if joined.bit_count() > eliminated + 1:
+                    continue
+                over, under = Linear(constant, terms), Linear(other_constant, other_terms)
+                row = tightened(plus(times(over, other_factor), times(under, factor)))
+                if not row.terms:
+                    if row.constant < 0:
+                        return True
+                    continue
+                known = rows.get(row.terms)
+                if known is None or known[0] > row.constant:
+                    rows[row.terms] = row.constant, joined
     return False
 
 
-_Row = tuple[int, dict[int, int]]
-"""Constant and coefficients by atom, none of them zero: quicker to combine than a `Linear`."""
+_Row = tuple[Terms, int, int, int]
+"""Terms, constant, the facts that it was made from (as bits), and how often the atom stands in it."""
 
 
-def _cheapest(rows: list[_Row]) -> int | None:
-    """The atom whose elimination makes the fewest new rows."""
+def _cheapest(rows: dict[Terms, tuple[int, int]]) -> tuple[int | None, int]:
+    """The atom whose elimination makes the fewest new rows, and how many combinations that takes."""
     above: dict[int, int] = {}
     below: dict[int, int] = {}
-    for _, terms in rows:
-        for atom, coefficient in terms.items():
+    for terms in rows:
+        for atom, coefficient in terms:
             side = above if coefficient > 0 else below
             side[atom] = side.get(atom, 0) + 1
-    best, least = None, 0
-    for atom in sorted(above.keys() | below.keys()):
-        over, under = above.get(atom, 0), below.get(atom, 0)
-        cost = over * under - over - under
-        if best is None or cost < least:
-            best, least = atom, cost
-    return best
+    best, least, combinations = None, 0, 0
+    for atom, over in above.items():
+        under = below.get(atom, 0)
+        growth = over * under - over - under
+        if best is None or growth < least:
+            best, least, combinations = atom, growth, over * under
+    for atom, under in below.items():
+        if atom not in above and (best is None or -under < least):
+            best, least, combinations = atom, -under, 0
+    return best, combinations
 
 
-def _combined(over: _Row, under: _Row, atom: int) -> _Row:
-    """The consequence of two facts in which the atom cancels."""
-    up, down = -under[1][atom], over[1][atom]
-    total = {each: coefficient * up for each, coefficient in over[1].items()}
-    for each, coefficient in under[1].items():
-        total[each] = total.get(each, 0) + coefficient * down
-    terms = {each: coefficient for each, coefficient in total.items() if coefficient}
-    constant, common = over[0] * up + under[0] * down, gcd(*terms.values())
-    if common > 1:
-        return constant // common, {each: coefficient // common for each, coefficient in terms.items()}
-    return constant, terms
+def _split(rows: dict[Terms, tuple[int, int]], atom: int) -> tuple[list[_Row], list[_Row]]:
+    """Take the rows with an atom out: those where it counts up, and those where it counts down."""
+    above: list[_Row] = []
+    below: list[_Row] = []
+    for terms in list(rows):
+        for each, coefficient in terms:
+            if each == atom:
+                constant, origin = rows.pop(terms)
+                (above if coefficient > 0 else below).append((terms, constant, origin, abs(coefficient)))
+                break
+    return above, below
 
 
-def _strongest(rows: Iterable[_Row]) -> list[_Row]:
+def _strongest(facts: list[Linear]) -> list[Linear]:
     """Of facts about the same sum the one that says most."""
-    best: dict[frozenset[tuple[int, int]], _Row] = {}
-    for row in rows:
-        key = frozenset(row[1].items())
-        known = best.get(key)
-        if known is None or row[0] < known[0]:
-            best[key] = row
-    return list(best.values())
+    best: dict[Terms, int] = {}
+    for constant, terms in facts:
+        if terms not in best or best[terms] > constant:
+            best[terms] = constant
+    return [Linear(constant, terms) for terms, constant in best.items()]
 
 
 def _terms(total: dict[int, int]) -> Terms:

@@ -17,8 +17,9 @@ from typing import assert_never
 
 from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
 
-NEARBY_FACTS = 48
-ELIMINATION_BUDGET = 600
+QUICK, THOROUGH = (32, 300), (96, 4000)
+"""How many facts a proof may look at, and how many it may combine: for a question, and for an obligation."""
+
 CASE_DEPTH = 2
 MAX_FORMULA = 64
 
@@ -123,14 +124,14 @@ class Facts:
 
     def chosen(self, cases: tuple[tuple[Formula, Linear], ...]) -> Linear:
         """The atom that is equal to one of some values, each under a condition; together they cover everything."""
-        widest = [self._widest(value) for _, value in cases]
+        widest = [self.widest(value) for _, value in cases]
         atom = self.named(cases, min(low for low, _ in widest), max(high for _, high in widest))
         self._cases[atom.terms[0][0]] = cases
         self.assume(shifted(atom, -min(self.lower(value) for _, value in cases)))
         self.assume(shifted(times(atom, -1), max(self.upper(value) for _, value in cases)))
         return atom
 
-    def _widest(self, linear: Linear) -> tuple[int, int]:
+    def widest(self, linear: Linear) -> tuple[int, int]:
         """Bounds of a sum on every path."""
         low = high = linear.constant
         for atom, coefficient in linear.terms:
@@ -252,21 +253,29 @@ class Facts:
         return [Linear(-self._bounds[terms], terms) for terms in self._about.get(atom, ())[:most]]
 
     def proves(self, formula: Formula) -> bool:
-        """Whether a formula follows from what is known."""
-        return self.impossible or self._proves(formula, CASE_DEPTH)
+        """Whether a formula follows from what is known, as far as a short look shows."""
+        return self.impossible or self._proves(formula, CASE_DEPTH, QUICK)
+
+    def proves_thoroughly(self, formula: Formula) -> bool:
+        """Whether a formula follows from what is known: for what ought to, as a No may take long."""
+        return self.proves(formula) or self._proves(formula, CASE_DEPTH, THOROUGH)
 
     def refutes(self, formula: Formula) -> bool:
         """Whether the opposite of a formula follows."""
         return self.proves(negated(formula))
 
-    def _proves(self, formula: Formula, depth: int) -> bool:
+    def _proves(self, formula: Formula, depth: int, effort: tuple[int, int]) -> bool:
         match formula:
             case Linear():
-                return self.lower(formula) >= 0 or self._follows(formula) or (depth > 0 and self._by_cases(formula, depth))
+                return self.lower(formula) >= 0 or self._follows(formula, effort) or (depth > 0 and self._by_cases(formula, depth, effort))
             case All(parts):
-                return all(self._proves(part, depth) for part in parts)
+                return all(self._proves(part, depth, effort) for part in parts)
             case Any(parts):
-                return formula in self._either or any(self._proves(part, depth) for part in parts) or self._proves_one(parts, depth)
+                return (
+                    formula in self._either
+                    or any(self._proves(part, depth, effort) for part in parts)
+                    or self._proves_one(parts, depth, effort)
+                )
             case bool():
                 return formula
             case None:
@@ -274,50 +283,50 @@ class Facts:
             case _:
                 assert_never(formula)
 
-    def _proves_one(self, parts: tuple[Formula, ...], depth: int) -> bool:
+    def _proves_one(self, parts: tuple[Formula, ...], depth: int, effort: tuple[int, int]) -> bool:
         """Whether the last part holds where all others do not."""
         if depth == 0 or len(parts) < 2:
             return False
         mark = self.mark()
         for part in parts[:-1]:
             self.assume(negated(part))
-        proven = self.impossible or self._proves(parts[-1], depth - 1)
+        proven = self.impossible or self._proves(parts[-1], depth - 1, effort)
         self.rollback(mark)
         return proven
 
-    def _by_cases(self, goal: Linear, depth: int) -> bool:
+    def _by_cases(self, goal: Linear, depth: int, effort: tuple[int, int]) -> bool:
         """Whether a goal holds in each case of an atom that is chosen among values, or of a fact that has alternatives."""
         atom = next((a for a, _ in goal.terms if a in self._cases), None)
         if atom is not None:
-            return all(self._in_case(replaced(goal, atom, value), condition, depth) for condition, value in self._cases[atom])
+            return all(self._in_case(replaced(goal, atom, value), condition, depth, effort) for condition, value in self._cases[atom])
         alternatives = next((fact for fact in reversed(self._either) if _shares_atom(fact, goal)), None)
-        return alternatives is not None and all(self._in_case(goal, part, depth) for part in alternatives.parts)
+        return alternatives is not None and all(self._in_case(goal, part, depth, effort) for part in alternatives.parts)
 
-    def _in_case(self, goal: Linear, condition: Formula, depth: int) -> bool:
+    def _in_case(self, goal: Linear, condition: Formula, depth: int, effort: tuple[int, int]) -> bool:
         mark = self.mark()
         self.assume(condition)
-        proven = self.impossible or self._proves(goal, depth - 1)
+        proven = self.impossible or self._proves(goal, depth - 1, effort)
         self.rollback(mark)
         return proven
 
-    def _follows(self, goal: Linear) -> bool:
+    def _follows(self, goal: Linear, effort: tuple[int, int]) -> bool:
         """Whether the facts around a goal contradict its opposite."""
-        nearby = self._nearby(goal)
-        return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], ELIMINATION_BUDGET)
+        nearby = self._nearby(goal, effort[0])
+        return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], effort[1])
 
-    def _nearby(self, goal: Linear) -> list[Linear]:
+    def _nearby(self, goal: Linear, most: int) -> list[Linear]:
         """Facts that share atoms with a goal, and facts that share atoms with those."""
         sums: dict[Terms, None] = {}
         atoms = dict.fromkeys(atom for atom, _ in goal.terms)
         queue = list(atoms)
-        while queue and len(sums) < NEARBY_FACTS:
+        while queue and len(sums) < most:
             for terms in reversed(self._about.get(queue.pop(0), ())):
                 if terms in sums:
                     continue
                 sums[terms] = None
                 queue.extend(a for a, _ in terms if a not in atoms)
                 atoms.update(dict.fromkeys(a for a, _ in terms))
-                if len(sums) >= NEARBY_FACTS:
+                if len(sums) >= most:
                     break
         if not sums:
             return []

@@ -84,7 +84,7 @@ def entry(kernel: Kernel) -> Scope:
 
 def oblige(scope: Scope, formula: Formula, otherwise: str) -> None:
     """Demand a proof."""
-    if not scope.facts.proves(formula):
+    if not scope.facts.proves_thoroughly(formula):
         raise UnprovenError(otherwise)
 
 
@@ -368,7 +368,7 @@ def _convert(scope: Scope, target: Scalar, source: Scalar, value: Value) -> Valu
     same = All((shifted(linear(value), -low), shifted(times(linear(value), -1), high)))
     if limits(source)[0] >= low and limits(source)[1] <= high:
         return value
-    return value if scope.facts.proves(same) else unknown(scope, target)
+    return value if scope.facts.proves(same) else scope.facts.named(("low bits", target, value), low, high)
 
 
 def _select(scope: Scope, expr: Select) -> Typed:

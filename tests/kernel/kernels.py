@@ -332,13 +332,13 @@ class Holder:
 
 
 def outcome(kernel: Kernel, message: bytes, *, rows: int = 64, begin: int = 0, seed: bytes = b"") -> tuple[object, ...]:
-    """What a kernel does with a message: the result, and on success the holder and the buffer."""
+    """What a kernel does with a message: the result, and on success the holder and the buffer. How it fails may change with a pass."""
     holder = Holder(kernel.strides, rows)
     for lane in holder.lanes:
         lane[: len(seed)] = seed[: len(lane)]
-    holder.state[[lane_word(k, USED) for k in range(len(kernel.strides))]] = 2 if kernel.direction == "encode" else 0
+    holder.state[[lane_word(k, USED) for k in range(len(kernel.strides))]] = min(2, rows) if kernel.direction == "encode" else 0
     buffer = bytearray(message)
     result = interpret.run(kernel, buffer, begin, len(buffer), holder.state, holder.lanes, 0)
     if result < 0:
-        return ("failed", result == -1)
+        return ("failed",)
     return (result, holder.used, holder.lanes, buffer)

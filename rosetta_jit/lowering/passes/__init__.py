@@ -4,13 +4,60 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.verify import verify
+from rosetta_jit.kernel.verify import VerificationError, verify
+from rosetta_jit.lowering.passes.drop import drop
+from rosetta_jit.lowering.passes.hoist import hoist
+from rosetta_jit.lowering.passes.merge import merge
+from rosetta_jit.lowering.passes.simplify import simplify
+from rosetta_jit.lowering.passes.unroll import unroll
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosetta_jit.kernel.ir import Kernel
+
+PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
+    simplify,
+    drop,
+    hoist,
+    drop,
+    merge,
+    unroll,
+    simplify,
+)
 
 
 def run(kernel: Kernel) -> Kernel:
-    """All passes, and the proof that what comes out is safe."""
+    """All passes, and the proof that what comes out is safe.
+
+    The proof looks only so far; where it cannot follow a pass, the kernel stays as it was before that pass.
+
+    Raises
+    ------
+    VerificationError
+        The kernel as it was lowered could not be proven safe.
+    """
+    try:
+        return _all(kernel)
+    except VerificationError:
+        verify(kernel)
+    for transform in PASSES:
+        kernel = _proven(transform, kernel)
+    return kernel
+
+
+def _all(kernel: Kernel) -> Kernel:
+    for transform in PASSES:
+        kernel = transform(kernel)
     verify(kernel)
     return kernel
+
+
+def _proven(transform: Callable[[Kernel], Kernel], kernel: Kernel) -> Kernel:
+    """The result of a pass, if it can be proven."""
+    try:
+        changed = transform(kernel)
+        verify(changed)
+    except VerificationError:
+        return kernel
+    return changed

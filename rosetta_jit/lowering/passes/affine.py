@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Const, Expr, Let, Local, add, index, mul
+from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Used, add, index, mul
 from rosetta_jit.kernel.loops import changed_names
-from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted
-from rosetta_jit.kernel.shape import bound_name, statements, subexpressions
+from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
+from rosetta_jit.kernel.shape import bound_name, operands, statements, subexpressions
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import For
@@ -64,7 +64,15 @@ class Rounds:
             case Binary("mul", left, right):
                 return _product(self._affine(left), self._affine(right))
             case _:
-                return None
+                return self._of_fixed(expr)
+
+    def _of_fixed(self, expr: Expr) -> Affine | None:
+        """Any other operation, where its operands are the same in every round."""
+        if isinstance(expr, Load | Get | Used | IsText):
+            return None
+        values = {operand: self._affine(operand) for operand in operands(expr)}
+        bases = {operand: value.base for operand, value in values.items() if value is not None and value.step == index(0)}
+        return Affine(with_operands(expr, lambda operand: bases[operand]), index(0)) if len(bases) == len(values) else None
 
 
 def rounds_of(loop: For) -> Rounds:

@@ -79,21 +79,28 @@ def _at_first(failure: Failure, at: Expr, rounds: Rounds) -> Failure | None:
 def _widened(first: Require, step: Expr, count: Expr, rounds: Rounds, sites: list[Site]) -> Block:
     """One check for all rounds in place of the first round's and those that lie a constant step behind each other."""
     match first, step:
-        case Require(at, Const(_, size), Failure(site, _, (*outer, Local(_, last)))), Const(_, distance):
-            can_be_named = last == rounds.variable and _names_indices(sites[site], len(outer) + 1)
-            if not 0 < size <= distance or not can_be_named or not all(map(rounds.is_fixed, outer)):
+        case Require(at, Const(_, size), failure), Const(_, distance) if 0 < size <= distance:
+            whole = _of_all(Failure(failure.site, at, failure.indices), int(size), int(distance), rounds, sites)
+            if whole is None:
                 return ()
-            failure = Failure(len(sites), at, tuple(outer))
-            sites.append(_stepped(sites[site], int(size), int(distance)))
-            fits = Expect(Fits("mul", count, index(int(distance))), failure)
-            return fits, Require(at, add(mul(count, int(distance)), int(size - distance)), failure)
+            fits = Expect(Fits("mul", count, index(int(distance))), whole)
+            return fits, Require(at, add(mul(count, int(distance)), int(size - distance)), whole)
         case _:
             return ()
 
 
-def _names_indices(site: Site, number: int) -> bool:
-    """Whether a site's path has a place for each index, and none is taken by a loop that was widened before."""
-    return site.path.count("{}") == number and not any(part.step for part in site.parts)
+def _of_all(first: Failure, size: int, step: int, rounds: Rounds, sites: list[Site]) -> Failure | None:
+    """The failure of all rounds: at the first one's place, with a site that names each element if the path has a place for its index."""
+    site = sites[first.site]
+    match first.indices:
+        case (*outer, Local(_, last)) if last == rounds.variable:
+            is_named = site.path.count("{}") == len(first.indices) and not any(part.step for part in site.parts)
+            if not is_named or not all(map(rounds.is_fixed, outer)):
+                return None
+            sites.append(_stepped(site, size, step))
+            return Failure(len(sites) - 1, first.at, tuple(outer))
+        case indices:
+            return first if all(map(rounds.is_fixed, indices)) else None
 
 
 def _stepped(site: Site, size: int, step: int) -> Site:

@@ -1,4 +1,4 @@
-"""Constants and copies go where they are used; what is decided, done once or never, or unused goes away."""
+"""Constants, copies and values computed before go where they are used; what is decided, done once or never, or unused goes away."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
     index,
+    type_of,
 )
-from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, reads_memory, with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.shape import expressions_of, statements
 from rosetta_jit.lowering.passes.fold import TRUE, folded
 
@@ -32,11 +33,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """What is known of a body's locals: those assigned, those of fixed value, and the values known by now."""
+    """What is known of a body's locals: those assigned, those of fixed value, the values known by now, and which local has a value."""
 
     assigned: frozenset[str]
     fixed: set[str]
     values: dict[str, Expr]
+    computed: dict[Expr, Local]
 
 
 def simplify(kernel: Kernel) -> Kernel:
@@ -46,7 +48,7 @@ def simplify(kernel: Kernel) -> Kernel:
 
 def _body(body: Block) -> Block:
     assigned = frozenset(stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign))
-    names = _Names(assigned, {BEGIN.name, END.name, ROW.name}, {})
+    names = _Names(assigned, {BEGIN.name, END.name, ROW.name}, {}, {})
     simple = _block(body, names)
     return _used(simple, names_read(simple), set())
 
@@ -66,7 +68,8 @@ def _block(block: Block, names: _Names) -> Block:
 def _expression(expr: Expr, names: _Names) -> Expr:
     if isinstance(expr, Local):
         return names.values.get(expr.name, expr)
-    return folded(with_operands(expr, lambda operand: _expression(operand, names)))
+    simple = folded(with_operands(expr, lambda operand: _expression(operand, names)))
+    return names.computed.get(simple, simple)
 
 
 def _statement(stmt: Stmt, names: _Names) -> Block:
@@ -95,13 +98,18 @@ def _let(name: str, value: Expr, names: _Names) -> Block:
         names.values[name] = value
         return ()
     names.fixed.add(name)
+    if not reads_memory(value) and names.fixed.issuperset(locals_in(value)):
+        if value in names.computed:
+            names.values[name] = names.computed[value]
+            return ()
+        names.computed[value] = Local(type_of(value), name)
     return (Let(name, value),)
 
 
 def _nested(stmt: Stmt, names: _Names) -> Block:
     if isinstance(stmt, For):
         names.fixed.add(stmt.variable)
-    simple = with_blocks(stmt, lambda block: _block(block, names))
+    simple = with_blocks(stmt, lambda block: _block(block, replace(names, computed=dict(names.computed))))
     match simple:
         case If(_, (), ()) | For(_, _, ()):
             return ()

@@ -1,0 +1,181 @@
+"""Rebuild expressions and statements with something in place of their parts. Nothing is changed in place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Assign,
+    Binary,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Expect,
+    Failure,
+    Fill,
+    Fits,
+    For,
+    Get,
+    If,
+    IsText,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    Select,
+    SetField,
+    Store,
+    Switch,
+    Unary,
+    Used,
+    Var,
+    While,
+    Wire,
+)
+from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Stmt
+
+NO_NAMES: Mapping[str, str] = MappingProxyType({})
+
+
+def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """An expression with each of its operands changed."""
+    match expr:
+        case Const() | Local() | Used() | Capacity():
+            return expr
+        case Load(type_, at, order):
+            return Load(type_, change(at), order)
+        case Get(type_, place):
+            return Get(type_, _place(place, change))
+        case Unary(function, operand):
+            return Unary(function, change(operand))
+        case Binary(op, left, right):
+            return Binary(op, change(left), change(right))
+        case Compare(op, left, right):
+            return Compare(op, change(left), change(right))
+        case Fits(op, left, right):
+            return Fits(op, change(left), change(right))
+        case Convert(type_, operand):
+            return Convert(type_, change(operand))
+        case Select(condition, then, otherwise):
+            return Select(change(condition), change(then), change(otherwise))
+        case IsText(address, size):
+            return IsText(_address(address, change), change(size))
+        case _:
+            assert_never(expr)
+
+
+def with_expressions(stmt: Stmt, change: Callable[[Expr], Expr]) -> Stmt:
+    """A statement with each expression that stands in it changed; the blocks inside stay as they are."""
+    match stmt:
+        case Require(at, size, failure):
+            return Require(change(at), change(size), _failure(failure, change))
+        case Expect(condition, failure):
+            return Expect(change(condition), _failure(failure, change))
+        case Let() | Var() | Assign():
+            return replace(stmt, value=change(stmt.value))
+        case Store(at, value, order):
+            return Store(change(at), change(value), order)
+        case SetField(place, value):
+            return SetField(_place(place, change), change(value))
+        case Reserve() | Advance():
+            return replace(stmt, count=change(stmt.count))
+        case Copy(target, source, size):
+            return Copy(_address(target, change), _address(source, change), change(size))
+        case Fill(target, size, byte):
+            return Fill(_address(target, change), change(size), byte)
+        case For(variable, count, body):
+            return For(variable, change(count), body)
+        case While(condition, body, invariant, measure):
+            return While(change(condition), body, tuple(map(change, invariant)), change(measure))
+        case If(condition, then, otherwise):
+            return If(change(condition), then, otherwise)
+        case Switch(value, cases, default):
+            return Switch(change(value), cases, default)
+        case Return(position):
+            return Return(change(position))
+        case _:
+            assert_never(stmt)
+
+
+def with_blocks(stmt: Stmt, change: Callable[[Block], Block]) -> Stmt:
+    """A statement with each block inside it changed."""
+    match stmt:
+        case For() | While():
+            return replace(stmt, body=change(stmt.body))
+        case If(condition, then, otherwise):
+            return If(condition, change(then), change(otherwise))
+        case Switch(value, cases, default):
+            return Switch(value, tuple((number, change(block)) for number, block in cases), change(default))
+        case _:
+            return stmt
+
+
+def substituted(expr: Expr, values: Mapping[str, Expr], renamed: Mapping[str, str] = NO_NAMES) -> Expr:
+    """An expression with values in place of some locals, and other names for some."""
+    if isinstance(expr, Local):
+        return values.get(expr.name) or Local(expr.type, renamed.get(expr.name, expr.name))
+    return with_operands(expr, lambda operand: substituted(operand, values, renamed))
+
+
+def locals_in(expr: Expr) -> set[str]:
+    """Names of the locals that an expression reads."""
+    return {part.name for part, _ in subexpressions(expr) if isinstance(part, Local)}
+
+
+def names_read(block: Block) -> set[str]:
+    """Names of the locals that a block reads, at any depth."""
+    return {name for stmt, _ in statements(block) for expr in expressions_of(stmt) for name in locals_in(expr)}
+
+
+def reads_memory(expr: Expr) -> bool:
+    """Whether an expression looks at the message or the holder."""
+    return any(isinstance(part, Load | Get | Used | IsText) for part, _ in subexpressions(expr))
+
+
+def ends(block: Block) -> bool:
+    """Whether every path through a block returns."""
+    match block[-1] if block else None:
+        case Return():
+            return True
+        case If(_, then, otherwise):
+            return ends(then) and ends(otherwise)
+        case Switch(_, cases, default):
+            return ends(default) and all(ends(inner) for _, inner in cases)
+        case _:
+            return False
+
+
+def may_return(block: Block) -> bool:
+    """Whether some path through a block returns."""
+    return any(isinstance(stmt, Return) for stmt, _ in statements(block))
+
+
+def _failure(failure: Failure, change: Callable[[Expr], Expr]) -> Failure:
+    return Failure(failure.site, change(failure.at), tuple(map(change, failure.indices)))
+
+
+def _place(place: Place, change: Callable[[Expr], Expr]) -> Place:
+    return Place(place.lane, change(place.row), place.offset)
+
+
+def _address(address: Address, change: Callable[[Expr], Expr]) -> Address:
+    match address:
+        case Wire(at):
+            return Wire(change(at))
+        case Place():
+            return _place(address, change)
+        case _:
+            assert_never(address)

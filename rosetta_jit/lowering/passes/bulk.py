@@ -1,0 +1,164 @@
+"""Loops that move one element a round become one move: of a row, and of all rows where they lie end to end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.arithmetic import FLOATS, constant, to_bytes
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Fill,
+    Fits,
+    For,
+    Get,
+    If,
+    Let,
+    Load,
+    Local,
+    Place,
+    SetField,
+    Store,
+    Wire,
+    index,
+    mul,
+    type_of,
+)
+from rosetta_jit.kernel.rewrite import reads_memory, with_blocks
+from rosetta_jit.lowering.passes.affine import rounds_of
+from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Order, Scalar, Stmt
+    from rosetta_jit.lowering.passes.affine import Rounds
+
+Move = Copy | Fill
+
+
+@dataclass(frozen=True, slots=True)
+class _Stretch:
+    """What the rounds of a loop move: the first round's move, the bytes from one round to the next at each address, and a round's size."""
+
+    first: Move
+    steps: tuple[Expr, ...]
+    size: Expr
+
+
+def bulk(kernel: Kernel) -> Kernel:
+    """The kernel with moves in place of loops of smaller moves."""
+
+    def block(body: Block) -> Block:
+        return tuple(part for stmt in body for part in _statement(with_blocks(stmt, block), kernel.strides))
+
+    return replace(kernel, bodies=tuple(map(block, kernel.bodies)))
+
+
+def _statement(stmt: Stmt, strides: tuple[int, ...]) -> Block:
+    if not isinstance(stmt, For) or reads_memory(stmt.count):
+        return (stmt,)
+    rounds = rounds_of(stmt)
+    move = _only_move(stmt.body, rounds)
+    stretch = _stretch(move, rounds, strides) if move is not None else None
+    return (stmt,) if stretch is None else _joined(stmt, stretch)
+
+
+def _joined(loop: For, stretch: _Stretch) -> Block:
+    """A loop as one move: always, never, or if at run time each round begins where the last one ended."""
+    adjoin = [folded(Compare("eq", step, stretch.size)) for step in stretch.steps]
+    if FALSE in adjoin:
+        return (loop,)
+    whole = If(Compare("gt", loop.count, index(0)), (replace(stretch.first, size=mul(loop.count, stretch.size)),))
+    open_questions = [question for question in adjoin if question != TRUE]
+    if not open_questions:
+        return (whole,)
+    condition: Expr = Fits("mul", loop.count, stretch.size)
+    for question in open_questions:
+        condition = Binary("and", condition, question)
+    return (If(condition, (whole,), (loop,)),)
+
+
+# --- what a round moves ------------------------------------------------------------------------------------------------
+
+
+def _only_move(body: Block, rounds: Rounds) -> Move | None:
+    """The move of a body that only computes besides."""
+    effects = [stmt for stmt in body if not isinstance(stmt, Let)]
+    match effects:
+        case [If(Compare("gt", _, Const(_, 0)), (Copy() | Fill() as move,), ())]:
+            # Where there is nothing to move, none of the rounds moves anything.
+            return move
+        case [Copy() | Fill() as move]:
+            return move
+        case [SetField(place, value)]:
+            return _assigned(place, value, "<", rounds)
+        case [Store(at, value, order)]:
+            return _assigned(Wire(at), value, order, rounds)
+        case _:
+            return None
+
+
+def _assigned(target: Address, value: Expr, order: Order, rounds: Rounds) -> Move | None:
+    """An assignment of a scalar as a move of its bytes, if it changes none of them."""
+    size = WIDTH[type_of(value)]
+    match _moved(value, rounds):
+        case Load(type_, at, from_order) if type_ != "bool" and isinstance(target, Place) and _is_same(order, from_order, size):
+            return Copy(target, Wire(at), index(size))
+        case Get(type_, place) if type_ != "bool" and isinstance(target, Wire) and _is_same(order, "<", size):
+            return Copy(target, place, index(size))
+        case Const(type_, number) if len(data := set(to_bytes(type_, constant(type_, number)))) == 1:
+            return Fill(target, index(size), data.pop())
+        case _:
+            return None
+
+
+def _is_same(order: Order, other: Order, size: int) -> bool:
+    return order == other or size == 1
+
+
+def _moved(value: Expr, rounds: Rounds) -> Expr:
+    """The access or constant that a value has its bytes from."""
+    while True:
+        match value:
+            case Local(_, name) if name in rounds.lets:
+                value = rounds.lets[name]
+            case Convert(type_, operand) if _keeps_bytes(type_, type_of(operand)):
+                value = operand
+            case _:
+                return value
+
+
+def _keeps_bytes(target: Scalar, source: Scalar) -> bool:
+    return WIDTH[target] == WIDTH[source] and not {target, source} & {*FLOATS, "bool"}
+
+
+# --- where the rounds lie ----------------------------------------------------------------------------------------------
+
+
+def _stretch(move: Move, rounds: Rounds, strides: tuple[int, ...]) -> _Stretch | None:
+    """The moves of all rounds, if they lie a fixed distance apart."""
+    size, target = rounds.fixed(move.size), _along(move.target, rounds, strides)
+    if size is None or target is None:
+        return None
+    if isinstance(move, Fill):
+        return _Stretch(replace(move, target=target[0]), (target[1],), size)
+    source = _along(move.source, rounds, strides)
+    # Within a lane the rounds may build on each other.
+    if source is None or (isinstance(move.target, Place) and isinstance(move.source, Place)):
+        return None
+    return _Stretch(Copy(target[0], source[0], size), (target[1], source[1]), size)
+
+
+def _along(address: Address, rounds: Rounds, strides: tuple[int, ...]) -> tuple[Address, Expr] | None:
+    """An address in the first round, and how many bytes further it is in the next."""
+    match address:
+        case Wire(at):
+            found = rounds.affine(at)
+            return (Wire(found.base), found.step) if found is not None else None
+        case Place(lane, row, offset):
+            found = rounds.affine(row)
+            return (Place(lane, found.base, offset), mul(found.step, strides[lane])) if found is not None else None

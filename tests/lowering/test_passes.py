@@ -1,0 +1,193 @@
+"""What a kernel does is the same after each pass, for whole, damaged and cut messages; and what the passes are for, they do."""
+
+from __future__ import annotations
+
+import struct
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rosetta_jit.kernel.ir import BEGIN, ROW, Const, Expect, For, If, Let, Load, Local, Place, Require, Return, SetField, add, index, mul
+from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.verify import verify
+from rosetta_jit.lowering import passes
+from rosetta_jit.lowering.passes.drop import drop
+from rosetta_jit.lowering.passes.hoist import hoist
+from rosetta_jit.lowering.passes.merge import merge
+from rosetta_jit.lowering.passes.simplify import simplify
+from rosetta_jit.lowering.passes.unroll import unroll
+from tests.golden import GOLDEN, check_golden
+from tests.kernel import kernels
+from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
+
+
+def stages(original):
+    """The kernel after each pass, each proven."""
+    current = original
+    for transform in passes.PASSES:
+        current = transform(current)
+        verify(current)
+        yield current
+
+
+STAGES = {name: tuple(stages(original)) for name, original in kernels.ALL.items()}
+
+GOOD = {
+    "tagged_doubles": [struct.pack("<idid", 10, 1.0, 10, 2.0) + struct.pack("<id", 10, -3.5)],
+    "counted_list": [struct.pack("<i3q", 3, 1, 2, 3), struct.pack("<i", 0)],
+    "strings": [struct.pack("<ii3si", 2, 3, b"abc", 0), struct.pack("<i", -5)],
+    "varints": [bytes([1, 0x80, 1, 5]), b""],
+    "image": [struct.pack("<3i", 3, 2, 1) + bytes(range(8)), struct.pack("<3i", 4, 2, 0) + bytes(range(8)), struct.pack("<3i", 0, 9, 0)],
+    "choice": [b"\x01\x05\x09", b"\x08" + bytes(8)],
+    "encode_list": [bytes(40)],
+    "attempts": [b"\x04\x01\x02\x03\x04"],
+}
+
+
+def same(name, message, **options):
+    expected = kernels.outcome(kernels.ALL[name], message, **options)
+    for transform, stage in zip(passes.PASSES, STAGES[name], strict=True):
+        assert kernels.outcome(stage, message, **options) == expected, transform.__name__
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+def test_good_and_cut_messages(name):
+    for message in GOOD[name]:
+        for length in range(len(message) + 1):
+            for rows in (1, 3, 64):
+                same(name, message[:length], rows=rows)
+        same(name, b"\xff" * 5 + message, begin=5)
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_damaged_messages(name, data):
+    message = bytearray(data.draw(st.sampled_from(GOOD[name])))
+    for _ in range(data.draw(st.integers(0, 3))):
+        if message:
+            message[data.draw(st.integers(0, len(message) - 1))] = data.draw(st.sampled_from([0, 1, 2, 3, 10, 127, 128, 255]))
+    seed = struct.pack("<2q", *data.draw(st.tuples(st.integers(-1, 4), st.integers(-1, 4))))
+    same(name, bytes(message), rows=data.draw(st.sampled_from([1, 8, 64])), seed=seed)
+
+
+# --- random kernels ---
+
+
+def random_kernel(seed):
+    """A kernel of random fields, loops and branches, which the naive lowering might have made."""
+    random = Random(seed)  # noqa: S311  # no secret depends on it
+    body, at, names = [ROW_EXISTS], BEGIN, iter(range(1000))
+
+    def scalar(at, row_offset, site=1, *indices):
+        type_, width = random.choice([("u8", 1), ("i16", 2), ("f32", 4), ("f64", 8), ("i64", 8)])
+        checks = [need(at, width, site, *indices)]
+        if random.random() < 0.3:
+            value = Local(type_, f"v{next(names)}")
+            checks.append(Let(value.name, Load(type_, at)))
+            if type_ in {"u8", "i16", "i64"}:
+                checks.append(expect(kernels.Compare("ne", value, Const(type_, 7)), 2, at))
+            checks.append(SetField(Place(0, ROW, row_offset), value))
+        else:
+            checks.append(SetField(Place(0, ROW, row_offset), Load(type_, at, random.choice("<>"))))
+        return checks, width
+
+    for _ in range(random.randint(1, 8)):
+        kind = random.choice(["scalar", "scalar", "array", "branch", "skip", "fill"])
+        offset = 8 * random.randint(0, 7)
+        if kind == "scalar":
+            made, width = scalar(at, offset)
+            body += made
+            at = add(at, width)
+        elif kind == "array":
+            count, gap = random.choice([0, 1, 2, 3, 8, 20]), random.choice([0, 0, 4])
+            i, start = i64(f"i{next(names)}"), i64(f"s{next(names)}")
+            place = add(kernels.Binary("add", at, mul(i, 8 + gap)), gap) if at != index(0) else mul(i, 8 + gap)
+            loop = [need(place, 8, 4, i), SetField(Place(1, kernels.Binary("add", start, i)), Load("i64", place))]
+            body += [kernels.Reserve(1, index(count)), Let(start.name, kernels.Used(1)), kernels.Advance(1, index(count))]
+            body.append(For(i.name, index(count), tuple(loop)))
+            at = add(at, count * (8 + gap))
+            body.append(Require(BEGIN, kernels.Binary("sub", at, BEGIN), kernels.fail(1, at)))
+        elif kind == "branch":
+            flag = i64(f"f{next(names)}")
+            then, width = scalar(add(at, 1), offset)
+            body += [need(at, 1), Let(flag.name, kernels.Convert("i64", Load("u8", at)))]
+            body.append(If(compare("gt", flag, 3), tuple(then)))
+            at = add(at, 1)
+        elif kind == "skip":
+            size, place = i64(f"n{next(names)}"), i64(f"p{next(names)}")
+            body += [need(at, 1), Let(size.name, kernels.Convert("i64", Load("u8", at))), need(add(at, 1), size)]
+            body.append(Let(place.name, kernels.Binary("add", add(at, 1), size)))
+            at = place
+        else:
+            body.append(SetField(Place(0, ROW, offset), Const("i64", random.choice([0, 1, 2**40]))))
+    if random.random() < 0.3:
+        body.append(expect(kernels.Compare("eq", at, kernels.END), 3, at))
+    return kernel((*body, Return(at)))
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 10**9), message=st.binary(max_size=80), rows=st.sampled_from([1, 64]))
+def test_random_kernels(seed, message, rows):
+    original = random_kernel(seed)
+    verify(original)
+    expected = kernels.outcome(original, message, rows=rows)
+    for transform, stage in zip(passes.PASSES, stages(original), strict=True):
+        assert kernels.outcome(stage, message, rows=rows) == expected, transform.__name__
+    assert kernels.outcome(passes.run(original), message, rows=rows) == expected
+
+
+# --- what the passes are for ---
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+def test_text_after_all_passes(name):
+    check_golden(GOLDEN / "kernel" / f"{name}_optimised.txt", to_text(passes.run(kernels.ALL[name])))
+
+
+def checks(kernel, kind):
+    return [stmt for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, kind)]
+
+
+def test_a_struct_is_required_once():
+    merged = merge(kernels.tagged_doubles(16))
+    (only,) = checks(merged, Require)
+    assert (only.at, only.size) == (BEGIN, index(192))
+    parts = merged.sites[only.failure.site].parts
+    assert [(part.offset, part.size) for part in parts] == [(o + d, s) for o in range(0, 192, 12) for d, s in ((0, 4), (4, 8))]
+
+
+def test_attempts_stay_behind_what_tells_them_apart():
+    merged = merge(kernels.ALL["attempts"])
+    first = [stmt for stmt in merged.bodies[0] if isinstance(stmt, Require)]
+    assert [stmt.size for stmt in first] == [index(4), index(32)]
+
+
+def test_a_loop_checks_before_its_first_round():
+    hoisted = drop(hoist(drop(simplify(kernels.counted_list()))))
+    (loop,) = checks(hoisted, For)
+    assert not any(isinstance(stmt, Require | Expect) for stmt in loop.body)
+    sites = [hoisted.sites[stmt.failure.site] for stmt in checks(hoisted, Require)]
+    assert [(part.path, part.size, part.step) for site in sites for part in site.parts] == [(".a[{}]", 8, 8)]
+
+
+def test_a_return_is_not_crossed():
+    early = If(compare("eq", Local("i64", "n"), 0), (Return(BEGIN),))
+    body = (need(BEGIN, 8), Let("n", Load("i64", BEGIN)), early, need(add(BEGIN, 8), 8), Return(BEGIN))
+    assert len(checks(merge(kernel(body)), Require)) == 2
+
+
+def test_short_loops_are_unrolled():
+    loop = For("i", index(3), (SetField(Place(0, ROW, 0), i64("i")),))
+    unrolled = simplify(unroll(kernel((ROW_EXISTS, loop, Return(BEGIN)))))
+    assert [stmt.value for stmt in checks(unrolled, SetField)] == [index(0), index(1), index(2)]
+
+
+def test_the_same_value_is_computed_once():
+    n = i64("n")
+    body = (need(BEGIN, 4), Let("n", kernels.Convert("i64", Load("i32", BEGIN))), Let("a", mul(n, 12)), Let("b", mul(n, 12)))
+    after = simplify(kernel((*body, SetField(Place(0, ROW), i64("a")), SetField(Place(0, ROW), i64("b")), Return(BEGIN))))
+    assert [stmt.name for stmt in checks(after, Let)] == ["n", "a"]
