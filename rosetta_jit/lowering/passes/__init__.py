@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.verify import VerificationError, verify
+from rosetta_jit.lowering.passes.bulk import bulk
 from rosetta_jit.lowering.passes.drop import drop
 from rosetta_jit.lowering.passes.hoist import hoist
 from rosetta_jit.lowering.passes.merge import merge
@@ -23,6 +24,8 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     drop,
     merge,
     unroll,
+    simplify,
+    bulk,
     simplify,
 )
 
