@@ -254,6 +254,7 @@ def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
 def _stop(message: Message, tagged: Tagged, where: Where) -> Expr:
     """Where an inner message stops: behind its length, or with what is around it if it is a group."""
     if tagged.group is not None:
+        message.writer.expect(Compare("le", message.writer.position, message.stop), "truncated", where, "the group goes beyond its message")
         return message.stop
     size = read_length(message.writer, where, message.stop)
     return message.writer.let("stop", Binary("add", message.writer.position, size))

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rosetta_jit.kernel.ir import (
+    BEGIN,
+    END,
     WIDTH,
     Assign,
     Binary,
@@ -74,6 +76,9 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
 def _settle(writer: Writer, fields: HolderFields, lengths: Lengths) -> None:
     """Behind an optional field: say again what holds whether it was there or not, for the proof."""
     writer.settle()
+    if writer.direction == "encode":
+        inside = Binary("and", Compare("ge", writer.position, BEGIN), Compare("le", writer.position, END))
+        writer.expect(inside, "length", fields.where, "the holder changed while it was written")
     known = Binary("and", Compare("ge", lengths.next, index(0)), Compare("le", lengths.next, Capacity(lengths.lane)))
     writer.expect(known, "length", fields.where, "the holder changed while it was written")
 
