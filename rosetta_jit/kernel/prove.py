@@ -150,7 +150,8 @@ class Facts:
                 for part in parts:
                     self.assume(part)
             case Any(parts):
-                open_parts = [part for part in parts if not self.refutes(part)]
+                # Without looking at cases: a case may have alternatives of its own, and theirs again.
+                open_parts = [part for part in parts if not self._proves(negated(part), 0, QUICK)]
                 if len(open_parts) == 1:
                     self.assume(open_parts[0])
                 elif not open_parts:

@@ -75,6 +75,7 @@ class _Walk:
     """One body's walk: where it is, and what it has found out about loops and checks, by the ids of their statements."""
 
     scope: Scope
+    notes: bool = False
     variables: set[str] = field(default_factory=set[str])
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, Stmt] = field(default_factory=dict[int, "Stmt"])
@@ -93,8 +94,8 @@ def verify(kernel: Kernel) -> None:
         _body(_Walk(entry(kernel)), kernel, body)
 
 
-def redundant_checks(kernel: Kernel) -> frozenset[int]:
-    """The ids of Require and Expect statements that cannot fail wherever they stand.
+def settled(kernel: Kernel) -> frozenset[int]:
+    """The ids of Require and Expect statements that cannot fail wherever they stand, and of Ifs that always choose their first block.
 
     Raises
     ------
@@ -104,7 +105,7 @@ def redundant_checks(kernel: Kernel) -> frozenset[int]:
     found: set[int] = set()
     needed: set[int] = set()
     for body in _checked(kernel).bodies:
-        walk = _Walk(entry(kernel))
+        walk = _Walk(entry(kernel), notes=True)
         _body(walk, kernel, body)
         found |= walk.seen.keys()
         needed |= walk.needed
@@ -181,12 +182,19 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
 
 
 def _check(walk: _Walk, stmt: Require | Expect, formula: Formula) -> None:
-    """A check holds from here on; whether it was known before is noted for `redundant_checks`."""
+    """A check holds from here on."""
+    _note(walk, stmt, formula)
+    walk.scope.facts.assume(formula)
+
+
+def _note(walk: _Walk, stmt: Require | Expect | If, formula: Formula) -> None:
+    """Note whether a condition is known before it is asked."""
+    if not walk.notes:
+        return
     key = id(stmt)
     walk.seen[key] = stmt
     if key not in walk.needed and not walk.scope.facts.proves(formula):
         walk.needed.add(key)
-    walk.scope.facts.assume(formula)
 
 
 def _failure(scope: Scope, failure: Failure) -> None:
@@ -263,6 +271,7 @@ def _nested(walk: _Walk, stmt: For | While | If | Switch) -> bool:
     match stmt:
         case If(expr, then, otherwise):
             chosen = condition(walk.scope, expr)
+            _note(walk, stmt, chosen)
             ways: list[tuple[Formula, Block]] = [(chosen, then), (negated(chosen), otherwise)]
         case Switch():
             ways = _cases(walk.scope, stmt)

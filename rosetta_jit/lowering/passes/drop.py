@@ -1,24 +1,33 @@
-"""Checks that cannot fail go."""
+"""Checks that cannot fail go, and so do Ifs that always choose the same."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.ir import If
 from rosetta_jit.kernel.rewrite import with_blocks
-from rosetta_jit.kernel.verify import redundant_checks
+from rosetta_jit.kernel.verify import settled
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Block, Kernel
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Block, Kernel, Stmt
 
 
 def drop(kernel: Kernel) -> Kernel:
-    """The kernel without the Require and Expect that follow from what is known before them."""
-    redundant = redundant_checks(kernel)
-    if not redundant:
+    """The kernel without what follows from what is known before it."""
+    known = settled(kernel)
+    if not known:
         return kernel
 
     def kept(block: Block) -> Block:
-        return tuple(with_blocks(stmt, kept) for stmt in block if id(stmt) not in redundant)
+        return tuple(part for stmt in block for part in _kept(stmt, kept, known))
 
     return replace(kernel, bodies=tuple(map(kept, kernel.bodies)))
+
+
+def _kept(stmt: Stmt, kept: Callable[[Block], Block], known: frozenset[int]) -> Block:
+    if id(stmt) not in known:
+        return (with_blocks(stmt, kept),)
+    return kept(stmt.then) if isinstance(stmt, If) else ()
