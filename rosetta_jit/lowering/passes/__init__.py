@@ -9,6 +9,7 @@ from rosetta_jit.lowering.passes.bulk import bulk
 from rosetta_jit.lowering.passes.drop import drop
 from rosetta_jit.lowering.passes.hoist import hoist
 from rosetta_jit.lowering.passes.merge import merge
+from rosetta_jit.lowering.passes.reuse import reuse
 from rosetta_jit.lowering.passes.simplify import simplify
 from rosetta_jit.lowering.passes.unroll import unroll
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
 
 PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
+    simplify,
+    reuse,
     simplify,
     drop,
     hoist,

@@ -1,0 +1,143 @@
+"""Memory that nothing writes in between is read once.
+
+The lowering reads a field of the holder wherever a rule names it. To the proof each read is a new value, because others may change
+memory; what was checked of one read says nothing of the next, until both are one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
+from rosetta_jit.kernel.loops import changed_names
+from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.shape import blocks_of, bound_name, expressions_of, statements, subexpressions
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Address, Block, Kernel, Stmt
+
+MESSAGE = -1
+"""Stands for the message among the numbers of the lanes."""
+
+_Known = dict[Expr, Local]
+"""What has been read, and the local that holds it."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """The variables of a body, the names that are taken in the kernel, and those made here."""
+
+    variables: set[str]
+    taken: set[str]
+    made: set[str] = field(default_factory=set[str])
+
+    def fresh(self) -> str:
+        number = 1
+        while (name := f"read_{number}") in self.taken:
+            number += 1
+        self.taken.add(name)
+        self.made.add(name)
+        return name
+
+
+def reuse(kernel: Kernel) -> Kernel:
+    """The kernel with a name for what it would read more than once."""
+    taken = {name for body in kernel.bodies for stmt, _ in statements(body) if (name := bound_name(stmt)) is not None}
+    return replace(kernel, bodies=tuple(_body(body, taken) for body in kernel.bodies))
+
+
+def _body(body: Block, taken: set[str]) -> Block:
+    names = _Names(changed_names(body), taken)
+    named = _block(body, {}, names)
+    parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part, _ in subexpressions(expr))
+    uses = Counter(part.name for part in parts if isinstance(part, Local))
+    return _inlined(named, {name for name in names.made if uses[name] == 1}, {})
+
+
+# --- names for reads ---------------------------------------------------------------------------------------------------
+
+
+def _block(block: Block, known: _Known, names: _Names) -> Block:
+    result: list[Stmt] = []
+    for stmt in block:
+        inside = {memory for inner in blocks_of(stmt) for each, _ in statements(inner) for memory in _written(each)}
+        _forget(known, inside)
+        result.extend(_statement(stmt, known, names))
+        _forget(known, _written(stmt))
+    return tuple(result)
+
+
+def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
+    """A statement, behind names for what it is the first to read."""
+    lets: list[Stmt] = []
+    match stmt:
+        case Let(name, Load() | Get() as read):
+            value = with_operands(read, lambda operand: _read(operand, known, names, lets))
+            if value not in known and names.variables.isdisjoint(locals_in(value)):
+                known[value] = Local(type_of(value), name)
+                return (*lets, Let(name, value))
+            return (*lets, Let(name, known.get(value, value)))
+        case While():
+            # Its condition is asked in each round: no name before the loop can stand for it.
+            changed: Stmt = stmt
+        case _:
+            changed = with_expressions(stmt, lambda expr: _read(expr, known, names, lets))
+    return (*lets, with_blocks(changed, lambda inner: _block(inner, dict(known), names)))
+
+
+def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
+    """An expression with names in place of what it reads."""
+    changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
+    if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
+        return changed
+    if changed not in known:
+        known[changed] = Local(changed.type, names.fresh())
+        lets.append(Let(known[changed].name, changed))
+    return known[changed]
+
+
+# --- what is written ---------------------------------------------------------------------------------------------------
+
+
+def _written(stmt: Stmt) -> set[int]:
+    """The memory that a statement itself writes."""
+    match stmt:
+        case Store():
+            return {MESSAGE}
+        case SetField(place, _):
+            return {place.lane}
+        case Copy(target, _, _) | Fill(target, _, _):
+            return {_memory(target)}
+        case _:
+            return set()
+
+
+def _memory(address: Address) -> int:
+    return address.lane if isinstance(address, Place) else MESSAGE
+
+
+def _forget(known: _Known, written: set[int]) -> None:
+    for read in [read for read in known if not written.isdisjoint(_read_of(read))]:
+        del known[read]
+
+
+def _read_of(read: Expr) -> set[int]:
+    """The memory that a read depends on. Reads inside it have names of their own."""
+    return {read.place.lane} if isinstance(read, Get) else {MESSAGE}
+
+
+# --- names for nothing -------------------------------------------------------------------------------------------------
+
+
+def _inlined(block: Block, single: set[str], values: dict[str, Expr]) -> Block:
+    """The block without names that are used once: in the statement behind them."""
+    result: list[Stmt] = []
+    for stmt in block:
+        if isinstance(stmt, Let) and stmt.name in single:
+            values[stmt.name] = substituted(stmt.value, values)
+        else:
+            changed = with_expressions(stmt, lambda expr: substituted(expr, values)) if values else stmt
+            result.append(with_blocks(changed, lambda inner: _inlined(inner, single, values)))
+    return tuple(result)
