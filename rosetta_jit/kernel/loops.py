@@ -120,7 +120,7 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
 
 def instance(scope: Scope, guess: Guess, at_entry: Scope, value: Linear) -> Linear:
     """A guess about a value, as a fact."""
-    marks = [*anchors(scope, at_entry.locals[guess.name]), Linear(0)]
+    marks = anchors(scope, at_entry.locals[guess.name])
     return times(minus(value, marks[guess.anchor]), guess.sign)
 
 

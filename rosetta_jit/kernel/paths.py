@@ -84,12 +84,22 @@ def _arrive(scope: Scope, before: Scope, mark: int) -> Arrival:
 
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
     """What the values of a variable are compared with."""
-    return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1])]
+    return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1]), Linear(0)]
 
 
 def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[int, int]]:
-    """For each anchor the least of ``value - anchor`` and of ``anchor - value``."""
-    return [(_least(scope, minus(value, mark)), _least(scope, minus(mark, value))) for mark in marks]
+    """For each anchor the least of ``value - anchor`` and of ``anchor - value``.
+
+    Worth a proof is only that the value is in the message, and no less than before.
+    """
+    begin, end, old, zero = marks
+    lower = scope.facts.lower
+    return [
+        (_least(scope, minus(value, begin)), lower(minus(begin, value))),
+        (lower(minus(value, end)), _least(scope, minus(end, value))),
+        (_least(scope, minus(value, old)), lower(minus(old, value))),
+        (lower(minus(value, zero)), lower(minus(zero, value))),
+    ]
 
 
 def _least(scope: Scope, distance: Linear) -> int:
@@ -119,7 +129,8 @@ def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typ
         return old[0], None
     met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
     marks = anchors(before, old)
-    own = _distances(scope, old[1], marks)
+    unchanged = any(name not in arrival.distances for arrival in arrivals)
+    own = _distances(scope, old[1], marks) if unchanged else []
     for k, mark in enumerate(marks):
         ways = [arrival.distances.get(name, own)[k] for arrival in arrivals]
         learn_distance(scope, minus(met, mark), min(way[0] for way in ways))
@@ -129,7 +140,7 @@ def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typ
 
 def learn_distance(scope: Scope, distance: Linear, least: int) -> None:
     """Keep a lower bound of a distance, if it says anything."""
-    if least > -FAR:
+    if least > -FAR or len(distance.terms) == 1:
         scope.facts.assume(shifted(distance, -least))
 
 

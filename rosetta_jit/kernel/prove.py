@@ -21,6 +21,7 @@ QUICK, THOROUGH = (32, 300), (96, 4000)
 """How many facts a proof may look at, and how many it may combine: for a question, and for an obligation."""
 
 CASE_DEPTH = 2
+MAX_PROPAGATED = 4
 MAX_FORMULA = 64
 
 
@@ -179,8 +180,18 @@ class Facts:
                 if known is None:
                     for atom, _ in terms:
                         self._about.setdefault(atom, []).append(terms)
+                self._propagate(constant, terms)
         elif constant < 0:
             self._contradiction()
+
+    def _propagate(self, constant: int, terms: Terms) -> None:
+        """Bound each atom of a short sum by the bounds of the others, so that most questions need no more than bounds."""
+        if len(terms) > MAX_PROPAGATED:
+            return
+        greatest = [c * (self.highs[a] if c > 0 else self.lows[a]) for a, c in terms]
+        total = constant + sum(greatest)
+        for (atom, coefficient), own in zip(terms, greatest, strict=True):
+            self._learn_bound(total - own, atom, coefficient)
 
     def _learn_bound(self, constant: int, atom: int, coefficient: int) -> None:
         if coefficient > 0:
