@@ -73,7 +73,7 @@ class MessageError(RosettaError, ValueError):
     """
 
     def __init__(self, kind: Kind, path: str, detail: str) -> None:
-        self.kind = kind
+        self.kind: Kind = kind
         self.path = path
         self.detail = detail
         super().__init__(self.describe())

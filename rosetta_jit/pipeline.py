@@ -141,7 +141,7 @@ class Build:
 
         return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba")
 
-    def stage(self, stage: Stage) -> str:
+    def stage(self, stage: str) -> str:
         """What the program became, as text."""
         match stage:
             case "model":

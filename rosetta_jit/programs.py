@@ -6,7 +6,7 @@ import json
 import os
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.request import Request
@@ -39,11 +39,6 @@ class _Made:
     """How a program is made, and what it became."""
 
     _request: Request
-    _in_python: ClassVar[type]
-
-    def __new__(cls, *_: object, backend: Backend | None = None, **__: object) -> Self:
-        """Kernels that run in Python have no entry to call: their programs are of a subclass with an ordinary ``__call__``."""
-        return object.__new__(cls._in_python if backend in _PYTHON else cls)
 
     @property
     def kernel(self) -> Any:
@@ -94,7 +89,7 @@ class Decoder(_Made, DecoderBase):
         borrow: bool = False,
         backend: Backend | None = None,
     ) -> None:
-        self._make(_mapping_request("decode", mapping, encoding, schema, search_path, borrow=borrow, backend=backend))
+        self.make(_mapping_request("decode", mapping, encoding, schema, search_path, borrow=borrow, backend=backend))
 
     @classmethod
     def of(
@@ -115,15 +110,16 @@ class Decoder(_Made, DecoderBase):
         type_
             Qualified name, or a message class of protobuf's Python package.
         imports
-            The files that declare it, by their names on the search path; by default those in ``schema``, or the file that the name suggests.
+            The files that declare it, by their names on the search path; by default those in ``schema``, or what the name suggests.
         schema
             File names and texts, as if they lay on the search path; or a serialised ``FileDescriptorSet``.
         """
-        made = cls.__new__(cls, backend=backend)
-        made._make(_type_request("decode", type_, encoding, imports, schema, search_path, borrow=borrow, backend=backend))
+        made = cls.__new__(cls)
+        made.make(_type_request("decode", type_, encoding, imports, schema, search_path, borrow=borrow, backend=backend))
         return made
 
-    def _make(self, request: Request) -> None:
+    def make(self, request: Request) -> None:
+        """Become the program that answers a request."""
         self._request = request
         self._start(_loaded(request))
 
@@ -143,7 +139,7 @@ class Encoder(_Made, EncoderBase):
         search_path: Iterable[str | os.PathLike[str]] = (),
         backend: Backend | None = None,
     ) -> None:
-        self._make(_mapping_request("encode", mapping, encoding, schema, search_path, backend=backend))
+        self.make(_mapping_request("encode", mapping, encoding, schema, search_path, backend=backend))
 
     @classmethod
     def of(
@@ -157,11 +153,12 @@ class Encoder(_Made, EncoderBase):
         backend: Backend | None = None,
     ) -> Self:
         """An encoder of a type from its own holder; parameters as of `Decoder.of`."""
-        made = cls.__new__(cls, backend=backend)
-        made._make(_type_request("encode", type_, encoding, imports, schema, search_path, backend=backend))
+        made = cls.__new__(cls)
+        made.make(_type_request("encode", type_, encoding, imports, schema, search_path, backend=backend))
         return made
 
-    def _make(self, request: Request) -> None:
+    def make(self, request: Request) -> None:
+        """Become the program that answers a request."""
         self._request = request
         self._start(_loaded(request))
 
@@ -181,7 +178,7 @@ def _mapping_request(
         mapping=os.fspath(mapping),
         encoding=encoding,
         files=tuple((schema or {}).items()),
-        folders=tuple(map(os.fspath, search_path)),
+        folders=tuple(os.fspath(folder) for folder in search_path),
         borrow=borrow,
         backend=backend,
     )
@@ -207,7 +204,7 @@ def _type_request(
         files=() if schema is None or isinstance(schema, bytes) else tuple(schema.items()),
         plain=descriptors,
         framework="protobuf" if descriptors is not None else None,
-        folders=tuple(map(os.fspath, search_path)),
+        folders=tuple(os.fspath(folder) for folder in search_path),
         borrow=borrow,
         backend=backend,
     )
@@ -363,9 +360,9 @@ class OwnPrograms:
         return _of_request(Encoder, replace(self._request, direction="encode"))
 
 
-def _of_request(program: type, request: Request) -> Any:
-    made: Any = program.__new__(program)
-    made._make(request)  # noqa: SLF001 - the module's own
+def _of_request(program: type[Decoder | Encoder], request: Request) -> Any:
+    made = program.__new__(program)
+    made.make(request)
     return made
 
 
@@ -382,16 +379,5 @@ def _warn(why: str) -> None:
     warnings.warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning, stacklevel=4)
 
 
-def _callable(base: type) -> type:
-    """The class that users see, and its subclass for kernels in Python."""
-    made = callable_class(base)
-
-    def call(program: Any, *arguments: object, **named: object) -> object:
-        return program.call_slowly(*arguments, **named)
-
-    made._in_python = type(base.__name__, (made,), {"__call__": call, "__module__": base.__module__, "__qualname__": base.__qualname__})
-    return made
-
-
 if not TYPE_CHECKING:
-    Decoder, Encoder = _callable(Decoder), _callable(Encoder)
+    Decoder, Encoder = callable_class(Decoder), callable_class(Encoder)

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Block, For, If, Stmt, Switch, While
+from rosetta_jit.kernel.ir import Advance, Block, For, If, Kernel, Stmt, Switch, While
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
 MAX_IDENTIFIER = 60
 """Longer names from schemas are cut."""
@@ -27,7 +27,7 @@ class Writer:
         self.lines.append("    " * self.depth + text if text else "")
 
     @contextmanager
-    def indented(self, head: str) -> Iterator[None]:
+    def indented(self, head: str) -> Generator[None]:
         """A head and, below it, what is written until the end of the `with`."""
         self.line(head)
         self.depth += 1
@@ -40,7 +40,7 @@ class Writer:
 
 @dataclass(slots=True)
 class Namespace:
-    """Identifiers for names that come from schemas: letters, digits and underscores alone, never taken or reserved, never the same for two."""
+    """Identifiers for names that come from schemas: of letters, digits and underscores, not reserved, and of each name another."""
 
     reserved: frozenset[str]
     identifiers: dict[str, str] = field(default_factory=dict[str, str])
@@ -70,6 +70,12 @@ def statements(block: Block) -> Iterator[Stmt]:
         yield statement
         for inner in inner_blocks(statement):
             pending += reversed(inner)
+
+
+def counted_lanes(kernel: Kernel, body: Block) -> list[int]:
+    """The lanes whose used length the body's success may change: decoding into row 0 empties all lanes behind lane 0."""
+    emptied = range(1, len(kernel.strides)) if kernel.direction == "decode" else ()
+    return sorted({*emptied, *(each.lane for each in statements(body) if isinstance(each, Advance))})
 
 
 def inner_blocks(statement: Stmt) -> tuple[Block, ...]:

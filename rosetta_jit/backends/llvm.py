@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends import llvm_stmt
-from rosetta_jit.backends.base import statements
+from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm_frame import I64, POINTER, Exit, Frame, Parameters, constant, state_word
 from rosetta_jit.kernel.ir import Block, Expect, Kernel, Require
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, MAX_INDICES, USED, lane_word
@@ -56,7 +56,7 @@ def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kern
         llvm_stmt.block(frame, body)
         if not builder.block.is_terminated:
             builder.unreachable()  # verified: every path that gets here has ended in a Return before
-        _finish(frame)
+        _finish(frame, counted_lanes(kernel, body))
         if not frame.failed.is_reached:
             _drop(frame.failed)
             return
@@ -78,15 +78,15 @@ def _drop(target: Exit) -> None:
     ir.IRBuilder(target.block).unreachable()
 
 
-def _finish(frame: Frame) -> None:
+def _finish(frame: Frame, lanes: Sequence[int]) -> None:
     """Success: only now do used lengths count."""
     if not frame.done.is_reached:
         _drop(frame.done)
         return
     builder = ir.IRBuilder(frame.done.block)
-    for lane in sorted(frame.advanced):
+    for lane in lanes:
         word = state_word(builder, frame.parameters.state, lane_word(lane, USED))
-        builder.store(builder.load(frame.used[lane], typ=I64), word, align=8)
+        builder.store(builder.load(frame.used_slot(lane), typ=I64), word, align=8)
     builder.ret(frame.done.phis[0])
 
 

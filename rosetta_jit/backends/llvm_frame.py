@@ -106,7 +106,6 @@ class Frame:
     decodes: bool
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
-    advanced: set[int] = field(default_factory=set[int])
 
     def address(self, lane: int) -> ir.Value:
         """Where the lane's rows start."""

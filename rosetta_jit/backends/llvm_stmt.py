@@ -83,7 +83,6 @@ def _statement(frame: Frame, statement: Stmt) -> None:  # noqa: C901 - one case 
         case Reserve(lane, count):
             _reserve(frame, lane, expression(frame, count))
         case Advance(lane, count):
-            frame.advanced.add(lane)
             slot = frame.used_slot(lane)
             rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
             frame.builder.store(rows, slot)

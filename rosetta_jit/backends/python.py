@@ -10,7 +10,7 @@ from __future__ import annotations
 import keyword
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.backends.base import Namespace, Writer, statements
+from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
 from rosetta_jit.backends.python_expr import FLOATS, FORMATS, Names, expression, location, part
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -102,13 +102,13 @@ class _Attempt:
         parameters = {name: name for name in ("begin", "end", "row")}
         self.kernel, self.body, self.writer = kernel, body, writer
         self.names = Names(Namespace(_reserved(kernel), parameters), kernel.strides)
-        self.advanced = sorted({each.lane for each in statements(body) if isinstance(each, Advance)})
+        self.counted = counted_lanes(kernel, body)
 
     def write(self) -> None:
         """The body, behind the lengths that it turned out to read."""
         outer, self.writer = self.writer, Writer(depth=self.writer.depth)
         self._block(self.body)
-        for lane in sorted(self.names.used | set(self.advanced)):
+        for lane in sorted(self.names.used | set(self.counted)):
             start = f"int(state[{lane_word(lane, USED)}])"
             outer.line(f"used_{lane} = {start} if row else 0" if lane and self.kernel.direction == "decode" else f"used_{lane} = {start}")
         for lane in sorted(self.names.capacities):
@@ -145,7 +145,7 @@ class _Attempt:
                 length = self._text(size)
                 self.writer.line(f"{part(self.names, target, length)} = bytes([{byte}]) * {length}")
             case Return(position):
-                for lane in self.advanced:
+                for lane in self.counted:
                     self.writer.line(f"state[{lane_word(lane, USED)}] = used_{lane}")
                 self.writer.line(f"return {self._text(position)}")
             case For() | While() | If() | Switch():

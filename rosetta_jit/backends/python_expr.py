@@ -1,7 +1,7 @@
 """Kernel expressions as Python expressions.
 
-Integers are ints, bools are bools. Floats are numpy scalars of their width: f32 arithmetic on them is f32, division by zero is no exception,
-and one that is only moved keeps all bits of a NaN.
+Integers are ints, bools are bools. Floats are numpy scalars of their width: f32 arithmetic on them is f32, division by zero is no
+exception, and one that is only moved keeps all bits of a NaN.
 """
 
 from __future__ import annotations

@@ -40,6 +40,6 @@ def add_encoding(command: ArgumentParser, default: str | None = None) -> None:
     command.add_argument("--encoding", default=default, help=f"yarp2012, yarp3, yarp4, yarp, protobuf{shown}")
 
 
-def encoding_options(arguments: Namespace) -> dict[str, str]:
-    """``encoding`` as keyword argument, where the user gave one."""
-    return {"encoding": arguments.encoding} if arguments.encoding else {}
+def encoding_of(arguments: Namespace) -> str | None:
+    """The encoding that the user named."""
+    return arguments.encoding or None

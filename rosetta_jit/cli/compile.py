@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mappings, encoding_options
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mappings, encoding_of
 
 if TYPE_CHECKING:
     import argparse
@@ -29,6 +29,6 @@ def run(arguments: argparse.Namespace) -> int:
     for mapping in cast("list[str]", arguments.mappings):
         for direction in cast("list[str] | None", arguments.direction) or DIRECTIONS:
             started = time.perf_counter()
-            programs[direction](mapping, **encoding_options(arguments))
+            programs[direction](mapping, encoding=encoding_of(arguments))
             print(f"{mapping}: {direction} ready in {1000 * (time.perf_counter() - started):.1f} ms")
     return 0

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_options
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.recording import read_messages
 
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Messages that cannot be decoded are reported and skipped; then the exit code is 1."""
     import rosetta_jit
 
-    decode = rosetta_jit.Decoder(arguments.mapping, **encoding_options(arguments))
+    decode = rosetta_jit.Decoder(arguments.mapping, encoding=encoding_of(arguments))
     failures: list[str] = []
     holders = _holders(decode, cast("list[str]", arguments.files), failures)
     if arguments.npz:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_options
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
 
 if TYPE_CHECKING:
     import argparse
@@ -26,5 +26,5 @@ def run(arguments: argparse.Namespace) -> int:
     import rosetta_jit
 
     program = rosetta_jit.Encoder if arguments.direction == "encode" else rosetta_jit.Decoder
-    print(program(arguments.mapping, **encoding_options(arguments)).stage(arguments.stage))
+    print(program(arguments.mapping, encoding=encoding_of(arguments)).stage(arguments.stage))
     return 0

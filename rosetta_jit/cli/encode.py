@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import values as words
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_options
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
 from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
 from rosetta_jit.recording import Message, is_recording, write_recording
@@ -32,8 +32,8 @@ def run(arguments: argparse.Namespace) -> int:
     """All messages are encoded before anything is written."""
     import rosetta_jit
 
-    encode = rosetta_jit.Encoder(arguments.mapping, **encoding_options(arguments))
-    holder = type(encode.new())
+    encode = rosetta_jit.Encoder(arguments.mapping, encoding=encoding_of(arguments))
+    holder = encode.holder_type
     values = [value for file in cast("list[str]", arguments.files) for value in _values(Path(file))]
     messages = [encode(holder.from_dict(value)) for value in values]
     output = Path(arguments.output)

@@ -3,7 +3,8 @@
     0 valid    1 error offset    2 error site    3 lane to grow    4 missing rows    5 … 8 indices of the error's path    9 result
     16 + 4 k   address, capacity, used length, stride of lane k
 
-Addresses and lengths are written by the runtime; a kernel writes words 0 to 8 and the used lengths. Word 9 is what a failed kernel returned,
+Addresses and lengths are written by the runtime; a kernel writes words 0 to 8 and the used lengths. Word 9 is what a failed kernel
+returned,
 for who called it through an entry (`backends/*.ll`).
 """
 

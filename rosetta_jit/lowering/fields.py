@@ -48,7 +48,10 @@ class Stored:
 class Fields(Protocol):
     """Where the values of one message or element live."""
 
-    where: Where
+    @property
+    def where(self) -> Where:
+        """Its place in the message, for errors."""
+        ...
 
     def put(self, path: Path, value: Expr) -> None:
         """Decode: a number has come."""

@@ -7,17 +7,17 @@ lays out the message (`Supplies`), and the rules then fill the elements into the
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
-from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.types import Array, Bytes, String
 
 if TYPE_CHECKING:
+    from rosetta_jit.lowering.values import Values
     from rosetta_jit.wire.codec import Path
 
 
@@ -162,7 +162,7 @@ def _array_places(node: object) -> list[typed.Place]:
     """Every place below a rule whose length or elements are read."""
     match node:
         case tuple():
-            return [place for each in node for place in _array_places(each)]
+            return [place for each in cast("tuple[object, ...]", node) for place in _array_places(each)]
         case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
             return [place]
         case typed.Assign(_, value) | typed.SetLength(_, value):

@@ -28,7 +28,7 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 from rosetta_jit.lowering.bound import EACH
-from rosetta_jit.lowering.fields import converted, member_of, scalar_name
+from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.model.layout import Number, Row
 
@@ -68,15 +68,12 @@ class HolderSide:
         member = member_of(owner.slot, path[-1])
         if member.presence is None or last is None or not isinstance(owner.slot, Row):
             return value
-        return self.present_or_default(owner.place, owner.slot, member, last, value, values)
+        place_of_bit, mask = presence_bit(owner, owner.slot, member.presence)
+        present = Compare("ne", Binary("and", Get("u64", place_of_bit), mask), Const("u64", 0))
+        return self.present_or_default(present, member, last, value, values)
 
-    def present_or_default(self, place: object, row: Row, member: Member, last: Field, value: Expr, values: Values) -> Expr:
+    def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
         """What reading gives: the value; where it is absent, its default, or an error if it is required."""
-        assert callable(place)
-        bit = member.presence or 0
-        mask = Const("u64", 1 << bit % 64)
-        word = Get("u64", place(row.offset + 8 * (bit // 64)))
-        present = Compare("ne", Binary("and", word, mask), Const("u64", 0))
         if last.required:
             self.writer.expect(present, "missing", values.where.member(last.name), "a required field is not set", line=values.line)
             return value
@@ -167,7 +164,7 @@ class WireSide:
         del values
         return Wire(self.root.found.regions[(*wire_key(place)[0], EACH)].first)
 
-    def element(self, key: Path, indices: list[Expr], values: Values) -> tuple[Region, Expr]:
+    def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
         """How the elements of an array lie, and where one of them is; it is checked to be there."""
         assert len(indices) == 1, key
         region, array = self.root.found.regions[key], key[: key.index(EACH)]

@@ -6,8 +6,8 @@ A message within another comes after its length. `size` computes all lengths and
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
     BEGIN,
@@ -41,6 +41,9 @@ from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.model.layout import Row, Span, Variant
 from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varint
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 @dataclass(frozen=True, slots=True)

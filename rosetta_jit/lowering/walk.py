@@ -117,7 +117,7 @@ def _table(writer: Writer, fields: Fields, table: Table) -> None:
     if writer.direction == "decode":
         at = writer.position
         wire = writer.let("code", integer(writer.load(scalar, where, table.order)))
-        pairs = [(Compare("eq", wire, index(number)), value) for number, value in table.pairs]
+        pairs: list[tuple[Expr, int]] = [(Compare("eq", wire, index(number)), value) for number, value in table.pairs]
         writer.expect(_any(test for test, _ in pairs), "constant", where, detail, at=at)
         fields.put(table.path, _select(pairs))
         return
@@ -127,9 +127,9 @@ def _table(writer: Writer, fields: Fields, table: Table) -> None:
         writer.advance(WIDTH[scalar])
         return
     known = writer.let("code", integer(value))
-    pairs = [(Compare("eq", known, index(value)), number) for number, value in table.pairs]
-    writer.expect(_any(test for test, _ in pairs), "range", where, "the wire has no word for this value")
-    writer.store(_as(scalar, _select(pairs)), where, table.order)
+    written: list[tuple[Expr, int]] = [(Compare("eq", known, index(value)), number) for number, value in table.pairs]
+    writer.expect(_any(test for test, _ in written), "range", where, "the wire has no word for this value")
+    writer.store(_as(scalar, _select(written)), where, table.order)
 
 
 def _number_constant(writer: Writer, fields: Fields, constant: Constant) -> None:

@@ -37,7 +37,7 @@ from rosetta_jit.kernel.ir import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Generator
 
 MAX_SIZE = 1 << 56
 """No message that fits in memory is larger, so sums of sizes below this cannot wrap."""
@@ -84,7 +84,7 @@ class Writer:
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
 
     @contextmanager
-    def whole(self) -> Iterator[None]:
+    def whole(self) -> Generator[None]:
         """Around a message or an element: what must be checked when all its fields are known is checked at the end."""
         outer, self.deferred = self.deferred, []
         yield
@@ -118,7 +118,7 @@ class Writer:
         self.emit(Assign(variable.name, value))
 
     @contextmanager
-    def nested(self) -> Iterator[list[Stmt]]:
+    def nested(self) -> Generator[list[Stmt]]:
         """A block of its own; the position within it starts where it is now and is put back afterwards."""
         outer, position = self.block, self.position
         self.block = inner = []

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 SPAN_BYTES = 16
 LINK_WORDS = 6
 MAX_ROW_BYTES, MAX_SLOTS = 1 << 20, 1 << 16
-"""Larger rows, and types that unfold to more fields, are refused: no schema of people comes near them, hostile ones double at each level."""
+"""Larger rows, and types that unfold to more fields, are refused: no schema of people comes near, hostile ones double at each level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +175,7 @@ def _references(type_: Type, schema: Schema) -> frozenset[str]:
         case Map(key, value):
             return _references(key, schema) | _references(value, schema)
         case Struct(_, fields) | Union(_, fields):
-            return frozenset().union(*(_references(each.type, schema) for each in fields))
+            return frozenset[str]().union(*(_references(each.type, schema) for each in fields))
         case Bool() | Int() | Float() | String() | Bytes() | Enum():
             return frozenset()
         case _:

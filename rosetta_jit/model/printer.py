@@ -21,7 +21,7 @@ def show_types(schema: Schema, structs: Iterable[Struct]) -> str:
         declaration = pending.pop(0)
         if declaration.name not in shown:
             shown[declaration.name] = _declaration(declaration)
-            pending += [schema.types[name] for name in _names(declaration)]
+            pending += [schema.types[each] if isinstance(each, str) else each for each in _referred_by(declaration)]
     return "\n".join(shown.values())
 
 
@@ -103,20 +103,22 @@ def _field(field: Field) -> str:
     return ", ".join(parts)
 
 
-def _names(declaration: Declaration) -> list[str]:
-    """The declarations that one refers to, in order."""
-    return [name for each in declaration.fields for name in _referred(each.type)] if isinstance(declaration, Struct) else []
+def _referred_by(declaration: Declaration) -> list[str | Struct]:
+    """The declarations that one refers to by name, and the structs that are written within it, in order."""
+    return [found for each in declaration.fields for found in _referred(each.type)] if isinstance(declaration, Struct) else []
 
 
-def _referred(type_: Type) -> list[str]:
+def _referred(type_: Type) -> list[str | Struct]:
     match type_:
         case Ref(name):
             return [name]
+        case Struct():
+            return [type_]
         case Array(inner, _) | Optional(inner):
             return _referred(inner)
         case Map(key, value):
             return _referred(key) + _referred(value)
-        case Struct(_, fields) | Union(_, fields):
-            return [name for each in fields for name in _referred(each.type)]
+        case Union(_, cases):
+            return [found for each in cases for found in _referred(each.type)]
         case _:
             return []

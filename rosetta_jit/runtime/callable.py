@@ -14,6 +14,7 @@ import ctypes
 import sys
 import sysconfig
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,14 +94,18 @@ def holder_base(*, native: bool | None = None) -> type:
     return _with_attributes(created, {"_is_native": True, "__module__": __name__, "__qualname__": "HolderBase"})
 
 
-def bind_call(target: Any, entry: int, context: Context) -> None:
-    """Let calls of ``target``, an instance of a `callable_class`, go to the entry at an address.
+def bind_call(target: Any, entry: int | None, context: Context) -> None:
+    """Let calls of ``target``, an instance of a `callable_class`, go to the entry at an address; without one, to the slow path.
 
     The code there must live as long as the object. The context is kept by the object.
     """
     words = context.words()
     target._context = (context, words)  # noqa: SLF001 - the class is ours
-    if target._is_native:  # noqa: SLF001 - as above
+    if not target._is_native:  # noqa: SLF001 - as above
+        return
+    if entry is None:
+        target.__class__ = _without_entry(target.__class__)
+    else:
         _write(id(target) + CONTEXT, words.ctypes.data)
         _write(id(target) + VECTORCALL, entry)
 
@@ -109,6 +114,12 @@ def bind_state(holder: Any, state: Words) -> None:
     """Tell the entries where the state of a holder, an instance of a subclass of a `holder_base`, lies. The holder must keep the array."""
     if holder._is_native:  # noqa: SLF001 - the class is ours
         _write(id(holder) + STATE, state.ctypes.data)
+
+
+@cache
+def _without_entry(native: type) -> type:
+    """A subclass with an ordinary ``__call__``: CPython takes that before the vectorcall slot."""
+    return type(native.__name__, (native,), {"__call__": _call_slow, "__slots__": (), **_names(native)})
 
 
 def _call_slow(self: Any, *arguments: object, **named: object) -> object:

@@ -20,8 +20,9 @@ from rosetta_jit.runtime.callable import Context, bind_call
 from rosetta_jit.runtime.lanes import CLEAN
 
 if TYPE_CHECKING:
-    from collections.abc import Buffer, Callable
+    from collections.abc import Callable
 
+    from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder import Holder
@@ -65,8 +66,7 @@ class Program:
         self._holder = loaded.holder_type()
         lanes = self._holder.lanes_
         context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type)
-        entry = loaded.library["call"] if loaded.library is not None else 0
-        bind_call(self, entry, context)
+        bind_call(self, None if loaded.library is None else loaded.library["call"], context)
 
     @property
     def holder_type(self) -> type[Holder]:
@@ -78,14 +78,20 @@ class Program:
         return self._loaded.holder_type()
 
     def _checked(self, holder: object) -> Holder:
-        if type(holder) is not self._loaded.holder_type:
-            expected = self._loaded.holder_type
+        expected = self._loaded.holder_type
+        if not isinstance(holder, expected) or type(holder) is not expected:
             raise TypeError(f"a holder of {expected.__module__}.{expected.__qualname__} is needed, not {type(holder).__name__}")
-        return cast("Holder", holder)
+        return holder
 
 
 class DecoderBase(Program):
     """Decodes messages of one wire into holders of one type."""
+
+    if TYPE_CHECKING:  # the entry does this
+
+        def __call__(self, message: Buffer, holder: Any = None) -> Any:
+            """Decode into a holder, by default the decoder's own; returns it."""
+            ...
 
     def _start(self, loaded: Loaded) -> None:
         self._bind(loaded, self.call_slowly)
@@ -100,7 +106,7 @@ class DecoderBase(Program):
         TypeError, BufferError
             The message has no bytes, or the holder is of another type.
         """
-        return cast("Any", self)(message, holder)
+        return self(message, holder)
 
     def many(self, buffer: Buffer, offsets: NDArray[np.int64], *, into: Batch | None = None) -> Batch:
         """Decode many messages that lie in one buffer, without the interpreter lock.
@@ -188,6 +194,12 @@ class DecoderBase(Program):
 class EncoderBase(Program):
     """Encodes holders of one type as messages of one wire."""
 
+    if TYPE_CHECKING:  # the entry does this
+
+        def __call__(self, holder: Any, buffer: Buffer | None = None, offset: int = 0) -> Any:
+            """The message as bytes, or, written into a buffer, the offset behind it."""
+            ...
+
     def _start(self, loaded: Loaded) -> None:
         self._bind(loaded, self.call_slowly)
 
@@ -201,7 +213,7 @@ class EncoderBase(Program):
         BufferError
             The buffer is read-only, or has not enough room.
         """
-        return cast("int", cast("Any", self)(holder, buffer, offset))
+        return self(holder, buffer, offset)
 
     def size(self, holder: Any) -> int:
         """How many bytes the message takes."""

@@ -46,26 +46,10 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
         case Seq(items):
             for item in items:
                 yield from _lines(item, depth)
-        case Number(path, scalar, order):
-            yield f"{indent}{_path(path)}: {_scalar(scalar, order)}"
-        case Table(path, scalar, pairs, order):
-            yield f"{indent}{_path(path)}: {_scalar(scalar, order)}, {', '.join(f'{wire} for {value}' for wire, value in pairs)}"
-        case Varint(path, zigzag):
-            yield f"{indent}{_path(path)}: {'zigzag ' if zigzag else ''}varint"
-        case Constant(path, value, scalar, order, kind):
-            text = repr(value) if isinstance(value, bytes) else f"{_scalar(scalar, order)} {value}"
-            yield f"{indent}{kind} {text}" + (f" ({_path(path)})" if path else "")
-        case Computed(path, scalar, value, order):
-            yield f"{indent}{_path(path)}: {_scalar(scalar, order)} = {show_expr(value)}"
-        case Padding(scalar, value, order):
-            yield f"{indent}padding {_scalar(scalar, order)} {value}"
-        case Blob(path, count, text, terminated):
-            yield f"{indent}{_path(path)}: {_count(count)} bytes{' of text' if text else ''}{' and NUL' if terminated else ''}"
         case Repeat(path, count, item, head, extra):
             yield f"{indent}{_path(path)}: {_count(count)} elements" + (f", {extra} fields among them:" if extra else ", each:")
-            for each in head:
+            for each in (*head, item):
                 yield from _lines(each, depth + 1)
-            yield from _lines(item, depth + 1)
         case Choice(path, scalar, alternatives, _, order):
             yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
             for value, each in alternatives:
@@ -76,8 +60,29 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield f"{indent}{_path(path)}: {kind}" + (f", required: {', '.join(required)}" if required else "")
             for entry in entries:
                 yield from _entry(entry, depth + 1)
+        case _:
+            yield indent + _leaf(codec)
+
+
+def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Blob | Recursion) -> str:
+    match codec:
+        case Number(path, scalar, order):
+            return f"{_path(path)}: {_scalar(scalar, order)}"
+        case Table(path, scalar, pairs, order):
+            return f"{_path(path)}: {_scalar(scalar, order)}, {', '.join(f'{wire} for {value}' for wire, value in pairs)}"
+        case Varint(path, zigzag):
+            return f"{_path(path)}: {'zigzag ' if zigzag else ''}varint"
+        case Constant(path, value, scalar, order, kind):
+            text = repr(value) if isinstance(value, bytes) else f"{_scalar(scalar, order)} {value}"
+            return f"{kind} {text}" + (f" ({_path(path)})" if path else "")
+        case Computed(path, scalar, value, order):
+            return f"{_path(path)}: {_scalar(scalar, order)} = {show_expr(value)}"
+        case Padding(scalar, value, order):
+            return f"padding {_scalar(scalar, order)} {value}"
+        case Blob(path, count, text, terminated):
+            return f"{_path(path)}: {_count(count)} bytes{' of text' if text else ''}{' and NUL' if terminated else ''}"
         case Recursion(path, struct, _):
-            yield f"{indent}{_path(path)}: message {struct}"
+            return f"{_path(path)}: message {struct}"
         case _:
             assert_never(codec)
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, ERROR_INDICES, ERROR_OFFSET, GROW_ROWS, STRIDE, USED, lane_word, state_words
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Kernel
 
 KERNEL = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)
 

@@ -10,7 +10,7 @@ first attempt, and the general one comes after it.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.errors import SchemaError
@@ -266,8 +266,6 @@ class _Bottles:
                 return "blob"
             case Struct() | Array() | Map() | Enum() | Optional() | Union() | Ref():
                 return None
-            case _ as never:
-                assert_never(never)
 
     def tag(self, unit: str, field: Field) -> int:
         if unit not in self.dialect.tags:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.errors import DecodeError, SchemaError
@@ -17,7 +17,6 @@ from rosetta_jit.frameworks.yarp.tags import DIALECTS
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosetta_jit.errors import Kind
     from rosetta_jit.frameworks.yarp.shape import Shape
     from rosetta_jit.frameworks.yarp.tree import List
 
@@ -71,7 +70,7 @@ def _read(message: bytes, encoding: str, number: int) -> List:
     try:
         return read_any(message)[1] if encoding == "yarp" else read(message, DIALECTS[encoding])
     except DecodeError as error:
-        raise DecodeError(cast("Kind", error.kind), error.path, f"message {number}: {error.detail}", error.offset) from None
+        raise DecodeError(error.kind, error.path, f"message {number}: {error.detail}", error.offset) from None
 
 
 def _look(bottle: List, number: int) -> _Common:
