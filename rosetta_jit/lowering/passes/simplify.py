@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -33,9 +34,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """What is known of a body's locals: those assigned, those of fixed value, the values known by now, and which local has a value."""
+    """What is known of a body's locals: how often each is still assigned, those whose value is settled, the values known by now, and which
+    local has a value.
 
-    assigned: frozenset[str]
+    A variable is settled behind the last Assign to it in the text. In a loop that is true until the round's end, where what was computed
+    in the round is forgotten.
+    """
+
+    assigned: Counter[str]
     fixed: set[str]
     values: dict[str, Expr]
     computed: dict[Expr, Local]
@@ -47,7 +53,7 @@ def simplify(kernel: Kernel) -> Kernel:
 
 
 def _body(body: Block) -> Block:
-    assigned = frozenset(stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign))
+    assigned = Counter(stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign))
     names = _Names(assigned, {BEGIN.name, END.name, ROW.name}, {}, {})
     simple = _block(body, names)
     return _used(simple, names_read(simple), set())
@@ -76,8 +82,13 @@ def _statement(stmt: Stmt, names: _Names) -> Block:
     match stmt:
         case Let(name, value):
             return _let(name, value, names)
-        case Var(name, value) if name not in names.assigned:
+        case Var(name, value) if not names.assigned[name]:
             return _let(name, value, names)
+        case Assign(name, _):
+            names.assigned[name] -= 1
+            if not names.assigned[name]:
+                names.fixed.add(name)
+            return (stmt,)
         case Expect(condition, _) if condition == TRUE:
             return ()
         case If(Const(_, value), then, otherwise):
