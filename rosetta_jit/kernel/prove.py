@@ -17,8 +17,8 @@ from typing import assert_never
 
 from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
 
-QUICK, THOROUGH = (32, 300), (96, 4000)
-"""How many facts a proof may look at, and how many it may combine: for a question, and for an obligation."""
+GLANCE, QUICK, THOROUGH = (0, 0), (32, 300), (96, 4000)
+"""How many facts a proof may look at, and how many it may combine: for what shows, for a question, and for an obligation."""
 
 CASE_DEPTH = 2
 MAX_PROPAGATED = 4
@@ -263,6 +263,10 @@ class Facts:
     def sums_about(self, atom: int, most: int) -> list[Linear]:
         """Some facts (each >= 0) that name an atom among others."""
         return [Linear(-self._bounds[terms], terms) for terms in self._about.get(atom, ())[:most]]
+
+    def shows(self, formula: Formula) -> bool:
+        """Whether a formula stands in the table: to assume it would add nothing."""
+        return self.impossible or self._proves(formula, 0, GLANCE)
 
     def proves(self, formula: Formula) -> bool:
         """Whether a formula follows from what is known, as far as a short look shows."""

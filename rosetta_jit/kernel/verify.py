@@ -76,6 +76,7 @@ class _Walk:
 
     scope: Scope
     notes: bool = False
+    loops: int = 0
     variables: set[str] = field(default_factory=set[str])
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, Stmt] = field(default_factory=dict[int, "Stmt"])
@@ -188,12 +189,15 @@ def _check(walk: _Walk, stmt: Require | Expect, formula: Formula) -> None:
 
 
 def _note(walk: _Walk, stmt: Require | Expect | If, formula: Formula) -> None:
-    """Note whether a condition is known before it is asked."""
+    """Note whether a condition is known before it is asked.
+
+    Only in a loop is that worth a proof. Elsewhere a check costs little, and what it says saves proofs of what follows from it.
+    """
     if not walk.notes:
         return
-    key = id(stmt)
+    key, facts = id(stmt), walk.scope.facts
     walk.seen[key] = stmt
-    if key not in walk.needed and not walk.scope.facts.proves(formula):
+    if key not in walk.needed and not (facts.proves(formula) if walk.loops else facts.shows(formula)):
         walk.needed.add(key)
 
 
@@ -305,7 +309,9 @@ def _for(walk: _Walk, loop: For) -> None:
         scope.facts.assume(shifted(minus(count, index), -1))
         scope.locals[loop.variable] = "i64", index
 
+    walk.loops += 1
     _rounds(walk, loop, enter, lambda: None)
+    walk.loops -= 1
 
 
 def _while(walk: _Walk, loop: While) -> None:

@@ -28,6 +28,8 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     merge,
     unroll,
     simplify,
+    hoist,
+    drop,
     bulk,
     simplify,
 )
@@ -53,8 +55,11 @@ def run(kernel: Kernel) -> Kernel:
 
 
 def _all(kernel: Kernel) -> Kernel:
+    results: dict[Callable[[Kernel], Kernel], Kernel] = {}
     for transform in PASSES:
-        kernel = transform(kernel)
+        # What a pass has made, and no pass has changed since, it would not change again.
+        if results.get(transform) is not kernel:
+            kernel = results[transform] = transform(kernel)
     verify(kernel)
     return kernel
 

@@ -24,12 +24,13 @@ _Key = tuple["Expr", tuple["Expr", ...], str]
 
 @dataclass(slots=True)
 class _Group:
-    """Requires that become one: the place of the first among the statements, where they begin and end, and the site of them all."""
+    """Requires that become one: the first, its place among the statements, where all begin and end, and whose the bytes are."""
 
+    first: Require
     number: int
     begin: int
     end: int
-    site: int | None = None
+    parts: list[Part]
 
 
 def merge(kernel: Kernel) -> Kernel:
@@ -42,22 +43,25 @@ def merge(kernel: Kernel) -> Kernel:
 def _block(block: Block, sites: list[Site], *, is_attempt: bool = False) -> Block:
     result: list[Stmt] = []
     groups: dict[_Key, _Group] = {}
+    made: list[_Group] = []
     for stmt in block:
         match stmt:
             case Require(at, Const(_, size), failure) if not reads_memory(at):
                 base, offset = _split(at)
-                key = base, failure.indices, sites[failure.site].kind
-                group = groups.get(key)
-                if group is not None and _joins(group, offset, result, sites):
-                    result[group.number] = _joined(group, stmt, offset, int(size), result, sites)
+                site = sites[failure.site]
+                key = base, failure.indices, site.kind
+                if key in groups and _joins(groups[key], offset, int(size), site):
                     continue
-                groups[key] = _Group(len(result), offset, offset + int(size))
+                groups[key] = _Group(stmt, len(result), offset, offset + int(size), _parts(site, int(size), 0))
+                made.append(groups[key])
             case Expect() if is_attempt and groups:
                 groups.clear()
                 is_attempt = False
             case _:
                 _close(groups, stmt)
         result.append(with_blocks(stmt, lambda inner: _block(inner, sites)))
+    for group in made:
+        result[group.number] = _whole(group, sites)
     return tuple(result)
 
 
@@ -78,33 +82,27 @@ def _split(at: Expr) -> tuple[Expr, int]:
             return at, 0
 
 
-def _joins(group: _Group, offset: int, result: list[Stmt], sites: list[Site]) -> bool:
-    """Whether a Require can become part of a group. A stretch that repeats is the last: nothing says where it ends."""
-    return offset >= group.begin and not any(part.step for part in sites[_leader(group, result).failure.site].parts)
-
-
-def _joined(group: _Group, stmt: Require, offset: int, size: int, result: list[Stmt], sites: list[Site]) -> Require:
-    """The group's Require with one more in it."""
-    leader = _leader(group, result)
-    old = sites[leader.failure.site]
-    own = _parts(old, group.end - group.begin, 0)
-    if group.site is None:
-        group.site = len(sites)
-        sites.append(old)
-    sites[group.site] = replace(old, parts=(*own, *_parts(sites[stmt.failure.site], size, offset - group.begin)))
+def _joins(group: _Group, offset: int, size: int, site: Site) -> bool:
+    """Make a Require a part of a group, if it can be. A stretch that repeats is the last: nothing says where it ends."""
+    if offset < group.begin or group.parts[-1].step:
+        return False
+    group.parts += _parts(site, size, offset - group.begin)
     group.end = max(group.end, offset + size)
-    failure = Failure(group.site, leader.at, leader.failure.indices)
-    return Require(leader.at, index(group.end - group.begin), failure)
+    return True
 
 
-def _leader(group: _Group, result: list[Stmt]) -> Require:
-    first = result[group.number]
-    if not isinstance(first, Require):
-        raise AssertionError("a group starts with a Require")  # noqa: TRY004  # our bug, not a caller's
-    return first
-
-
-def _parts(site: Site, size: int, offset: int) -> tuple[Part, ...]:
+def _parts(site: Site, size: int, offset: int) -> list[Part]:
     if not site.parts:
-        return (Part(offset, size, site.path),)
-    return tuple(replace(part, offset=part.offset + offset) for part in site.parts)
+        return [Part(offset, size, site.path)]
+    return [replace(part, offset=part.offset + offset) for part in site.parts]
+
+
+def _whole(group: _Group, sites: list[Site]) -> Require:
+    """The one Require of a group."""
+    first = group.first
+    old = sites[first.failure.site]
+    if len(group.parts) == max(1, len(old.parts)):
+        return first
+    sites.append(replace(old, parts=tuple(group.parts)))
+    failure = Failure(len(sites) - 1, first.at, first.failure.indices)
+    return Require(first.at, index(group.end - group.begin), failure)
