@@ -74,6 +74,8 @@ def _block(block: Block, names: _Names) -> Block:
 def _expression(expr: Expr, names: _Names) -> Expr:
     if isinstance(expr, Local):
         return names.values.get(expr.name, expr)
+    if isinstance(expr, Const):
+        return expr
     simple = folded(with_operands(expr, lambda operand: _expression(operand, names)))
     return names.computed.get(simple, simple)
 
