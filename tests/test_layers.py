@@ -37,6 +37,7 @@ MAY_IMPORT = {
     "programs": ANYTHING - {"cli", "demo", ""},
     "demo": ANYTHING - {"cli"},
     "cli": ANYTHING,
+    "__main__": {"cli"},
     "": ANYTHING - {"cli", "demo"},
 }
 

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from rosetta_jit.frameworks.protobuf.proto.tree import Name, Range
     from rosetta_jit.source import Span
+
+class Name(Protocol):
+    """A name as it was written, and where."""
+
+    @property
+    def text(self) -> str: ...
+    @property
+    def span(self) -> Span | None: ...
+
+
+class Range(Protocol):
+    """Numbers ``first`` to ``last``."""
+
+    @property
+    def first(self) -> int: ...
+    @property
+    def last(self) -> int: ...
+
 
 TOKENS = {
     "SEMICOLON": "`;`",

@@ -32,10 +32,10 @@ class StubHolder:
 
 
 class StubDecoder:
-    def __init__(self, mapping, *, encoding="own"):
+    def __init__(self, mapping, *, encoding=None):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
-        self.encoding = encoding
+        self.encoding = encoding or "own"
 
     def __call__(self, message):
         if not message:
@@ -48,8 +48,7 @@ class StubDecoder:
 
 
 class StubEncoder(StubDecoder):
-    def new(self):
-        return StubHolder({})
+    holder_type = StubHolder
 
     def __call__(self, holder):
         return holder.values["data"]

@@ -1,0 +1,69 @@
+"""A process that finds its kernel in the cache imports neither numba nor a parser nor the compiler."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = """
+import struct, sys, warnings
+warnings.simplefilter("error" if sys.argv[1] == "quiet" else "always")
+import rosetta_jit as rj
+decode = rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
+angles = decode(struct.pack("<ii3d", 266, 3, 180, 0, 0)).angles
+assert abs(angles[0] - 3.14159) < 1e-4, angles
+heavy = ("numba", "lark", "rosetta_jit.pipeline", "rosetta_jit.lowering.lower", "rosetta_jit.kernel.ir", "google.protobuf")
+print(*[name for name in heavy if name in sys.modules])
+"""
+
+
+def start(folder, mode="quiet"):
+    environment = {**os.environ, "ROSETTA_JIT_CACHE_DIR": str(folder)}
+    return subprocess.run([sys.executable, "-c", PROGRAM, mode], env=environment, check=True, capture_output=True, text=True)
+
+
+def test_the_second_process_compiles_nothing(tmp_path):
+    assert "numba" in start(tmp_path / "cache").stdout
+    assert start(tmp_path / "cache").stdout.split() == []
+
+
+@pytest.mark.parametrize("harm", ["cut", "altered", "open to others"])
+def test_a_harmed_cache_costs_a_warning(tmp_path, harm):
+    folder = tmp_path / "cache"
+    start(folder)
+    (kernel,) = folder.glob("*.kernel")
+    data = kernel.read_bytes()
+    match harm:
+        case "cut":
+            kernel.write_bytes(data[: len(data) // 2])
+        case "altered":
+            kernel.write_bytes(data[:-100] + bytes(100))
+        case _:
+            folder.chmod(0o777)
+    ran = start(folder, "loud")
+    assert "CacheWarning" in ran.stderr
+    assert "numba" in ran.stdout
+
+
+def test_a_changed_mapping_is_compiled_again(tmp_path):
+    program = PROGRAM.replace('"yarp/icub/torso_state.mapping"', '"own.mapping"')
+    text = (
+        'import "rst/kinematics/JointAngles.proto"\nimport "yarp/icub/torso_state.bottle-schema"\n'
+        "data-holder: rst.kinematics.JointAngles\nwire-schema: yarp.icub.torso.state\n"
+        "unpack-rules:\n  len(.angles) = 1\n  .angles[0] = float32(radians(.yaw))\n"
+    )
+    environment = {**os.environ, "ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
+
+    def run():
+        return subprocess.run(
+            [sys.executable, "-c", program, "quiet"], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+
+    (tmp_path / "own.mapping").write_text(text)
+    assert run().returncode == 0
+    assert run().stdout.split() == []
+    (tmp_path / "own.mapping").write_text(text.replace(".yaw", ".roll"))
+    assert "array([0.]" in run().stderr or "AssertionError" in run().stderr

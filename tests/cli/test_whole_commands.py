@@ -1,0 +1,96 @@
+"""The commands on the shipped mappings and recordings, in processes of their own: nothing stands in for anything."""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+RECORDINGS = Path(__file__).resolve().parents[2] / "rosetta_jit" / "demo" / "recordings"
+TORSO = "yarp/icub/torso_state.mapping"
+MESSAGE = struct.pack("<ii3d", 266, 3, 10.0, -20.0, 30.0)
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory):
+    return {**os.environ, "ROSETTA_JIT_CACHE_DIR": str(tmp_path_factory.mktemp("cache"))}
+
+
+@pytest.fixture
+def command(environment, tmp_path):
+    def run(*arguments, expected=0):
+        ran = subprocess.run(
+            [sys.executable, "-m", "rosetta_jit", *arguments], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert ran.returncode == expected, ran.stderr
+        return ran
+
+    return run
+
+
+def test_decode_as_json(command, tmp_path):
+    (tmp_path / "message.bin").write_bytes(MESSAGE)
+    shown = json.loads(command("decode", TORSO, "message.bin", "--json").stdout)
+    assert np.allclose(shown["angles"], np.radians([10, -20, 30]), atol=1e-6)
+
+
+def test_decode_a_recording_to_arrays(command, tmp_path):
+    command("decode", TORSO, str(RECORDINGS / "icub-yarp3" / "torso_state.rec.xz"), "--npz", "out.npz")
+    with np.load(tmp_path / "out.npz") as columns:
+        assert any(columns[name].size == 1500 for name in columns.files)
+
+
+def test_encode_is_the_inverse(command, tmp_path):
+    (tmp_path / "values.json").write_text(json.dumps({"angles": [0.0, 0.0, 0.0]}))
+    command("encode", TORSO, "values.json", "--encoding", "yarp4", "-o", "out.bin")
+    assert (tmp_path / "out.bin").read_bytes() == struct.pack("<ii3d", 276, 3, 0, 0, 0)
+
+
+def test_encoding_must_be_said_where_it_would_be_a_guess(command, tmp_path):
+    (tmp_path / "values.json").write_text(json.dumps({"angles": [0.0, 0.0, 0.0]}))
+    ran = command("encode", TORSO, "values.json", "-o", "out.bin", expected=1)
+    assert "ambiguous-encoding" in ran.stderr
+    assert not (tmp_path / "out.bin").exists()
+
+
+def test_check_reports_every_mistake(command, tmp_path):
+    (tmp_path / "wrong.mapping").write_text(
+        'import "rst/kinematics/JointAngles.proto"\nimport "yarp/icub/torso_state.bottle-schema"\n'
+        "data-holder: rst.kinematics.JointAngles\nwire-schema: yarp.icub.torso.state\n"
+        "unpack-rules:\n  len(.angles) = 3\n  .angles[0] = .yaw\n  .angels[1] = float32(.roll)\n"
+    )
+    ran = command("check", "wrong.mapping", expected=1)
+    assert "angels" in ran.stderr
+    assert "wrong.mapping:7" in ran.stderr
+    assert "^" in ran.stderr
+    assert command("check", TORSO).stdout == ""
+
+
+def test_infer_drafts_what_decodes(command, tmp_path):
+    (tmp_path / "message.bin").write_bytes(MESSAGE)
+    drafted = command("infer", "message.bin", "--name", "torso").stdout
+    assert drafted.count(":float64") == 3
+
+
+def test_cut_message_is_reported_and_fails(command, tmp_path):
+    (tmp_path / "cut.bin").write_bytes(MESSAGE[:-1])
+    ran = command("decode", TORSO, "cut.bin", expected=1)
+    assert "truncated" in ran.stderr
+    assert ".pitch" in ran.stderr
+
+
+@pytest.mark.parametrize("stage", ["model", "codec", "kernel", "python", "llvm", "asm"])
+def test_dump(command, stage):
+    assert len(command("dump", "--stage", stage, TORSO).stdout.splitlines()) > 5
+
+
+def test_cache_commands(command):
+    command("compile", TORSO, "--encoding", "yarp3")
+    assert "kernel" in command("cache", "info").stdout.lower() or command("cache", "info").stdout
+    command("cache", "verify")
