@@ -13,6 +13,7 @@ from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Failure, Fits, 
 from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks
 from rosetta_jit.lowering.passes.affine import rounds_of
 from rosetta_jit.lowering.passes.fold import TRUE, folded
+from rosetta_jit.lowering.passes.widen import widened
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
@@ -58,6 +59,8 @@ def _before(stmt: Stmt, count: Expr, rounds: Rounds, sites: list[Site]) -> Block
         case Expect(condition, failure) if rounds.is_fixed(condition):
             first = _at_first(failure, failure.at, rounds)
             return (Expect(condition, first),) if first is not None else ()
+        case Expect(condition, failure) if all(map(rounds.is_fixed, (failure.at, *failure.indices))):
+            return tuple(Expect(extreme, failure) for extreme in widened(condition, count, rounds))
         case Require(at, size, failure):
             place, extent = rounds.affine(at), rounds.fixed(size)
             if place is None or extent is None:
