@@ -215,7 +215,7 @@ def image() -> Kernel:
     """Width, height and padding (i32), then rows of bytes with padding after each; the rows go to lane 1 without it."""
     w, h, pad, step, start = i64("w"), i64("h"), i64("pad"), i64("step"), i64("start")
     y, x, line, first = i64("y"), i64("x"), i64("line"), add(BEGIN, 12)
-    small = [expect(Binary("and", compare("ge", v, 0), compare("le", v, 1 << 20)), 3) for v in (w, h, pad)]
+    small = [expect(Binary("and", compare("ge", v, 0), compare("le", v, 1 << 10)), 3) for v in (w, h, pad)]
     body = (
         ROW_EXISTS,
         need(BEGIN, 12),
