@@ -126,7 +126,7 @@ def _constant(type_: Scalar, value: float) -> str:
 
 def _read(names: Names, type_: Scalar, address: Address, order: str) -> str:
     if type_ in FLOATS:
-        return f'from_bytes("{type_}", {part(names, address, str(WIDTH[type_]))}, "{order}")'
+        return f'from_bytes("{type_}", bytes({part(names, address, str(WIDTH[type_]))}), "{order}")'
     memory, start = location(names, address)
     return f'unpack_from("{order}{FORMATS[type_]}", {memory}, {start})[0]'
 

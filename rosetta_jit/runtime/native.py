@@ -6,10 +6,12 @@ Code comes from the cache, a trusted folder, yet it is linked only if all that i
 from __future__ import annotations
 
 import struct
+import sys
 from dataclasses import dataclass
-from functools import lru_cache
-from itertools import count
+from functools import cache
+from hashlib import sha256
 from typing import TYPE_CHECKING
+from weakref import WeakValueDictionary, finalize
 
 from llvmlite import binding
 
@@ -44,25 +46,18 @@ class ForeignCodeError(ValueError):
     """Object code that is none of ours."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True, weakref_slot=True)
 class Library:
-    """Loaded code. The addresses are good until `close`, or until the last reference to the library is gone."""
+    """Loaded code. The addresses are good until the last reference to the library is gone; then its memory is freed."""
 
     addresses: Mapping[str, int]
-    _tracker: binding.ResourceTracker | None
 
     def __getitem__(self, symbol: str) -> int:
         return self.addresses[symbol]
 
-    def close(self) -> None:
-        """Free the code. Nothing may call it any more."""
-        if self._tracker is not None:
-            self._tracker.close()
-            self._tracker = None
-
 
 def load(image: bytes, symbols: Sequence[str]) -> Library:
-    """Link object code into the process.
+    """Link object code into the process, or find it there: whoever loads the same code at the same time shares it.
 
     Parameters
     ----------
@@ -76,26 +71,56 @@ def load(image: bytes, symbols: Sequence[str]) -> Library:
     ForeignCodeError
         If it is no object file for this machine, wants a symbol that is not in `ALLOWED`, or lacks one of ``symbols``.
     """
+    key = (sha256(image).digest(), *symbols)
+    library = _in_use().get(key)
+    if library is None:
+        library = _in_use()[key] = _linked(image, symbols)
+    return library
+
+
+def _linked(image: bytes, symbols: Sequence[str]) -> Library:
+    """A library in a linker of its own, because one that is shared keeps something of every library that it ever had."""
     foreign = sorted(undefined_symbols(image) - ALLOWED)
     if foreign:
         raise ForeignCodeError(f"the code wants {', '.join(foreign[:3])} from the process")
-    jit, names = _linker()
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    linker = binding.create_lljit_compiler(suppress_errors=True)
     builder = binding.JITLibraryBuilder().add_object_img(image).add_current_process()
     for symbol in symbols:
         builder.export_symbol(symbol)
     try:
-        tracker = builder.link(jit, f"rosetta{next(names)}")
+        code = builder.link(linker, "program")
     except RuntimeError as error:
+        linker.close()
         raise ForeignCodeError(str(error)) from error
-    return Library({symbol: tracker[symbol] for symbol in symbols}, tracker)
+    library = Library({symbol: code[symbol] for symbol in symbols})
+    # Not at exit: other objects may still call the code then.
+    finalize(library, _free, code, linker).atexit = False
+    return library
+
+
+def _free(code: binding.ResourceTracker, linker: binding.LLJIT) -> None:
+    code.close()
+    linker.close()
+
+
+@cache
+def _in_use() -> WeakValueDictionary[tuple[object, ...], Library]:
+    """The libraries of this process. Code never changes, so a thousand decoders of one type need it once."""
+    return WeakValueDictionary()
 
 
 def undefined_symbols(image: bytes) -> frozenset[str]:
-    """The names that an ELF object takes from elsewhere; none of another format, which is not examined."""
+    """The names that an ELF object takes from elsewhere. Objects of other systems are not examined."""
     if not image.startswith(b"\x7fELF"):
+        if sys.platform == "linux":
+            raise ForeignCodeError("no ELF object file")
         return frozenset()
     sections = dict(_sections(image))
-    table, names = sections.get(".symtab", b""), sections.get(".strtab", b"")
+    table, names = sections.get(".symtab"), sections.get(".strtab")
+    if not table or not names:
+        raise ForeignCodeError("an object file without symbols")
     entries = _SYMBOL.iter_unpack(table[: len(table) // _SYMBOL.size * _SYMBOL.size])
     return frozenset(_name(names, start) for start, _, _, section, _, _ in entries if section == _UNDEFINED and start)
 
@@ -107,7 +132,7 @@ def _sections(image: bytes) -> Iterator[tuple[str, bytes]]:
         number, names_index = struct.unpack_from("<HH", image, 0x3C)
         headers = [struct.unpack_from("<IIQQQQ", image, start + 64 * index) for index in range(number)]
         _, _, _, _, names_at, names_size = headers[names_index]
-    except (struct.error, IndexError) as error:
+    except (struct.error, IndexError, OverflowError) as error:
         raise ForeignCodeError("a damaged object file") from error
     names = image[names_at : names_at + names_size]
     for name, _, _, _, at, size in headers:
@@ -116,11 +141,3 @@ def _sections(image: bytes) -> Iterator[tuple[str, bytes]]:
 
 def _name(table: bytes, start: int) -> str:
     return table[start : table.find(b"\0", start)].decode("latin-1")
-
-
-@lru_cache(maxsize=1)
-def _linker() -> tuple[binding.LLJIT, Iterator[int]]:
-    """LLVM's linker, one a process, and numbers for its libraries, whose names are never used again."""
-    binding.initialize_native_target()
-    binding.initialize_native_asmprinter()
-    return binding.create_lljit_compiler(), count()
