@@ -40,10 +40,12 @@ def joints_mapping(count: int, folder: Path) -> Path:
     fields = "\n".join(f'  ("a{index}" :double (:unit :degree))' for index in range(count))
     (folder / f"joints{count}.bottle-schema").write_text(f'"bench.joints{count}"\n(\n{fields}\n)\n')
     rules = "\n".join(f"  .angles[{index}] = float32(radians(.a{index}))" for index in range(count))
+    back = "\n".join(f"  .a{index} = degrees(float64(.angles[{index}]))" for index in range(count))
     path = folder / f"joints{count}.mapping"
     path.write_text(
         f'import "joints{count}.bottle-schema"\nimport "rst/kinematics/JointAngles.proto"\n\n'
-        f"data-holder: rst.kinematics.JointAngles\nwire-schema: bench.joints{count}\n\nunpack-rules:\n  len(.angles) = {count}\n{rules}\n"
+        f"data-holder: rst.kinematics.JointAngles\nwire-schema: bench.joints{count}\n\n"
+        f"unpack-rules:\n  len(.angles) = {count}\n{rules}\n\npack-rules:\n{back}\n"
     )
     return path
 

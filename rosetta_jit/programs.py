@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from contextlib import suppress
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self
 
 from rosetta_jit.frameworks.base import manners_of
@@ -245,25 +246,35 @@ def _loaded(request: Request) -> Loaded:
     cache = Cache.default()
     asked = request_name(request.key())
     name = cache.get_manifest(asked)
-    entry = cache.get(name) if name is not None else None
-    if entry is not None:
-        try:
-            return _linked(entry.header, entry.image)
-        except native.ForeignCodeError as error:
-            _warn(str(error))
+    if name is not None:
+        with suppress(KeyError):
+            return _shared(name, cache)
     return _compiled(_build(request), cache, asked)
 
 
 def _compiled(build: Build, cache: Cache, asked: str) -> Loaded:
     name = entry_name(build.text)
-    entry = cache.get(name)
-    if entry is not None and entry.header == build.header:
-        image = entry.image
-    else:
-        image = build.image()
-        cache.put(name, build.header, image)
+    with suppress(KeyError):
+        shared = _shared(name, cache)
+        cache.put_manifest(asked, build.files(), name)
+        return shared
+    image = build.image()
+    cache.put(name, build.header, image)
     cache.put_manifest(asked, build.files(), name)
     return _linked(build.header, image)
+
+
+@lru_cache(maxsize=64)
+def _shared(name: str, cache: Cache) -> Loaded:
+    """A cached program: its code is loaded once, however many decoders it serves. KeyError if the cache has none that can be used."""
+    entry = cache.get(name)
+    if entry is None:
+        raise KeyError(name)
+    try:
+        return _linked(entry.header, entry.image)
+    except native.ForeignCodeError as error:
+        _warn(str(error))
+        raise KeyError(name) from error
 
 
 def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.source import Span
 
+
 class Name(Protocol):
     """A name as it was written, and where."""
 

@@ -139,7 +139,7 @@ class HolderFields:
     def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
         cell = self.mark(path)
         span = span_of(cell)
-        if self.borrow:
+        if self.borrow:  # the sign says that the bytes are the message's
             self.set_span(cell, at, Binary("sub", index(-1), size))
             return
         start = self.reserve(span.lane, size)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never, cast
 
-from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, add, index
+from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
@@ -85,6 +85,9 @@ class Runner:
         size, source = self.source.count(origin, values), self.source.address(origin, values)
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             self.writer.expect(IsText(source, size), "text", values.where, "not valid UTF-8", line=values.line)
+        if isinstance(source, Wire) and isinstance(place.type, Bytes) and self.target.borrows:
+            self.target.borrow(place, source.at, size, values)
+            return
         self.target.set_length(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 

@@ -133,6 +133,16 @@ class HolderSide:
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
             self.writer.emit(Fill(Place(elements.lane, elements.start), mul(count, lane.stride)))
 
+    @property
+    def borrows(self) -> bool:
+        """Whether bytes stay in the message."""
+        return self.root.borrow
+
+    def borrow(self, place: typed.Place, at: Expr, size: Expr, values: Values) -> None:
+        """Say where in the message the bytes of a field are."""
+        fields, path, _ = self.descend(place, values)
+        fields.put_bytes(path, at, size)
+
     def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
         """One byte of a text whose length was set."""
         elements, _ = self.array(place, values)

@@ -277,7 +277,7 @@ def test_a_protobuf_class_is_a_schema():
 
 
 def test_errors_of_making_programs():
-    with pytest.raises(rj.MappingError, match="not found|no mapping|not on the search path"):
+    with pytest.raises(rj.MappingError, match=r"not found|no mapping|not on the search path"):
         rj.Decoder("no/such.mapping")
     with pytest.raises(rj.MappingError, match="unknown-encoding"):
         rj.Decoder(TORSO, encoding="yarp5")

@@ -26,7 +26,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, reads_memory, with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.shape import expressions_of, statements
-from rosetta_jit.lowering.passes.fold import TRUE, folded
+from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """What is known of a body's locals: how often each is still assigned, those whose value is settled, the values known by now, and which
-    local has a value.
+    """What is known of a body's locals: how often each is still assigned, which are settled, their values, and what is computed already.
 
     A variable is settled behind the last Assign to it in the text. In a loop that is true until the round's end, where what was computed
     in the round is forgotten.
@@ -44,7 +43,7 @@ class _Names:
     assigned: Counter[str]
     fixed: set[str]
     values: dict[str, Expr]
-    computed: dict[Expr, Local]
+    computed: dict[Expr, Expr]
 
 
 def simplify(kernel: Kernel) -> Kernel:
@@ -111,7 +110,7 @@ def _let(name: str, value: Expr, names: _Names) -> Block:
         names.values[name] = value
         return ()
     names.fixed.add(name)
-    if not reads_memory(value) and names.fixed.issuperset(locals_in(value)):
+    if _is_settled(value, names):
         if value in names.computed:
             names.values[name] = names.computed[value]
             return ()
@@ -122,12 +121,27 @@ def _let(name: str, value: Expr, names: _Names) -> Block:
 def _nested(stmt: Stmt, names: _Names) -> Block:
     if isinstance(stmt, For):
         names.fixed.add(stmt.variable)
-    simple = with_blocks(stmt, lambda block: _block(block, replace(names, computed=dict(names.computed))))
+    if isinstance(stmt, If):
+        then, otherwise = (_branch(block, names, {stmt.condition: way}) for block, way in ((stmt.then, TRUE), (stmt.otherwise, FALSE)))
+        simple: Stmt = If(stmt.condition, then, otherwise)
+    else:
+        simple = with_blocks(stmt, lambda block: _branch(block, names, {}))
     match simple:
         case If(_, (), ()) | For(_, _, ()):
             return ()
         case _:
             return (simple,)
+
+
+def _branch(block: Block, names: _Names, known: dict[Expr, Expr]) -> Block:
+    """A block that may run or not: what it computes is forgotten behind it."""
+    lasting = {expr: value for expr, value in known.items() if _is_settled(expr, names)}
+    return _block(block, replace(names, computed=names.computed | lasting))
+
+
+def _is_settled(expr: Expr, names: _Names) -> bool:
+    """Whether an expression keeps its value."""
+    return not reads_memory(expr) and names.fixed.issuperset(locals_in(expr))
 
 
 # --- backward: uses ----------------------------------------------------------------------------------------------------

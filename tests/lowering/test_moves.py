@@ -1,0 +1,251 @@
+"""Where loops become moves, where they must not, and what it takes: memory read once, variables settled, checks of the last round."""
+
+from __future__ import annotations
+
+import pytest
+
+from rosetta_jit.kernel.ir import (
+    BEGIN,
+    ROW,
+    Assign,
+    Binary,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Expect,
+    Fill,
+    For,
+    Get,
+    If,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Return,
+    SetField,
+    Store,
+    Var,
+    While,
+    add,
+    index,
+    mul,
+)
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.verify import verify
+from rosetta_jit.lowering import passes
+from rosetta_jit.lowering.passes.bulk import bulk
+from rosetta_jit.lowering.passes.drop import drop
+from rosetta_jit.lowering.passes.hoist import hoist
+from rosetta_jit.lowering.passes.reuse import reuse
+from rosetta_jit.lowering.passes.simplify import simplify
+from tests.kernel import kernels
+from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
+
+N, I = i64("n"), i64("i")  # noqa: E741  # the loop's count and index
+COUNT = (need(BEGIN, 1), Let("n", Convert("i64", Load("u8", BEGIN))))
+FIRST = add(BEGIN, 1)
+
+
+def found(kernel, *kinds):
+    return [stmt for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, kinds)]
+
+
+def same_outcomes(before, after, messages, **options):
+    for message in messages:
+        for length in range(len(message) + 1):
+            assert kernels.outcome(after, message[:length], **options) == kernels.outcome(before, message[:length], **options)
+
+
+def filling(value, *, target=None, step=8, stride=8):
+    """A kernel that reads a count and fills lane 1, element by element, from what lies ``step`` bytes apart."""
+    target = target or Place(1, I)
+    loop = For("i", N, (SetField(target, value),))
+    room = expect(Compare("le", N, Capacity(1)), 5)
+    return kernel((ROW_EXISTS, *COUNT, room, need(FIRST, mul(N, step)), loop, Return(BEGIN)), strides=(64, stride))
+
+
+def at(step):
+    return Binary("add", FIRST, mul(I, step)) if step != 1 else Binary("add", FIRST, I)
+
+
+@pytest.mark.parametrize(
+    ("value", "step", "stride"),
+    [
+        (Load("i64", at(8)), 8, 8),
+        (Load("f32", at(4)), 4, 4),
+        (Load("u8", at(1)), 1, 1),
+        (Load("i8", at(1), ">"), 1, 1),
+        (Convert("i16", Load("u16", at(2))), 2, 2),
+    ],
+    ids=["i64", "f32", "u8", "one byte has no order", "another sign"],
+)
+def test_consecutive_elements_are_one_copy(value, step, stride):
+    before = filling(value, step=step, stride=stride)
+    after = bulk(before)
+    verify(after)
+    assert not found(after, For)
+    assert len(found(after, Copy)) == 1
+    same_outcomes(before, after, [bytes([3, *range(1, 30)]), bytes([0, 1]), bytes([2, *[255] * 16])])
+
+
+@pytest.mark.parametrize(
+    ("value", "step", "stride"),
+    [
+        (Load("i64", at(8), ">"), 8, 8),
+        (Load("bool", at(1)), 1, 1),
+        (Load("u8", at(3)), 3, 1),
+        (Load("i32", at(4)), 4, 8),
+        (Convert("i32", Load("f32", at(4))), 4, 4),
+        (Convert("u16", Load("u8", at(1))), 1, 2),
+        (Load("u8", FIRST), 1, 1),
+    ],
+    ids=["other order", "bool", "gaps in the message", "gaps in the lane", "float to int", "wider", "the same element"],
+)
+def test_other_elements_stay_a_loop(value, step, stride):
+    before = filling(value, step=step, stride=stride)
+    assert bulk(before) == before
+
+
+@pytest.mark.parametrize(("value", "byte"), [(Const("f64", 0.0), 0), (Const("i16", -1), 255), (Const("u8", 7), 7), (Const("i32", 7), None)])
+def test_a_constant_of_equal_bytes_is_a_fill(value, byte):
+    stride = {"f64": 8, "i16": 2, "u8": 1, "i32": 4}[value.type]
+    before = filling(value, step=0, stride=stride)
+    after = bulk(before)
+    verify(after)
+    assert [fill.byte for fill in found(after, Fill)] == ([] if byte is None else [byte])
+    same_outcomes(before, after, [bytes([5, 1])])
+
+
+def test_rows_without_padding_are_one_copy():
+    w, h, step = i64("w"), i64("h"), i64("step")
+    sizes = [Let(name, Convert("i64", Load("u8", add(BEGIN, k)))) for k, name in enumerate(["w", "h", "step"])]
+    pixel = Binary("add", Binary("add", add(BEGIN, 3), mul(i64("y"), step)), i64("x"))
+    into = Place(1, Binary("add", mul(i64("y"), w), i64("x")))
+    rows = For("y", h, (For("x", w, (SetField(into, Load("u8", pixel)),)),))
+    room = [expect(compare("ge", step, w)), expect(Compare("le", mul(h, w), Capacity(1)), 5)]
+    body = (ROW_EXISTS, need(BEGIN, 3), *sizes, *room, need(add(BEGIN, 3), mul(h, step)), rows, Return(BEGIN))
+    before = kernel(body, strides=(8, 1))
+    verify(before)
+    after = passes.run(before)
+    whole, row_by_row = found(after, Copy)
+    assert (whole.size, row_by_row.size) == (mul(h, w), w)
+    assert len(found(after, For)) == 1
+    same_outcomes(before, after, [bytes([3, 2, step, *range(20)]) for step in (2, 3, 4)] + [bytes([0, 9, 0]), bytes([9, 0, 9])])
+
+
+def test_a_row_is_checked_once_where_the_message_has_it():
+    (loop,) = found(passes.run(kernels.ALL["image"]), For)
+    (row,) = found(kernel((loop,)), Copy)
+    assert row.size == i64("w")
+    assert len(found(kernel((loop,)), If)) == 1
+
+
+def test_a_copy_moves_what_is_left_after_checks():
+    after = passes.run(kernels.ALL["encode_list"])
+    assert found(after, Copy)
+    assert not found(after, For)
+
+
+# --- reuse -------------------------------------------------------------------------------------------------------------
+
+FLAG = Get("u64", Place(0, ROW))
+
+
+def test_memory_is_read_once():
+    twice = (SetField(Place(1, ROW), FLAG), SetField(Place(1, ROW), FLAG))
+    after = reuse(kernel((ROW_EXISTS, *twice, Return(BEGIN))))
+    assert [stmt.value for stmt in found(after, Let)] == [FLAG]
+    assert {stmt.value for stmt in found(after, SetField)} == {Local("u64", found(after, Let)[0].name)}
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        SetField(Place(0, ROW, 8), Const("i64", 1)),
+        Fill(Place(0, ROW), index(8)),
+        If(compare("eq", ROW, 0), (Fill(Place(0, ROW), index(8)),)),
+    ],
+    ids=["field", "fill", "in a branch"],
+)
+def test_what_is_written_is_read_again(write):
+    before = kernel((ROW_EXISTS, Let("a", FLAG), write, Let("b", FLAG), SetField(Place(0, ROW, 16), Local("u64", "b")), Return(BEGIN)))
+    assert [stmt.value for stmt in found(reuse(before), Let)] == [FLAG, FLAG]
+
+
+def test_a_loop_that_writes_forgets_before_its_first_round():
+    loop = For("i", index(20), (SetField(Place(0, ROW, 8), FLAG), SetField(Place(0, ROW), Const("i64", 3))))
+    before = kernel((ROW_EXISTS, Let("a", FLAG), SetField(Place(0, ROW, 16), Local("u64", "a")), loop, Return(BEGIN)))
+    after = reuse(before)
+    assert [stmt.value for stmt in found(after, SetField) if stmt.place.offset == 8] == [FLAG]
+    same_outcomes(before, after, [b""], seed=bytes(range(64)))
+
+
+def test_a_store_ends_what_was_loaded():
+    load = Load("u8", BEGIN)
+    body = (
+        need(BEGIN, 1),
+        Let("a", load),
+        Store(BEGIN, Const("u8", 1)),
+        Let("b", load),
+        SetField(Place(0, ROW), Convert("i64", Local("u8", "b"))),
+    )
+    after = reuse(kernel((ROW_EXISTS, *body, Return(BEGIN)), direction="encode"))
+    assert [stmt.value for stmt in found(after, Let)] == [load, load]
+
+
+def test_one_read_needs_no_name():
+    before = kernel((ROW_EXISTS, SetField(Place(1, ROW), FLAG), Return(BEGIN)))
+    assert reuse(before) == before
+
+
+# --- variables and last rounds -----------------------------------------------------------------------------------------
+
+
+def test_a_variable_is_settled_behind_its_last_assignment():
+    v = i64("v")
+    body = (Var("v", index(0)), If(compare("eq", ROW, 0), (Assign("v", index(2)),)), Let("a", v), Let("b", add(v, 1)), Let("c", add(v, 1)))
+    uses = (SetField(Place(0, ROW), i64("a")), SetField(Place(0, ROW, 8), i64("b")), SetField(Place(0, ROW, 16), i64("c")))
+    after = simplify(kernel((ROW_EXISTS, *body, *uses, Return(BEGIN))))
+    assert [stmt.name for stmt in found(after, Let)] == ["b"]
+    assert [stmt.value for stmt in found(after, SetField)] == [v, i64("b"), i64("b")]
+
+
+def test_a_variable_is_not_settled_from_round_to_round():
+    v, old = i64("v"), i64("old")
+    rounds = (Let("old", v), Assign("v", add(v, 1)), SetField(Place(0, ROW), old), SetField(Place(0, ROW, 8), v))
+    loop = While(compare("lt", v, 5), rounds, (compare("ge", v, 0), compare("le", v, 5)), v)
+    before = kernel((ROW_EXISTS, Var("v", index(0)), loop, Return(BEGIN)))
+    after = simplify(before)
+    verify(after)
+    same_outcomes(before, after, [b""])
+    assert [stmt.value for stmt in found(after, SetField)] == [old, v]
+
+
+def limited(op, bound, step):
+    """A loop that expects each of its values to keep a limit."""
+    value = add(mul(I, step), 1) if step != 1 else add(I, 1)
+    loop = For("i", N, (expect(Compare(op, value, bound), 3), SetField(Place(0, ROW), value)))
+    return kernel((ROW_EXISTS, *COUNT, need(FIRST, 1), Let("m", Convert("i64", Load("u8", FIRST))), loop, Return(BEGIN)))
+
+
+@pytest.mark.parametrize("op", ["lt", "le", "gt", "ge"])
+@pytest.mark.parametrize("step", [1, 3, -2])
+def test_the_round_closest_to_failing_is_checked_for_all(op, step):
+    before = limited(op, i64("m"), step)
+    verify(before)
+    after = drop(hoist(before))
+    verify(after)
+    (loop,) = found(after, For)
+    assert not any(isinstance(stmt, Expect) for stmt in loop.body)
+    same_outcomes(before, after, [bytes([n, m]) for n in (0, 1, 2, 5) for m in (0, 1, 2, 4, 5, 6, 12, 13, 14)])
+
+
+def test_a_check_that_depends_on_the_element_stays():
+    element = Convert("i64", Load("u8", Binary("add", FIRST, I)))
+    loop = For("i", N, (Let("e", element), expect(compare("lt", i64("e"), 9), 3)))
+    before = kernel((ROW_EXISTS, *COUNT, need(FIRST, N), loop, Return(BEGIN)))
+    assert found(hoist(before), For) == [loop]
+    assert len(found(hoist(before), Require)) == 2
