@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
+
 from typing import TYPE_CHECKING, Protocol, cast
 
 if TYPE_CHECKING:
@@ -69,6 +69,8 @@ def manners_of(place: str) -> Manners:
 @cache
 def installed() -> Mapping[str, Framework]:
     """Every framework by name: ours, and those of installed packages."""
+    from importlib.metadata import entry_points  # slow to import, and a warm start needs none
+
     from rosetta_jit.frameworks.table import FRAMEWORKS
 
     offered = [cast("Framework", each.load()) for each in entry_points(group=GROUP)]

@@ -15,7 +15,6 @@ import numpy as np
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import CAPACITY, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.batch import Batch
 from rosetta_jit.runtime.callable import Context, bind_call
 from rosetta_jit.runtime.lanes import CLEAN
 
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
+    from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.native import Library
 
@@ -143,6 +143,8 @@ class DecoderBase(Program):
         return batch
 
     def _batch(self, count: int) -> Batch:
+        from rosetta_jit.runtime.batch import Batch
+
         batch = Batch.new(self._loaded.holder_type, max(count, 1))
         return self._reused(batch, count)
 
