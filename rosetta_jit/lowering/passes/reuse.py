@@ -8,21 +8,24 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
+from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
+from rosetta_jit.kernel.ir import Const, Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.shape import blocks_of, bound_name, expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.kernel.ir import Address, Block, Kernel, Stmt
 
 MESSAGE = -1
 """Stands for the message among the numbers of the lanes."""
 
-_Known = dict[Expr, Local]
-"""What has been read, and the local that holds it."""
+_Known = dict[int, dict[Expr, Local]]
+"""What has been read of each memory, and the locals that hold it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +35,10 @@ class _Names:
     variables: set[str]
     taken: set[str]
     made: set[str] = field(default_factory=set[str])
+    numbers: Iterator[int] = field(default_factory=lambda: count(1))
 
     def fresh(self) -> str:
-        number = 1
-        while (name := f"read_{number}") in self.taken:
-            number += 1
+        name = next(name for number in self.numbers if (name := f"read_{number}") not in self.taken)
         self.taken.add(name)
         self.made.add(name)
         return name
@@ -75,27 +77,36 @@ def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
     match stmt:
         case Let(name, Load() | Get() as read):
             value = with_operands(read, lambda operand: _read(operand, known, names, lets))
-            if value not in known and names.variables.isdisjoint(locals_in(value)):
-                known[value] = Local(type_of(value), name)
+            seen = known.setdefault(_source(value), {})
+            if value not in seen and names.variables.isdisjoint(locals_in(value)):
+                seen[value] = Local(type_of(value), name)
                 return (*lets, Let(name, value))
-            return (*lets, Let(name, known.get(value, value)))
+            return (*lets, Let(name, seen.get(value, value)))
         case While():
             # Its condition is asked in each round: no name before the loop can stand for it.
             changed: Stmt = stmt
         case _:
             changed = with_expressions(stmt, lambda expr: _read(expr, known, names, lets))
-    return (*lets, with_blocks(changed, lambda inner: _block(inner, dict(known), names)))
+    return (*lets, with_blocks(changed, lambda inner: _block(inner, {memory: dict(seen) for memory, seen in known.items()}, names)))
 
 
 def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
     """An expression with names in place of what it reads."""
+    if isinstance(expr, Const | Local):
+        return expr
     changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
     if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
         return changed
-    if changed not in known:
-        known[changed] = Local(changed.type, names.fresh())
-        lets.append(Let(known[changed].name, changed))
-    return known[changed]
+    seen = known.setdefault(_source(changed), {})
+    if changed not in seen:
+        seen[changed] = Local(changed.type, names.fresh())
+        lets.append(Let(seen[changed].name, changed))
+    return seen[changed]
+
+
+def _source(read: Expr) -> int:
+    """The memory that a read depends on. Reads inside it have names of their own."""
+    return read.place.lane if isinstance(read, Get) else MESSAGE
 
 
 # --- what is written ---------------------------------------------------------------------------------------------------
@@ -119,13 +130,8 @@ def _memory(address: Address) -> int:
 
 
 def _forget(known: _Known, written: set[int]) -> None:
-    for read in [read for read in known if not written.isdisjoint(_read_of(read))]:
-        del known[read]
-
-
-def _read_of(read: Expr) -> set[int]:
-    """The memory that a read depends on. Reads inside it have names of their own."""
-    return {read.place.lane} if isinstance(read, Get) else {MESSAGE}
+    for memory in written:
+        known.pop(memory, None)
 
 
 # --- names for nothing -------------------------------------------------------------------------------------------------
