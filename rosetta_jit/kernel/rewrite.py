@@ -45,7 +45,7 @@ from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Stmt
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 
@@ -121,6 +121,11 @@ def with_blocks(stmt: Stmt, change: Callable[[Block], Block]) -> Stmt:
             return Switch(value, tuple((number, change(block)) for number, block in cases), change(default))
         case _:
             return stmt
+
+
+def with_bodies(kernel: Kernel, bodies: tuple[Block, ...]) -> Kernel:
+    """A kernel with other bodies; the same kernel if they are the same."""
+    return kernel if bodies == kernel.bodies else replace(kernel, bodies=bodies)
 
 
 def substituted(expr: Expr, values: Mapping[str, Expr], renamed: Mapping[str, str] = NO_NAMES) -> Expr:

@@ -249,3 +249,24 @@ def test_a_check_that_depends_on_the_element_stays():
     before = kernel((ROW_EXISTS, *COUNT, need(FIRST, N), loop, Return(BEGIN)))
     assert found(hoist(before), For) == [loop]
     assert len(found(hoist(before), Require)) == 2
+
+
+def test_zeros_of_both_signs_are_not_the_same():
+    x = Local("f64", "x")
+    body = (
+        need(BEGIN, 8),
+        Let("x", Load("f64", BEGIN)),
+        Let("a", Binary("add", x, Const("f64", 0.0))),
+        Let("b", Binary("add", x, Const("f64", -0.0))),
+    )
+    uses = (SetField(Place(0, ROW), Local("f64", "a")), SetField(Place(0, ROW, 8), Local("f64", "b")))
+    before = kernel((ROW_EXISTS, *body, *uses, Return(BEGIN)))
+    same_outcomes(before, simplify(before), [b"\0\0\0\0\0\0\0\x80"])
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+def test_simple_kernels_stay_as_they_are(name):
+    simple = simplify(kernels.ALL[name])
+    assert simplify(simple) is simple
+    named = reuse(simple)
+    assert reuse(named) is named

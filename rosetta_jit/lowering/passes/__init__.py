@@ -25,13 +25,13 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     drop,
     hoist,
     drop,
-    merge,
     unroll,
     simplify,
     hoist,
     drop,
     bulk,
     simplify,
+    merge,
 )
 
 

@@ -29,7 +29,7 @@ from rosetta_jit.kernel.ir import (
     mul,
     type_of,
 )
-from rosetta_jit.kernel.rewrite import reads_memory, with_blocks
+from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
 from rosetta_jit.lowering.passes.affine import rounds_of
 from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 
@@ -55,7 +55,7 @@ def bulk(kernel: Kernel) -> Kernel:
     def block(body: Block) -> Block:
         return tuple(part for stmt in body for part in _statement(with_blocks(stmt, block), kernel.strides))
 
-    return replace(kernel, bodies=tuple(map(block, kernel.bodies)))
+    return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
 def _statement(stmt: Stmt, strides: tuple[int, ...]) -> Block:

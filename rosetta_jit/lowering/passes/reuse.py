@@ -7,13 +7,13 @@ memory; what was checked of one read says nothing of the next, until both are on
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import count
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
 from rosetta_jit.kernel.loops import changed_names
-from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import blocks_of, bound_name, expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class _Names:
 def reuse(kernel: Kernel) -> Kernel:
     """The kernel with a name for what it would read more than once."""
     taken = {name for body in kernel.bodies for stmt, _ in statements(body) if (name := bound_name(stmt)) is not None}
-    return replace(kernel, bodies=tuple(_body(body, taken) for body in kernel.bodies))
+    return with_bodies(kernel, tuple(_body(body, taken) for body in kernel.bodies))
 
 
 def _body(body: Block, taken: set[str]) -> Block:

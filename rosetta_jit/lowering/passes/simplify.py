@@ -15,17 +15,21 @@ from rosetta_jit.kernel.ir import (
     Const,
     Expect,
     For,
+    Get,
     If,
+    IsText,
     Let,
+    Load,
     Local,
     Switch,
+    Used,
     Var,
     While,
     index,
     type_of,
 )
-from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, reads_memory, with_blocks, with_expressions, with_operands
-from rosetta_jit.kernel.shape import expressions_of, statements
+from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
+from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 
 if TYPE_CHECKING:
@@ -48,7 +52,7 @@ class _Names:
 
 def simplify(kernel: Kernel) -> Kernel:
     """The kernel with less in it."""
-    return replace(kernel, bodies=tuple(map(_body, kernel.bodies)))
+    return with_bodies(kernel, tuple(map(_body, kernel.bodies)))
 
 
 def _body(body: Block) -> Block:
@@ -140,8 +144,18 @@ def _branch(block: Block, names: _Names, known: dict[Expr, Expr]) -> Block:
 
 
 def _is_settled(expr: Expr, names: _Names) -> bool:
-    """Whether an expression keeps its value."""
-    return not reads_memory(expr) and names.fixed.issuperset(locals_in(expr))
+    """Whether an expression keeps its value, and another that is equal as text has the same: 0.0 and -0.0 are equal, not the same."""
+    for part, _ in subexpressions(expr):
+        match part:
+            case Load() | Get() | Used() | IsText():
+                return False
+            case Local(_, name) if name not in names.fixed:
+                return False
+            case Const("f32" | "f64", 0):
+                return False
+            case _:
+                pass
+    return True
 
 
 # --- backward: uses ----------------------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Assign, Block, Const, For, Let, Var, While, index
-from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_expressions
+from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_bodies, with_expressions
 from rosetta_jit.kernel.shape import bound_name, statements
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ MAX_STATEMENTS = 64
 def unroll(kernel: Kernel) -> Kernel:
     """The kernel without short loops."""
     names = {name for body in kernel.bodies for stmt, _ in statements(body) if (name := bound_name(stmt)) is not None}
-    return replace(kernel, bodies=tuple(_block(body, names) for body in kernel.bodies))
+    return with_bodies(kernel, tuple(_block(body, names) for body in kernel.bodies))
 
 
 def _block(block: Block, names: set[str]) -> Block:
