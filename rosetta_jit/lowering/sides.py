@@ -30,6 +30,7 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.lowering.bound import EACH
 from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
+from rosetta_jit.lowering.writer import Where
 from rosetta_jit.model.layout import Number, Row
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ class HolderSide:
                 case IndexStep(at):
                     elements, count = self.array(_prefix(place, done), values)
                     number = values.of(at)
-                    where = fields.where.members(path)
+                    where = fields.where.members(path).element(number)
                     self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
                     fields, path, last = elements.at(number), (), None
         return fields, path, last
@@ -179,7 +180,7 @@ class WireSide:
         assert len(indices) == 1, key
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = values.of(indices[0])
-        where = values.where.members(array)
+        where = Where().members(array).element(number)
         self.writer.expect(inside(number, self.root.size_of(array)), "index", where, "no such element", line=values.line)
         at = Binary("add", region.first, mul(number, region.step))
         self.writer.require(WIDTH[region.scalar], where, at=at)

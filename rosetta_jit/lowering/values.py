@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Local, Scalar, Unary, index, type_of
@@ -66,8 +67,11 @@ class Values:
                 assert_never(value)
 
     def at_rule(self, span: Span | None) -> Values:
-        """The same, with the rule's line for errors."""
-        return replace(self, line=str(span) if span is not None else "")
+        """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""
+        if span is None:
+            return self
+        line, column = span.source.line_column(span.start)
+        return replace(self, line=f"{PurePath(span.source.name).name}:{line}:{column}")
 
     def negative(self, operand: Expr) -> Expr:
         if type_of(operand) in ("f32", "f64"):

@@ -1,0 +1,208 @@
+"""Compiled decoders and encoders against protobuf's own: bytes that it wrote, and random messages of the RST types."""
+
+from __future__ import annotations
+
+import base64
+import json
+import random
+from pathlib import Path
+
+import pytest
+
+import rosetta_jit as rj
+
+pytest.importorskip("google.protobuf")
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+
+ROOT = Path(__file__).resolve().parents[3]
+PEER = json.loads((ROOT / "tests" / "vectors" / "protobuf" / "peer.json").read_text())
+DESCRIPTORS = base64.b64decode(PEER["file_descriptor_set_b64"])
+TYPES = sorted({record["type"] for record in PEER["records"]})
+RST = [
+    "kinematics.JointAngles",
+    "vision.Image",
+    "geometry.Pose",
+    "generic.Value",
+    "generic.Dictionary",
+    "math.MatrixDouble",
+    "xml.Attachment",
+]
+
+
+def classes(descriptors):
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString(descriptors).file:
+        pool.Add(file)
+    return lambda name: message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+
+
+@pytest.fixture(scope="module")
+def rst(tmp_path_factory):
+    from grpc_tools import protoc
+
+    out = tmp_path_factory.mktemp("rst") / "rst.fds"
+    idl = ROOT / "idl"
+    files = [str(path) for path in sorted((idl / "rst").rglob("*.proto"))]
+    assert protoc.main(["protoc", f"-I{idl}", "--include_imports", f"--descriptor_set_out={out}", *files]) == 0
+    return classes(out.read_bytes())
+
+
+def programs(name, backend, **options):
+    return rj.Decoder.of(name, encoding="protobuf", backend=backend, **options), rj.Encoder.of(
+        name, encoding="protobuf", backend=backend, **options
+    )
+
+
+@pytest.mark.parametrize("backend", ["llvm", "python"])
+@pytest.mark.parametrize("name", TYPES)
+def test_bytes_of_the_peer_come_back(name, backend):
+    decode, encode = programs(name, backend, schema=DESCRIPTORS)
+    for record in PEER["records"]:
+        if record["type"] == name:
+            data = bytes.fromhex(record["hex"])
+            assert encode(decode(data)) == data
+
+
+NUMBERS = {
+    1: [0.0, -0.0, 1.5, float("inf")],
+    2: [0.0, -2.25, 1e10],
+    3: [0, -1, 2**63 - 1, -(2**63)],
+    4: [0, 300, 2**64 - 1],
+    5: [0, -1, 2**31 - 1, -(2**31)],
+    8: [True, False],
+    9: ["", "a", "héllo", "x" * 300],
+    12: [b"", b"\0\xff", bytes(300)],
+    13: [0, 300, 2**32 - 1],
+    17: [0, -1, 2**31 - 1, -(2**31)],
+}
+
+
+def fill(message, choose, depth=0):
+    for field in message.DESCRIPTOR.fields:
+        if not field.is_required and (choose.random() < 0.3 or (field.type == 11 and depth > 3)):
+            continue
+        for _ in range(choose.randrange(4) if field.is_repeated else 1):
+            if field.type == 11:
+                inner = getattr(message, field.name).add() if field.is_repeated else getattr(message, field.name)
+                inner.SetInParent()
+                fill(inner, choose, depth + 1)
+                continue
+            value = choose.choice(field.enum_type.values).number if field.type == 14 else choose.choice(NUMBERS[field.type])
+            if field.is_repeated:
+                getattr(message, field.name).append(value)
+            else:
+                setattr(message, field.name, value)
+    return message
+
+
+@pytest.mark.parametrize("name", RST)
+def test_random_messages(name, rst):
+    decode, encode = programs(f"rst.{name}", "llvm")
+    cls, choose = rst(f"rst.{name}"), random.Random(name)
+    for _ in range(200):
+        data = fill(cls(), choose).SerializeToString()
+        holder = decode(data)
+        assert encode(holder) == data
+        assert encode(type(holder).from_dict(holder.to_dict())) == data
+
+
+@pytest.mark.parametrize("name", RST)
+def test_harmed_messages_are_refused_or_read_alike(name, rst):
+    """We refuse what protobuf's Python takes in two cases: a required field that is missing, and text that is not UTF-8 (proto2)."""
+    decode, encode = programs(f"rst.{name}", "llvm")
+    cls, choose = rst(f"rst.{name}"), random.Random(name)
+    for _ in range(25):
+        data = bytearray(fill(cls(), choose).SerializeToString())
+        for _ in range(40):
+            harmed = bytearray(data[: choose.randrange(len(data) + 1)])
+            for _ in range(choose.randrange(3)):
+                if harmed:
+                    harmed[choose.randrange(len(harmed))] = choose.randrange(256)
+            outcome = decoded(decode, bytes(harmed))
+            if isinstance(outcome, rj.DecodeError):
+                assert 0 <= outcome.offset <= len(harmed)
+            else:
+                assert cls.FromString(encode(outcome)) is not None
+                assert cls.FromString(bytes(harmed)).IsInitialized()
+
+
+def decoded(decode, message):
+    try:
+        return decode(message)
+    except rj.DecodeError as error:
+        return error
+
+
+def test_fields_in_any_order_unknown_ones_and_merges():
+    inner = "message P { optional int32 x = 1; repeated int32 y = 2; }"
+    outer = "message M { optional P p = 1; repeated int32 n = 2; optional string s = 3; }"
+    schema = {"m.proto": f'syntax = "proto2"; {outer} {inner}'}
+    decode = rj.Decoder.of("M", encoding="protobuf", schema=schema, backend="llvm")
+    unknown = bytes([0x7A, 2, 1, 2]) + bytes([0x83, 1, 0x08, 5, 0x84, 1]) + bytes([0xA5, 6, 1, 2, 3, 4]) + bytes([0xA0, 6, 150, 1])
+    wire = (
+        bytes([0x10, 1])
+        + unknown
+        + bytes([0x0A, 2, 0x08, 7])
+        + bytes([0x12, 2, 2, 3])
+        + bytes([0x1A, 1])
+        + b"a"
+        + bytes([0x10, 4])
+        + bytes([0x0A, 4, 0x10, 5, 0x10, 6])
+        + bytes([0x1A, 1])
+        + b"b"
+        + bytes([0x0A, 2, 0x10, 9])
+    )
+    assert decode(wire).to_dict() == {"p": {"x": 7, "y": [5, 6, 9]}, "n": [1, 2, 3, 4], "s": "b"}
+    cuts = [decoded(decode, wire[:cut]) for cut in range(len(wire))]
+    assert sum(isinstance(outcome, rj.DecodeError) for outcome in cuts) > len(wire) // 2
+
+
+@pytest.mark.parametrize(
+    ("wire", "kind"),
+    [
+        (b"\x08", "truncated"),
+        (b"\x08" + b"\xff" * 10 + b"\x01", "varint"),
+        (b"\x00\x01", "tag"),
+        (b"\x0e", "tag"),
+        (b"\x0c", "tag"),
+        (b"\x0b", "truncated"),
+        (b"\x0b\x14", "tag"),
+        (b"\x12\x7f", "truncated"),
+        (b"\x12\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01", "truncated"),
+        (b"\x12\x01\xff", "text"),
+        (b"\x1a\x03\0\0\0", "length"),
+        (b"\x0b" * 65, "nesting"),
+        (b"", "missing"),
+    ],
+)
+def test_what_is_wrong_has_a_kind(wire, kind):
+    schema = {
+        "m.proto": 'syntax = "proto2"; message M { required int32 i = 1; optional string s = 2; repeated fixed32 f = 3 [packed=true]; }'
+    }
+    for backend in ("llvm", "python"):
+        with pytest.raises(rj.DecodeError) as caught:
+            rj.Decoder.of("M", encoding="protobuf", schema=schema, backend=backend)(wire)
+        assert caught.value.kind == kind
+
+
+def test_depth_is_bounded_and_wide_trees_are_not():
+    decode, encode = programs("rst.generic.Value", "llvm")
+    value = b"\x08\x01"
+    for _ in range(64):
+        value = b"\x08\x07\x3a" + _varint(len(value)) + value
+    assert encode(decode(value)) == value
+    deeper = b"\x08\x07\x3a" + _varint(len(value)) + value
+    with pytest.raises(rj.DecodeError) as caught:
+        decode(deeper)
+    assert caught.value.kind == "nesting"
+    wide = b"\x08\x07" + b"\x3a\x02\x08\x01" * 5000
+    assert len(decode(wide).array) == 5000
+    assert encode(decode(wide)) == wide
+
+
+def _varint(value):
+    out = bytearray()
+    while value >= 128:
+        out.append(value & 127 | 128)
+        value >>= 7
+    return bytes([*out, value])
