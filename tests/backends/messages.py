@@ -43,7 +43,7 @@ BAD_TEXT = tuple(
 
 def hostile(name: str, rounds: int = 40) -> Iterator[bytes]:
     """Good messages, each cut everywhere, each with random bytes changed, and noise."""
-    chance = random.Random(name)  # noqa: S311 - repeatable noise, no secret
+    chance = random.Random(name)
     for good in GOOD[name]:
         yield good
         yield good + b"\0"

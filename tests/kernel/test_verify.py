@@ -92,7 +92,7 @@ def mutants(original):
 
 def is_safe(kernel, seed):
     """Whether the interpreter finds no broken obligation on messages made for the purpose."""
-    random = Random(seed)  # noqa: S311  # no secret depends on it
+    random = Random(seed)  # no secret depends on it
     try:
         for _ in range(60):
             size = random.choice((0, 1, 3, 4, 5, 8, 12, 13, 20, 36, 50))

@@ -79,7 +79,7 @@ def test_damaged_messages(name, data):
 
 def random_kernel(seed):
     """A kernel of random fields, loops and branches, which the naive lowering might have made."""
-    random = Random(seed)  # noqa: S311  # no secret depends on it
+    random = Random(seed)  # no secret depends on it
     body, at, names = [ROW_EXISTS], BEGIN, iter(range(1000))
 
     def scalar(at, row_offset, site=1, *indices):
