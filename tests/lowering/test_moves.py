@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.ir import (
     BEGIN,
     ROW,
@@ -34,6 +35,7 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.state import ERROR_INDICES
 from rosetta_jit.kernel.verify import verify
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.passes.bulk import bulk
@@ -270,3 +272,21 @@ def test_simple_kernels_stay_as_they_are(name):
     assert simplify(simple) is simple
     named = reuse(simple)
     assert reuse(named) is named
+
+
+def reported(kernel, message):
+    """The result of a kernel that fails, and the index that it reports."""
+    holder = kernels.Holder(kernel.strides, 64)
+    result = interpret.run(kernel, message, 0, len(message), holder.state, holder.lanes, 0)
+    return result, int(holder.state[ERROR_INDICES])
+
+
+@pytest.mark.parametrize("bound", [0, 1, 2, 7])
+def test_the_element_that_is_missing_is_named(bound):
+    element = add(I, 1)
+    loop = For("i", N, (expect(compare("lt", element, bound), 4, BEGIN, element), SetField(Place(0, ROW), element)))
+    before = kernel((ROW_EXISTS, *COUNT, loop, Return(BEGIN)))
+    after = drop(hoist(before))
+    verify(after)
+    assert not any(isinstance(stmt, Expect) for stmt in found(after, For)[0].body)
+    assert reported(after, b"\x08") == reported(before, b"\x08")

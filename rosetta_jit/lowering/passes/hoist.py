@@ -56,11 +56,8 @@ def _loop(loop: For, sites: list[Site]) -> Block:
 def _before(stmt: Stmt, count: Expr, rounds: Rounds, sites: list[Site]) -> Block:
     """What a loop can check before it in place of a statement in it; empty where the statement must stay."""
     match stmt:
-        case Expect(condition, failure) if rounds.is_fixed(condition):
-            first = _at_first(failure, failure.at, rounds)
-            return (Expect(condition, first),) if first is not None else ()
-        case Expect(condition, failure) if all(map(rounds.is_fixed, (failure.at, *failure.indices))):
-            return tuple(Expect(extreme, failure) for extreme in widened(condition, count, rounds))
+        case Expect():
+            return widened(stmt, count, rounds)
         case Require(at, size, failure):
             place, extent = rounds.affine(at), rounds.fixed(size)
             if place is None or extent is None:

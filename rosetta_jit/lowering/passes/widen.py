@@ -2,22 +2,39 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Fits, add, index, mul, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, Fits, add, index, mul, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.lowering.passes.affine import Affine, Rounds
 
 
-def widened(condition: Expr, count: Expr, rounds: Rounds) -> tuple[Expr, ...]:
-    """Conditions that, one after another, hold exactly where one holds in each of ``count > 0`` rounds; () if none do."""
+@dataclass(frozen=True, slots=True)
+class _Check:
+    """What is asked once, and of which round. Where ``compared`` grows by one a round, ``reached`` is its first value that fails."""
+
+    condition: Expr
+    round: Expr
+    compared: Affine | None = None
+    reached: Expr | None = None
+
+
+def widened(stmt: Expect, count: Expr, rounds: Rounds) -> tuple[Expect, ...]:
+    """Checks that, one after another, hold exactly where one holds in each of ``count > 0`` rounds; () if there are none."""
+    checks = [(check, _failure(stmt.failure, check, rounds)) for check in _checks(stmt.condition, count, rounds)]
+    found = tuple(Expect(check.condition, failure) for check, failure in checks if failure is not None)
+    return found if len(found) == len(checks) else ()
+
+
+def _checks(condition: Expr, count: Expr, rounds: Rounds) -> tuple[_Check, ...]:
     if rounds.is_fixed(condition):
-        return (condition,)
+        return (_Check(condition, index(0)),)
     match condition:
         case Binary("and", left, right):
-            first, second = widened(left, count, rounds), widened(right, count, rounds)
+            first, second = _checks(left, count, rounds), _checks(right, count, rounds)
             return (*first, *second) if first and second else ()
         case Compare("lt" | "le" | "gt" | "ge", left, right) if type_of(left) == "i64":
             value, bound = rounds.affine(left), rounds.fixed(right)
@@ -26,17 +43,33 @@ def widened(condition: Expr, count: Expr, rounds: Rounds) -> tuple[Expr, ...]:
             return ()
 
 
-def _extreme(condition: Compare, value: Affine, bound: Expr, count: Expr) -> tuple[Expr, ...]:
+def _extreme(condition: Compare, value: Affine, bound: Expr, count: Expr) -> tuple[_Check, ...]:
     """The comparison in the round that is closest to failing."""
     match value.step:
         case Const(_, step):
             grows_away = (step >= 0) == (condition.op in {"gt", "ge"})
             if step == 0 or grows_away:
-                return (Compare(condition.op, value.base, bound),)
+                return (_Check(Compare(condition.op, value.base, bound), index(0)),)
             last = add(count, -1)
             distance = mul(last, int(step))
             # What does not fit lies beyond every bound, so that the comparison fails in some round.
-            fits = Fits("mul", last, index(int(step))), Fits("add", value.base, distance)
-            return (*fits, Compare(condition.op, add(value.base, distance), bound))
+            fits = _Check(Fits("mul", last, index(int(step))), index(0)), _Check(Fits("add", value.base, distance), index(0))
+            reached = Binary("max", value.base, bound) if (condition.op, step) == ("lt", 1) else None
+            return (*fits, _Check(Compare(condition.op, add(value.base, distance), bound), last, value, reached))
         case _:
             return ()
+
+
+def _failure(failure: Failure, check: _Check, rounds: Rounds) -> Failure | None:
+    """The failure of the round that a check speaks of."""
+    at, indices = _value(failure.at, check, rounds), tuple(_value(each, check, rounds) for each in failure.indices)
+    return None if at is None or None in indices else Failure(failure.site, at, tuple(each for each in indices if each is not None))
+
+
+def _value(expr: Expr, check: _Check, rounds: Rounds) -> Expr | None:
+    found = rounds.affine(expr)
+    if found is None:
+        return None
+    if found == check.compared and check.reached is not None:
+        return check.reached
+    return add(found.base, mul(check.round, found.step)) if found.step != index(0) else found.base
