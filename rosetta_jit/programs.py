@@ -311,7 +311,8 @@ def _python_kernel(build: Build, number: int) -> run.Run:
     if build.request.backend == "python":
         from rosetta_jit.backends.python import compile_python
 
-        return run.python_run(compile_python(kernel))
+        with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
+            return run.python_run(compile_python(kernel))
     from functools import partial
 
     from rosetta_jit.kernel.interpret import run as interpret

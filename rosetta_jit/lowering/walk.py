@@ -140,7 +140,7 @@ def _number_constant(writer: Writer, fields: Fields, constant: Constant) -> None
         at = writer.position
         found = writer.load(scalar, where, constant.order)
         writer.expect(Compare("eq", found, value), constant.kind, where, f"must be {constant.value}", at=at)
-        if constant.kind == "constant":
+        if constant.kind == "constant" and constant.path:
             fields.put(constant.path, value)
     else:
         writer.store(value, where, constant.order)

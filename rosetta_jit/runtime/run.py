@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.lanes import Lanes
 
 GROW = -1
-ANY_SIZE = 1 << 62
+ANY_SIZE = 1 << 60
 """The room that a kernel has that only measures."""
 
 Run = Callable[["NDArray[np.uint8] | None", int, int, "Lanes", int], int]

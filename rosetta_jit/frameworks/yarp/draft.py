@@ -42,6 +42,8 @@ def draft(name: str, top: Fixed | Many, messages: int) -> str:
 def _field(name: str, shape: Shape, options: str = "") -> list[Line]:
     lines = _type(shape)
     constant = _constant(shape)
+    if isinstance(shape, Many) and shape.element is not None and not shape.greatest:
+        options += " :vector"  # only a vector tells the type of elements that it does not have
     code, comment = lines[0]
     lines[0] = (f'("{name}" {code}', comment or _comment(shape, constant))
     return _close(lines, f"{' ' + constant if constant else ''}{options})")

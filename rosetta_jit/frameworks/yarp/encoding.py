@@ -181,7 +181,8 @@ class _Bottles:
             return self.coded(path, (general,), None)
         special = (LIST | self.tag(unit, field), self.elements(resolved, path, tagged=False))
         length = resolved.type.length if isinstance(resolved.type, Array) else None
-        return self.coded(path, (general, special) if length == 0 else (special, general), path if length is None else None)
+        forms = (general, special) if length == 0 else (special, general)
+        return self.coded(path, forms, path if length is None and not field.option("vector") else None)
 
     def elements(self, field: Field, path: Path, *, tagged: bool, head: tuple[Codec, ...] = ()) -> Codec:
         """Count and elements of an array field; ``head`` are fields of the same list before them."""
@@ -281,5 +282,7 @@ def _rest_path(struct: Struct, path: Path) -> Path | None:
     """The array that alone makes up a list, whose form therefore depends on whether it is empty."""
     if len(struct.fields) == 1 and struct.fields[0].option("rest"):
         array = struct.fields[0].type
+        if struct.fields[0].option("vector"):
+            return None
         return (*path, struct.fields[0].name) if isinstance(array, Array) and array.length is None else None
     return None

@@ -11,10 +11,11 @@
              | "type.name"                    a nested list of a declared type
     Constant = number | "text" | :|set| | true | false | Expr
     Expr     = integer | field.field | (+ Expr Expr) and - * / | (align Expr Expr)
-    Option   = (:unit :degree) | (:documentation "...") | (:default 0) | (:length Expr) | :rest | (:key "...")
+    Option   = (:unit :degree) | (:documentation "...") | (:default 0) | (:length Expr) | :rest | :vector | (:key "...")
 
 How it becomes the model: scalars carry their spelling as in `tags`; a string is `String("octets", "string")`. A field marked
-`:rest` has the option ``rest``: the elements of its list lie in the enclosing bottle itself, after the fields before it. A
+`:rest` has the option ``rest``: the elements of its list lie in the enclosing bottle itself, after the fields before it. One
+marked `:vector` keeps the type of its elements when it has none, as sig::Vector writes it and a Bottle does not. A
 `(:dict Type)` is a `Map`; a `(:dict Field*)` is a `Struct` all of whose fields have the option ``key``, the key on the wire.
 An anonymous struct is named ``type.field``. Paths of computed constants start at the declaration that they stand in.
 """

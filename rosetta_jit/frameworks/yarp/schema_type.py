@@ -51,6 +51,7 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         ":default": "(:default 0)",
         ":length": "(:length 16)",
         ":rest": ":rest",
+        ":vector": ":vector",
         ":key": '(:key "...")',
     }
 )
@@ -195,6 +196,11 @@ def _marks(field: Field, options: Mapping[str, Node], problems: list[Diagnostic]
         if keyed or not isinstance(field.type, Array):
             problems.append(catalogue.misplaced_option(rest.span, ":rest", "a :list at the end of a bottle"))
         marks.append(("rest", True))
+    vector = options.get(":vector")
+    if vector is not None:
+        if not isinstance(field.type, Array):
+            problems.append(catalogue.misplaced_option(vector.span, ":vector", "a :list of numbers"))
+        marks.append(("vector", True))
     return tuple(marks)
 
 
