@@ -23,6 +23,7 @@ from rosetta_jit.lowering.lower import lower
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct
+from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -87,6 +88,8 @@ class Build:
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types = self.types
+        if types.rules is not None and any(isinstance(attempt, Tagged) for attempt in self.encoding.attempts):
+            raise _report(self.request, words.unmappable_wire(types.wire.span, types.wire.name))
         return lower(self.encoding, self.layout, direction, name=types.wire.name, rules=types.rules, borrow=self.request.borrow)
 
     # --- frameworks --------------------------------------------------------------------------------------------------

@@ -56,3 +56,17 @@ def no_such_file(name: str, folders: Sequence[str]) -> Diagnostic:
 def too_large(name: str, span: Span | None, why: str) -> Diagnostic:
     """A type whose holder would be absurd."""
     return Diagnostic("error", "too-large", f"`{name}` is too large for a holder: {why}", span, help="split it, or bound what repeats")
+
+
+def unmappable_wire(span: Span | None, name: str) -> Diagnostic:
+    """A wire whose fields may come in any order, in a mapping."""
+    why = "its fields come in any order, and rules need them at known places"
+    help_ = "make it the data holder, and the other type the wire"
+    return Diagnostic("error", "unmappable-wire", f"`{name}` cannot be the wire of a mapping", span, why, help=help_)
+
+
+def unmappable_place(span: Span | None) -> Diagnostic:
+    """A field that rules cannot reach, though the types have it."""
+    label = "its elements are not all of one size, or it is a whole message"
+    help_ = "map the fields of a message one by one; elements of lists must be numbers, or bottles of numbers"
+    return Diagnostic("error", "unmappable-place", "rules cannot read or write this in place", span, label, help=help_)

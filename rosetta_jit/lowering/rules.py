@@ -9,12 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never, cast
 
+from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bytes, String
+from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.values import Values
@@ -68,6 +70,8 @@ class Runner:
                 self.assign_bytes(place, origin, values)
             case Array(), typed.Access(origin):
                 self.assign_array(place, origin, values)
+            case ((Struct() | Map() | Union()), _):
+                raise MappingError((unmappable_place(place.span),))
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:

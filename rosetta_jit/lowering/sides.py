@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.layout import Member
     from rosetta_jit.model.types import Constant, Field
+    from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
@@ -163,7 +166,7 @@ class WireSide:
             found = self.root.get(key)
             assert found is not None, key
             return found
-        region, at = self.element(key, indices, values)
+        region, at = self.element(key, indices, values, place.span)
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
 
     def count(self, place: typed.Place, values: Values) -> Expr:
@@ -175,9 +178,10 @@ class WireSide:
         del values
         return Wire(self.root.found.regions[(*wire_key(place)[0], EACH)].first)
 
-    def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
+    def element(self, key: Path, indices: list[typed.Expr], values: Values, span: Span | None) -> tuple[Region, Expr]:
         """How the elements of an array lie, and where one of them is; it is checked to be there."""
-        assert len(indices) == 1, key
+        if len(indices) != 1 or key not in self.root.found.regions:
+            raise MappingError((unmappable_place(span),))
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = values.of(indices[0])
         where = Where().members(array).element(number)
@@ -192,7 +196,7 @@ class WireSide:
         """Numbers outside arrays were written by the walk."""
         key, indices = wire_key(place)
         if indices:
-            region, at = self.element(key, indices, values)
+            region, at = self.element(key, indices, values, place.span)
             self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
 
     def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
