@@ -58,13 +58,16 @@ def _name(kind: str, text: str) -> str:
 
 def _package_digest() -> str:
     """Stands for our version: changes with each installation and, for us who work on the compiler, with each edit of a source file."""
-    package = Path(__file__).resolve().parent.parent
     digest = sha256()
-    for folder, folders, names in os.walk(package):
-        folders[:] = sorted(name for name in folders if name != "__pycache__")
-        for name in sorted(names):
-            status = (Path(folder) / name).stat()
-            digest.update(f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogatepass"))
+    folders = [str(Path(__file__).resolve().parent.parent)]
+    for folder in folders:  # grows while it is gone through
+        with os.scandir(folder) as entries:
+            for entry in sorted(entries, key=lambda entry: entry.name):
+                if entry.is_dir(follow_symlinks=False):
+                    folders += [entry.path] if entry.name not in ("__pycache__", "recordings", "share") else []
+                else:
+                    status = entry.stat()
+                    digest.update(f"{entry.path} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogatepass"))
     return digest.hexdigest()
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
 
 from rosetta_jit.errors import EncodeError, RosettaError
-from rosetta_jit.frameworks.protobuf import text_format
 from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescriptor, MessageDescriptor, nested_names
 from rosetta_jit.frameworks.protobuf.presence import missing, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
@@ -185,6 +184,8 @@ class ProtobufMessage(Holder):
         return cast("Self", cls._parsed(data))
 
     def __str__(self) -> str:
+        from rosetta_jit.frameworks.protobuf import text_format
+
         return text_format.text(self.access_.record, raw(self))
 
     __repr__ = __str__
