@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.frameworks.base import Framework, front_ends, installed
+from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
 from rosetta_jit.frontend.search import Reading, SearchPath
 from rosetta_jit.kernel.printer import to_text
@@ -22,7 +22,7 @@ from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import lower
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Schema, Struct
+from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
 from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
@@ -56,7 +56,8 @@ class Build:
 
     def __post_init__(self) -> None:
         self.reading = Reading()
-        self.search = SearchPath.of(self.request.folders, files=dict(self.request.files))
+        self.files_given = _named_files(self.request)
+        self.search = SearchPath.of(self.request.folders, files=self.files_given)
 
     @cached_property
     def types(self) -> Types:
@@ -68,7 +69,7 @@ class Build:
         name = self.request.encoding or next(iter(framework.encodings))
         if name not in framework.encodings:
             raise _report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
-        encoding = framework.encoding(name)(self.types.wire, self.types.schema, name)
+        encoding = framework.encoding(name)(self.types.wire, self.types.schema, name, self._choices(framework, name))
         if self.request.direction == "encode" and encoding.written is None:
             raise _report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
         return encoding
@@ -92,6 +93,17 @@ class Build:
             raise _report(self.request, words.unmappable_wire(types.wire.span, types.wire.name))
         return lower(self.encoding, self.layout, direction, name=types.wire.name, rules=types.rules, borrow=self.request.borrow)
 
+    def _choices(self, framework: Framework, encoding: str) -> Choices:
+        """What the request says about the encoding, if the encoding leaves it to say."""
+        request = self.request
+        if request.byte_order is not None and encoding not in framework.byte_orders:
+            raise _report(request, words.fixed_byte_order(encoding))
+        known = tuple(framework.leniencies.get(encoding, ()))
+        for name in request.lenient:
+            if name not in known:
+                raise _report(request, words.unknown_leniency(name, encoding, known))
+        return Choices(request.byte_order, frozenset(request.lenient))
+
     # --- frameworks --------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -105,11 +117,9 @@ class Build:
 
     def _framework(self, struct: Struct) -> Framework:
         """The framework whose IDL declares a type."""
-        frameworks = installed()
-        if self.request.framework is not None:
-            return frameworks[self.request.framework]
-        file = struct.span.source.name if struct.span is not None else ""
-        return next(each for each in frameworks.values() if file.endswith(tuple(each.idl)))
+        readers = _readers(self.request)
+        owner = readers.owner(struct.span.source.name) if struct.span is not None else None
+        return owner or readers.frameworks[self.request.framework or ""]
 
     # --- results -----------------------------------------------------------------------------------------------------
 
@@ -174,7 +184,7 @@ class Build:
 
     def files(self) -> dict[str, str | None]:
         """The files that were read, by digest, and those that would have been read instead if they existed."""
-        in_memory = dict(self.request.files)
+        in_memory = self.files_given
         found: dict[str, str | None] = {}
         for lookup in self.reading.lookups:
             if lookup.found not in in_memory:
@@ -188,7 +198,7 @@ class Build:
 def check_mapping(path: str, folders: Iterable[str] = ()) -> tuple[Diagnostic, ...]:
     """The warnings of a mapping; raises MappingError with all that is wrong."""
     search, reading = SearchPath.of(folders), Reading()
-    checked = check(parse_mapping(search.open(path)), front_ends(installed()), search, reading)
+    checked = check(parse_mapping(search.open(path)), Readers(installed()), search, reading)
     return checked.warnings
 
 
@@ -196,7 +206,7 @@ def _mapped_types(build: Build) -> Types:
     request = build.request
     source = build.search.open(request.mapping or "")
     build.reading.record(source.name, None, source)
-    checked = check(parse_mapping(source), front_ends(installed()), build.search, build.reading)
+    checked = check(parse_mapping(source), _readers(request), build.search, build.reading)
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
@@ -215,26 +225,46 @@ def _own_types(build: Build) -> Types:
         assert isinstance(struct, Struct)
         return Types(struct, struct, schema, None)
     schema = _imported(build)
-    struct = schema.types.get(request.type or "")
-    if not isinstance(struct, Struct):
+    found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
+    if not found:
         raise SchemaError((words.unknown_type(request.type or "", tuple(schema.types)),))
-    return Types(struct, struct, schema, None)
+    return Types(found[0], found[0], schema, None)
+
+
+def _named_files(request: Request) -> dict[str, str]:
+    """The files that came as texts. One without a name declares the type, in the language of the framework that is asked for."""
+    files = dict(request.files)
+    if "" in files:
+        if request.encoding is None and request.framework is None:
+            raise _report(request, words.nameless_schema())
+        name = "/".join(name_parts(request.type or "schema")) + _readers(request).suffixes[0]
+        files[name] = files.pop("")
+    return files
+
+
+def _readers(request: Request) -> Readers:
+    readers = Readers(installed(), request.framework, request.encoding)
+    if request.framework is not None and request.framework not in readers.frameworks:
+        raise _report(request, words.unknown_framework(request.framework, tuple(readers.frameworks)))
+    return readers
 
 
 def _imported(build: Build) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
-    request, ends = build.request, front_ends(installed())
-    guess = (request.type or "").replace(".", "/")
-    names = request.imports or tuple(name for name, _ in request.files) or tuple(guess + suffix for suffix in ends)
+    request, readers = build.request, _readers(build.request)
+    asked = request.type or ""
+    names = request.imports or tuple(build.files_given) or tuple(readers.guesses(asked))
     types: dict[str, Any] = {}
     load = build.search.loader(build.reading)
     for name in names:
-        end = next((end for suffix, end in ends.items() if name.endswith(suffix)), None)
-        if end is None:
-            raise SchemaError((words.unknown_suffix(name, tuple(ends)),))
         source = load(name)
         if source is not None:
+            end = readers.find(source.name)
+            if end is None:
+                raise SchemaError((words.unknown_suffix(name, readers.suffixes),))
             types |= end(source, build.search.loader(build.reading, source)).types
+            if not request.imports and not request.files and any(same_name(each, asked) for each in types):
+                break
         elif request.imports:
             raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
     return Schema(types)

@@ -7,7 +7,7 @@ import os
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.request import Request
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosetta_jit.pipeline import Build, Stage
-    from rosetta_jit.request import Backend, Direction
+    from rosetta_jit.request import Backend, ByteOrder, Direction
     from rosetta_jit.runtime.holder import Holder
 
 SYMBOLS = {
@@ -56,6 +56,44 @@ class _Made:
         return _build(self._request).stage(stage)
 
 
+class Options(TypedDict, total=False):
+    """What can be said about a program besides its mapping or type.
+
+    Attributes
+    ----------
+    encoding : str
+        How messages are encoded; the usual way of the wire's framework by default (``yarp``: any of YARP's dialects).
+    framework : str
+        Whose type it is, where neither its name nor its file nor ``encoding`` tells: ``sensor_msgs/Imu`` is one of ROS 1 and of ROS 2.
+    imports : iterable of str
+        For a type without a mapping: the files that declare it, by their names on the search path; by default those in ``schema``, or
+        what the name suggests.
+    schema : mapping of str to str, str, or bytes
+        File names and texts, as if they lay on the search path. Without a mapping also the one text that declares the type, such as a
+        bag or an MCAP file carries (``encoding`` or ``framework`` say in which language), or a serialised ``FileDescriptorSet``.
+    search_path : iterable of paths
+        Folders to search before all others.
+    byte_order : {"little", "big"}
+        Of what is written, or of what is read where messages do not tell.
+    lenient : iterable of str
+        What to forgive, by name: ``rosetta-jit frameworks`` lists what each encoding can be asked for.
+    borrow : bool
+        Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
+    backend : {"numba", "llvm", "python", "interpreter"}
+        What runs the kernel; numba where it is installed, else LLVM.
+    """
+
+    encoding: str | None
+    framework: str | None
+    imports: Iterable[str]
+    schema: Mapping[str, str] | str | bytes | None
+    search_path: Iterable[str | os.PathLike[str]]
+    byte_order: ByteOrder | None
+    lenient: Iterable[str]
+    borrow: bool
+    backend: Backend | None
+
+
 class Decoder(_Made, DecoderBase):
     """Decodes messages into holders: ``decode(message)`` fills and returns the decoder's own holder.
 
@@ -63,16 +101,8 @@ class Decoder(_Made, DecoderBase):
     ----------
     mapping : path
         A mapping, by its path or by its name on the search path: the folders given, those of ROSETTA_JIT_PATH, what is shipped.
-    encoding : str, optional
-        How messages are encoded; the usual way of the wire's framework by default (``yarp``: any of YARP's dialects).
-    schema : mapping of str to str, optional
-        File names and texts, as if they lay on the search path.
-    search_path : iterable of paths, optional
-        Folders to search before all others.
-    borrow : bool
-        Leave bytes fields in the message: the holder keeps it alive and shows views.
-    backend : {"numba", "llvm", "python", "interpreter"}, optional
-        What runs the kernel; numba where it is installed, else LLVM.
+    **options
+        See `Options`.
 
     Raises
     ------
@@ -80,44 +110,21 @@ class Decoder(_Made, DecoderBase):
         With every mistake and its place.
     """
 
-    def __init__(
-        self,
-        mapping: str | os.PathLike[str],
-        *,
-        encoding: str | None = None,
-        schema: Mapping[str, str] | None = None,
-        search_path: Iterable[str | os.PathLike[str]] = (),
-        borrow: bool = False,
-        backend: Backend | None = None,
-    ) -> None:
-        self.make(_mapping_request("decode", mapping, encoding, schema, search_path, borrow=borrow, backend=backend))
+    def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
+        self.make(_request("decode", options, mapping=os.fspath(mapping)))
 
     @classmethod
-    def of(
-        cls,
-        type_: str | type,
-        *,
-        encoding: str | None = None,
-        imports: Iterable[str] = (),
-        schema: Mapping[str, str] | bytes | None = None,
-        search_path: Iterable[str | os.PathLike[str]] = (),
-        borrow: bool = False,
-        backend: Backend | None = None,
-    ) -> Self:
+    def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
         """A decoder of a type into its own holder, without a mapping.
 
         Parameters
         ----------
         type_
             Qualified name, or a message class of protobuf's Python package.
-        imports
-            The files that declare it, by their names on the search path; by default those in ``schema``, or what the name suggests.
-        schema
-            File names and texts, as if they lay on the search path; or a serialised ``FileDescriptorSet``.
+        **options
+            See `Options`.
         """
-        made = cls.__new__(cls)
-        made.make(_type_request("decode", type_, encoding, imports, schema, search_path, borrow=borrow, backend=backend))
-        return made
+        return _of_request(cls, _type_request("decode", type_, options))
 
     def make(self, request: Request) -> None:
         """Become the program that answers a request."""
@@ -131,32 +138,13 @@ class Encoder(_Made, EncoderBase):
     Where a framework has several dialects, ``encoding`` must say which one to write.
     """
 
-    def __init__(
-        self,
-        mapping: str | os.PathLike[str],
-        *,
-        encoding: str | None = None,
-        schema: Mapping[str, str] | None = None,
-        search_path: Iterable[str | os.PathLike[str]] = (),
-        backend: Backend | None = None,
-    ) -> None:
-        self.make(_mapping_request("encode", mapping, encoding, schema, search_path, backend=backend))
+    def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
+        self.make(_request("encode", options, mapping=os.fspath(mapping)))
 
     @classmethod
-    def of(
-        cls,
-        type_: str | type,
-        *,
-        encoding: str | None = None,
-        imports: Iterable[str] = (),
-        schema: Mapping[str, str] | bytes | None = None,
-        search_path: Iterable[str | os.PathLike[str]] = (),
-        backend: Backend | None = None,
-    ) -> Self:
+    def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
         """An encoder of a type from its own holder; parameters as of `Decoder.of`."""
-        made = cls.__new__(cls)
-        made.make(_type_request("encode", type_, encoding, imports, schema, search_path, backend=backend))
-        return made
+        return _of_request(cls, _type_request("encode", type_, options))
 
     def make(self, request: Request) -> None:
         """Become the program that answers a request."""
@@ -164,62 +152,46 @@ class Encoder(_Made, EncoderBase):
         self._start(_loaded(request))
 
 
-def _mapping_request(
-    direction: Direction,
-    mapping: str | os.PathLike[str],
-    encoding: str | None,
-    schema: Mapping[str, str] | None,
-    search_path: Iterable[str | os.PathLike[str]],
-    *,
-    borrow: bool = False,
-    backend: Backend | None,
-) -> Request:
+_KNOWN = {"decode": frozenset(Options.__annotations__), "encode": frozenset(Options.__annotations__) - {"borrow"}}
+
+
+def _request(direction: Direction, options: Options, *, mapping: str | None = None, type_: str | None = None) -> Request:
+    unknown = sorted(set(options) - _KNOWN[direction])
+    if unknown:
+        raise TypeError(f"unknown option {unknown[0]!r}; there are {', '.join(sorted(_KNOWN[direction]))}")
+    schema = options.get("schema")
     return Request(
         direction,
-        mapping=os.fspath(mapping),
-        encoding=encoding,
-        files=tuple((schema or {}).items()),
-        folders=tuple(os.fspath(folder) for folder in search_path),
-        borrow=borrow,
-        backend=backend,
+        mapping=mapping,
+        type=type_,
+        encoding=options.get("encoding"),
+        framework=options.get("framework"),
+        imports=tuple(options.get("imports", ())),
+        files=(("", schema),) if isinstance(schema, str) else () if schema is None or isinstance(schema, bytes) else tuple(schema.items()),
+        folders=tuple(os.fspath(folder) for folder in options.get("search_path", ())),
+        borrow=options.get("borrow", False),
+        byte_order=options.get("byte_order"),
+        lenient=tuple(sorted(options.get("lenient", ()))),
+        backend=options.get("backend"),
     )
 
 
-def _type_request(
-    direction: Direction,
-    type_: str | type,
-    encoding: str | None,
-    imports: Iterable[str],
-    schema: Mapping[str, str] | bytes | None,
-    search_path: Iterable[str | os.PathLike[str]],
-    *,
-    borrow: bool = False,
-    backend: Backend | None,
-) -> Request:
-    descriptors = _from_descriptors(type_, schema)
-    return Request(
-        direction,
-        type=type_ if isinstance(type_, str) else None,
-        encoding=encoding,
-        imports=tuple(imports),
-        files=() if schema is None or isinstance(schema, bytes) else tuple(schema.items()),
-        plain=descriptors,
-        framework="protobuf" if descriptors is not None else None,
-        folders=tuple(os.fspath(folder) for folder in search_path),
-        borrow=borrow,
-        backend=backend,
-    )
-
-
-def _from_descriptors(type_: str | type, schema: Mapping[str, str] | bytes | None) -> str | None:
-    """A type that comes as protobuf's own descriptors, as text."""
+def _type_request(direction: Direction, type_: str | type, options: Options) -> Request:
+    request = _request(direction, options, type_=type_ if isinstance(type_, str) else None)
+    schema = options.get("schema")
     if isinstance(type_, str) and not isinstance(schema, bytes):
-        return None
+        return request
+    descriptors = _from_descriptors(type_, schema if isinstance(schema, bytes) else None)
+    return replace(request, plain=descriptors, framework="protobuf")
+
+
+def _from_descriptors(type_: str | type, schema: bytes | None) -> str:
+    """A type that comes as protobuf's own descriptors, as text."""
     from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set, from_message_class
     from rosetta_jit.model.serial import to_plain
     from rosetta_jit.model.types import Ref
 
-    if isinstance(schema, bytes):
+    if schema is not None:
         declared = from_file_descriptor_set(schema)
         name = type_ if isinstance(type_, str) else type_.__name__
     else:
@@ -372,7 +344,7 @@ class OwnPrograms:
         return _of_request(Encoder, replace(self._request, direction="encode"))
 
 
-def _of_request(program: type[Decoder | Encoder], request: Request) -> Any:
+def _of_request(program: Any, request: Request) -> Any:
     made = program.__new__(program)
     made.make(request)
     return made

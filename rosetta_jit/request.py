@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 Direction = Literal["decode", "encode"]
+ByteOrder = Literal["little", "big"]
 Backend = Literal["numba", "llvm", "python", "interpreter"]
 
 
@@ -32,11 +33,15 @@ class Request:
     plain
         A type that came as descriptors: as `rosetta_jit.model.serial` writes it.
     framework
-        The framework of such a type.
+        The framework whose type it is, where its name, its file or the encoding do not tell.
     folders
         The user's search path.
     borrow
         Bytes fields of decoded holders are views into the message.
+    byte_order
+        None for the usual one, or for either, where messages say which it is.
+    lenient
+        What the encoding is asked to forgive, by name.
     backend
         What runs the kernels; None for numba where it is installed, else LLVM.
     """
@@ -51,6 +56,8 @@ class Request:
     framework: str | None = None
     folders: tuple[str, ...] = ()
     borrow: bool = False
+    byte_order: ByteOrder | None = None
+    lenient: tuple[str, ...] = ()
     backend: Backend | None = None
 
     def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:

@@ -29,6 +29,28 @@ def ambiguous_encoding(name: str, known: Sequence[str]) -> Diagnostic:
     )
 
 
+def fixed_byte_order(name: str) -> Diagnostic:
+    """A byte order for an encoding that has but one."""
+    return Diagnostic("error", "fixed-byte-order", f"`{name}` has one byte order only", help="leave out byte_order=")
+
+
+def unknown_leniency(name: str, encoding: str, known: Sequence[str]) -> Diagnostic:
+    """Something that an encoding cannot be asked to forgive."""
+    help_ = f"it can forgive {', '.join(known)}" if known else "leave out lenient="
+    return Diagnostic("error", "unknown-leniency", f"`{encoding}` cannot be lenient about `{name}`", help=help_)
+
+
+def unknown_framework(name: str, known: Sequence[str]) -> Diagnostic:
+    """A framework that is not installed."""
+    return Diagnostic("error", "unknown-framework", f"there is no framework `{name}`", help=f"choose one of {', '.join(known)}")
+
+
+def nameless_schema() -> Diagnostic:
+    """A schema that came as one text, and nothing that says in which language."""
+    what = "nothing says in which language the schema is"
+    return Diagnostic("error", "nameless-schema", what, help='add encoding= or framework=, or give it a name: schema={"file.msg": text}')
+
+
 def no_rules(span: Span | None, direction: str) -> Diagnostic:
     """A direction for which the mapping has no rules."""
     block = "unpack-rules" if direction == "decode" else "pack-rules"

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from fnmatch import fnmatch
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Literal, Protocol, cast
+
+from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from rosetta_jit.frontend.idl import FrontEnd
     from rosetta_jit.model.types import Schema, Struct
@@ -18,11 +21,29 @@ if TYPE_CHECKING:
 GROUP = "rosetta_jit.frameworks"
 """The entry-point group in which packages offer frameworks of their own: a `Framework` each."""
 
+ByteOrder = Literal["little", "big"]
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What a caller may say about an encoding besides its name.
+
+    Attributes
+    ----------
+    byte_order
+        None for the usual one, or for either, where messages say which it is.
+    lenient
+        Names of what is forgiven: keys of the framework's ``leniencies``.
+    """
+
+    byte_order: ByteOrder | None = None
+    lenient: frozenset[str] = frozenset()
+
 
 class Encoder(Protocol):
     """A function from a struct to its bytes' description."""
 
-    def __call__(self, struct: Struct, schema: Schema, name: str) -> Encoding:
+    def __call__(self, struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
         """The encoding of that name of a struct."""
         ...
 
@@ -39,21 +60,73 @@ class Framework:
         By name; the first is the one that decoders use where none is named.
     manners
         Of its holders; empty for plain ones.
+    files
+        Patterns of the file names that are this framework's and not another's with the same suffix.
+    leniencies
+        For each encoding, what it can be asked to forgive: a name, and the peer that needs it.
+    byte_orders
+        Encodings whose byte order can be chosen.
     """
 
     name: str
     idl: Mapping[str, str]
     encodings: Mapping[str, str]
     manners: str = ""
+    files: tuple[str, ...] = ()
+    leniencies: Mapping[str, Mapping[str, str]] = field(default_factory=dict[str, "Mapping[str, str]"])
+    byte_orders: tuple[str, ...] = ()
 
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""
         return cast("Encoder", _found(self.encodings[name]))
 
+    def reads(self, file: str) -> bool:
+        """Whether it has a front end for a file of that name."""
+        return file.endswith(tuple(self.idl))
 
-def front_ends(frameworks: Mapping[str, Framework]) -> dict[str, FrontEnd]:
-    """All front ends by suffix, each imported when it is first called."""
-    return {suffix: _lazy(place) for framework in frameworks.values() for suffix, place in framework.idl.items()}
+    def front_end(self, file: str) -> FrontEnd:
+        """The front end for a file that it `reads`, imported when it is first called."""
+        return _lazy(next(place for suffix, place in self.idl.items() if file.endswith(suffix)))
+
+
+@dataclass(frozen=True, slots=True)
+class Readers:
+    """Finds the front end of a file among frameworks, of which a request may name one, or one of its encodings."""
+
+    frameworks: Mapping[str, Framework]
+    framework: str | None = None
+    encoding: str | None = None
+
+    def owner(self, file: str) -> Framework | None:
+        """The framework whose IDL a file is; None if no front end reads it.
+
+        Of several that read such files, it is the one that the request names, or that has its encoding, or whose ``files`` the name
+        matches, or the first.
+        """
+        readers = [each for each in self.frameworks.values() if each.reads(file)]
+        named = [each for each in readers if each.name == self.framework]
+        encoding = [each for each in readers if self.encoding in each.encodings]
+        matching = [each for each in readers if any(fnmatch(file, pattern) for pattern in each.files)]
+        return next(iter([*named, *encoding, *matching, *readers]), None)
+
+    def find(self, file: str) -> FrontEnd | None:
+        """The front end of a file, or None."""
+        owner = self.owner(file)
+        return None if owner is None else owner.front_end(file)
+
+    def guesses(self, type_: str) -> Iterator[str]:
+        """The files in which a type of that name is likely declared."""
+        parts = name_parts(type_)
+        for suffix in self.suffixes:
+            if len(parts) > 1:
+                yield "/".join((*parts[:-1], "msg", parts[-1])) + suffix
+            yield "/".join(parts) + suffix
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """All suffixes that are read; those of the framework that the request means come first."""
+        meant = [each for each in self.frameworks.values() if each.name == self.framework or self.encoding in each.encodings]
+        return tuple(dict.fromkeys(suffix for each in (*meant, *self.frameworks.values()) for suffix in each.idl))
 
 
 def manners_of(place: str) -> Manners:

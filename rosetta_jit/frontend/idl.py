@@ -7,6 +7,7 @@ Each framework offers one for every suffix of its IDL. It resolves imports throu
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 from rosetta_jit.model.types import Schema
 from rosetta_jit.source import Source
@@ -16,3 +17,16 @@ Load = Callable[[str], Source | None]
 
 FrontEnd = Callable[[Source, Load], Schema]
 """All declarations of a source and of what it imports."""
+
+
+class FrontEnds(Protocol):
+    """The front ends of all frameworks."""
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Of all files that are read."""
+        ...
+
+    def find(self, file: str) -> FrontEnd | None:
+        """The front end of a file, None where its suffix is not known."""
+        ...

@@ -6,7 +6,6 @@ Imports are read by the front ends, names and types resolved, and each direction
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
@@ -17,11 +16,10 @@ from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping as Dictionary
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frontend.idl import FrontEnd
+    from rosetta_jit.frontend.idl import FrontEnds
     from rosetta_jit.frontend.search import SearchPath
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
@@ -53,13 +51,13 @@ class _Imported:
     schema: Schema
 
 
-def check(mapping: Mapping, front_ends: Dictionary[str, FrontEnd], search: SearchPath, reading: Reading | None = None) -> Checked:
+def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: Reading | None = None) -> Checked:
     """Read what a mapping imports, and check it.
 
     Parameters
     ----------
     front_ends
-        By the suffix of the files that they read, ``.proto``.
+        Of all frameworks.
     reading
         Collects the files that were read.
 
@@ -90,7 +88,7 @@ class _Imports:
     """How the imports of one source are read."""
 
     importer: Source
-    front_ends: Dictionary[str, FrontEnd]
+    front_ends: FrontEnds
     search: SearchPath
     reading: Reading
 
@@ -98,9 +96,9 @@ class _Imports:
         source = self.search.loader(self.reading, self.importer)(statement.path)
         if source is None:
             return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
-        front_end = self.front_ends.get(PurePosixPath(statement.path).suffix)
+        front_end = self.front_ends.find(source.name)
         if front_end is None:
-            return words.import_suffix(statement.span, statement.path, self.front_ends)
+            return words.import_suffix(statement.span, statement.path, self.front_ends.suffixes)
         return front_end(source, self.search.loader(self.reading, source))
 
 

@@ -213,7 +213,7 @@ class _Checker:
 def _extent(type_: Array | Bytes, lengths: list[Write]) -> _Extent | None:
     if lengths and lengths[0].length is not None:
         return _Extent(lengths[0].length, lengths[0].span)
-    fixed = type_.length if isinstance(type_, Array) else None
+    fixed = type_.fixed if isinstance(type_, Array) else None
     return None if fixed is None else _Extent(number(fixed), None)
 
 

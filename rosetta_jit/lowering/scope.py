@@ -132,7 +132,7 @@ def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, S
 
 
 def _in_range(index: Expr, type_: Array | Bytes, scope: Scope) -> bool:
-    length = type_.length if isinstance(type_, Array) else None
+    length = type_.fixed if isinstance(type_, Array) else None
     if not isinstance(index, Const) or 0 <= int(index.value) < (2**63 if length is None else length):
         return True
     scope.problems.append(words.index_range(index.span, int(index.value), length))

@@ -170,7 +170,7 @@ def _references(type_: Type, schema: Schema) -> frozenset[str]:
     match type_:
         case Ref(name):
             return frozenset([name]) if isinstance(schema.types[name], Struct) else frozenset()
-        case Array(element, _) | Optional(element):
+        case Array(element) | Optional(element):
             return _references(element, schema)
         case Map(key, value):
             return _references(key, schema) | _references(value, schema)
@@ -234,9 +234,11 @@ class _Building:
                 scalar = scalar_of(type_)
                 at = _align(offset, _SIZE[scalar])
                 return Number(at, scalar), at + _SIZE[scalar]
-            case String() | Bytes():
+            case String(encoding):
+                return self.span(Int(16 if encoding == "utf-16" else 8, signed=False), offset, name, key)
+            case Bytes():
                 return self.span(Int(8, signed=False), offset, name, key)
-            case Array(element, _):
+            case Array(element):
                 return self.span(element, offset, name, key)
             case Map(of, value):
                 return self.span(map_entry(of, value), offset, name, key)

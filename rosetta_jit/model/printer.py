@@ -30,22 +30,21 @@ def show_type(type_: Type) -> str:
     match type_:
         case Bool() | Int() | Float():
             return _scalar(type_)
-        case String(encoding, _):
-            return "string" if encoding == "utf-8" else f"string of {encoding}"
-        case Bytes():
-            return "bytes"
+        case String(encoding, _, maximum):
+            return ("string" if encoding == "utf-8" else f"string of {encoding}") + _bounds(None, maximum)
+        case Bytes(_, length, maximum):
+            return "bytes" + _bounds(length, maximum)
         case Enum(name) | Struct(name) | Ref(name):
             return name
-        case Array(element, None):
-            return f"[{show_type(element)}]"
-        case Array(element, length):
-            return f"[{show_type(element)}; {length}]"
+        case Array(element, length, maximum):
+            return f"[{show_type(element)}{_bounds(length, maximum)}]"
         case Optional(value):
             return f"{show_type(value)}?"
         case Map(key, value):
             return f"{{{show_type(key)}: {show_type(value)}}}"
         case Union(_, cases):
-            return " | ".join(f"{each.name}: {show_type(each.type)}" for each in cases)
+            labels = [f"{', '.join(map(str, each))} = " for each in type_.labels] or [""] * len(cases)
+            return " | ".join(f"{label}{each.name}: {show_type(each.type)}" for label, each in zip(labels, cases, strict=True))
         case _:
             assert_never(type_)
 
@@ -71,6 +70,12 @@ def show_expr(value: expr.Expr) -> str:
             assert_never(value)
 
 
+def _bounds(length: int | expr.Expr | None, maximum: int | None) -> str:
+    if length is not None:
+        return f"; {length if isinstance(length, int) else show_expr(length)}"
+    return "" if maximum is None else f"; at most {maximum}"
+
+
 def _scalar(type_: Bool | Int | Float) -> str:
     match type_:
         case Bool(spelling):
@@ -85,7 +90,9 @@ def _scalar(type_: Bool | Int | Float) -> str:
 def _declaration(declaration: Declaration) -> str:
     match declaration:
         case Struct(name, fields):
-            return "\n".join([f"struct {name}", *(f"  {_field(each)}" for each in fields), ""])
+            constants = [f"  {each.name}: {show_type(each.type)} = {each.value!r}" for each in declaration.constants]
+            options = "".join(f", {each} {value!r}" for each, value in declaration.options)
+            return "\n".join([f"struct {name}{options}", *constants, *(f"  {_field(each)}" for each in fields), ""])
         case Enum(name, values, closed):
             kind = "enum" if closed else "open enum"
             return "\n".join([f"{kind} {name}", *(f"  {each} = {number}" for each, number in values), ""])

@@ -4,12 +4,12 @@
     Type  = [word, ...]                               the word of the model in lower case, then its attributes in order
     Field = [name, Type, number, unit, default, required, options]
 
-Documentation, spans and expressions (constants, lengths) stay behind: only the compiler reads them.
+Documentation, spans and expressions (constants and lengths that other fields tell) stay behind: only the compiler reads them.
 """
 
 from __future__ import annotations
 
-from typing import Any, assert_never, cast
+from typing import TYPE_CHECKING, Any, assert_never, cast
 
 from rosetta_jit.model.types import (
     Array,
@@ -20,6 +20,7 @@ from rosetta_jit.model.types import (
     Float,
     Int,
     Map,
+    NamedConstant,
     Optional,
     Ref,
     Schema,
@@ -28,6 +29,9 @@ from rosetta_jit.model.types import (
     Type,
     Union,
 )
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Constant
 
 Plain = dict[str, Any]
 """What JSON can carry."""
@@ -86,18 +90,20 @@ class _Writing:
                 return ["int", bits, signed, spelling]
             case Float(bits, spelling):
                 return ["float", bits, spelling]
-            case String(encoding, spelling):
-                return ["string", encoding, spelling]
-            case Bytes(spelling):
-                return ["bytes", spelling]
+            case String(encoding, spelling, maximum):
+                return ["string", encoding, spelling, maximum]
+            case Bytes(spelling, length, maximum):
+                return ["bytes", spelling, _fixed(length), maximum]
             case Enum(name, values, closed):
                 return ["enum", name, [list(pair) for pair in values], closed]
-            case Array(element, length):
-                return ["array", self.type(element, depth + 1), length]
+            case Array(element, length, maximum):
+                return ["array", self.type(element, depth + 1), _fixed(length), maximum]
             case Struct(name, fields):
-                return ["struct", name, [self.field(each, depth + 1) for each in fields]]
-            case Union(name, cases):
-                return ["union", name, [self.field(each, depth + 1) for each in cases]]
+                constants = [[each.name, self.type(each.type, depth + 1), _plain_constant(each.value)] for each in type_.constants]
+                return ["struct", name, [self.field(each, depth + 1) for each in fields], constants, _plain_options(type_.options)]
+            case Union(name, cases, _, discriminator, labels, default):
+                fields = [self.field(each, depth + 1) for each in cases]
+                return ["union", name, fields, discriminator, [list(each) for each in labels], default]
             case Optional(value):
                 return ["optional", self.type(value, depth + 1)]
             case Map(key, value):
@@ -109,9 +115,20 @@ class _Writing:
                 assert_never(type_)
 
     def field(self, field: Field, depth: int) -> list[Any]:
-        options = [[name, _plain_constant(value)] for name, value in field.options]
-        default = _plain_constant(field.default)
+        default, options = _plain_constant(field.default), _plain_options(field.options)
         return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options]
+
+
+def _fixed(length: object) -> int | None:
+    return length if isinstance(length, int) else None
+
+
+def _plain_options(options: tuple[tuple[str, Constant], ...]) -> list[Any]:
+    return [[name, _plain_constant(value)] for name, value in options]
+
+
+def _options(plain: list[Any]) -> tuple[tuple[str, Constant], ...]:
+    return tuple((name, _constant(value)) for name, value in plain)
 
 
 def _type(plain: list[Any], depth: int) -> Type:
@@ -124,18 +141,20 @@ def _type(plain: list[Any], depth: int) -> Type:
             return Int(bits, signed, spelling)
         case ["float", bits, spelling]:
             return Float(bits, spelling)
-        case ["string", encoding, spelling]:
-            return String(encoding, spelling)
-        case ["bytes", spelling]:
-            return Bytes(spelling)
+        case ["string", encoding, spelling, maximum]:
+            return String(encoding, spelling, maximum)
+        case ["bytes", spelling, length, maximum]:
+            return Bytes(spelling, length, maximum)
         case ["enum", name, values, closed]:
             return Enum(name, tuple((each, number) for each, number in values), closed)
-        case ["array", element, length]:
-            return Array(_type(element, depth + 1), length)
-        case ["struct", name, fields]:
-            return Struct(name, tuple(_field(each, depth + 1) for each in fields))
-        case ["union", name, cases]:
-            return Union(name, tuple(_field(each, depth + 1) for each in cases))
+        case ["array", element, length, maximum]:
+            return Array(_type(element, depth + 1), length, maximum)
+        case ["struct", name, fields, constants, options]:
+            named = tuple(NamedConstant(each, _type(type_, depth + 1), _constant(value)) for each, type_, value in constants)
+            return Struct(name, tuple(_field(each, depth + 1) for each in fields), constants=named, options=_options(options))
+        case ["union", name, cases, discriminator, labels, default]:
+            fields = tuple(_field(each, depth + 1) for each in cases)
+            return Union(name, fields, None, discriminator, tuple(tuple(each) for each in labels), default)
         case ["optional", value]:
             return Optional(_type(value, depth + 1))
         case ["map", key, value]:
@@ -155,7 +174,7 @@ def _field(plain: list[Any], depth: int) -> Field:
         unit=unit,
         default=_constant(default),
         required=required,
-        options=tuple((each, _constant(value)) for each, value in options),
+        options=_options(options),
     )
 
 

@@ -4,6 +4,8 @@ r"""The meta-model: what data of every framework looks like, without a word abou
     Struct = name, Field*          Field = name, Type, number, unit, constant, default, ...
     Union  = name, Field*          one of the fields is set, or none (a protobuf oneof)
 
+A union with a discriminator (OMG IDL) is a struct of two fields, ``_d`` and such a union, which knows the labels of its cases.
+
 Scalars carry the word that their IDL uses (`spelling`): two IDL types with the same values but other bytes (`int32` and
 `sint32`, `:int` and `:vocab`) are the same model type, and the encoding tells them apart by that word alone.
 """
@@ -49,17 +51,23 @@ class Float:
 
 @dataclass(frozen=True, slots=True)
 class String:
-    """Text. ``octets`` promises nothing about its bytes (YARP); ``utf-8`` is checked when it is read."""
+    """Text. ``octets`` promises nothing about its bytes (YARP); ``utf-8`` is checked when it is read; ``utf-16`` is kept in code units.
 
-    encoding: Literal["utf-8", "octets"] = "utf-8"
+    ``maximum`` bounds its length: bytes, or code units.
+    """
+
+    encoding: Literal["utf-8", "octets", "utf-16"] = "utf-8"
     spelling: str = ""
+    maximum: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Bytes:
-    """Bytes without a meaning of their own."""
+    """Bytes without a meaning of their own; ``length`` and ``maximum`` as of an `Array`."""
 
     spelling: str = ""
+    length: int | Expr | None = None
+    maximum: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +82,24 @@ class Enum:
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """A sequence of one element type; ``length`` where the type fixes it."""
+    """A sequence of one element type.
+
+    Parameters
+    ----------
+    length
+        Where the type fixes it; an expression where other fields of the struct around it tell it, and the wire has no count (LCM).
+    maximum
+        The bound on it, where there is one.
+    """
 
     element: Type
-    length: int | None = None
+    length: int | Expr | None = None
+    maximum: int | None = None
+
+    @property
+    def fixed(self) -> int | None:
+        """The length, if the type alone tells it."""
+        return self.length if isinstance(self.length, int) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,22 +166,59 @@ class Field:
 
 
 @dataclass(frozen=True, slots=True)
+class NamedConstant:
+    """A name that an IDL gives to a value."""
+
+    name: str
+    type: Type
+    value: Constant
+    doc: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Struct:
-    """Named fields in order. ``name`` is qualified: ``rst.vision.Image``."""
+    """Named fields in order. ``name`` is qualified: ``rst.vision.Image``.
+
+    ``options`` is what else the IDL says that an encoding or the manners must know (``extensibility``), as sorted pairs.
+    """
 
     name: str
     fields: tuple[Field, ...]
     doc: str = field(default="", compare=False)
     span: Span | None = field(default=None, compare=False, repr=False)
+    constants: tuple[NamedConstant, ...] = ()
+    options: tuple[tuple[str, Constant], ...] = ()
+
+    def option(self, name: str) -> Constant | None:
+        """The value of an option, or None where the IDL does not give it."""
+        return dict(self.options).get(name)
 
 
 @dataclass(frozen=True, slots=True)
 class Union:
-    """At most one of several fields."""
+    """At most one of several fields.
+
+    Where a field beside it tells which, ``discriminator`` is that field's name, ``labels`` are its values for each case, and the case
+    numbered ``default`` is that of every other value.
+    """
 
     name: str
     cases: tuple[Field, ...]
     span: Span | None = field(default=None, compare=False, repr=False)
+    discriminator: str = ""
+    labels: tuple[tuple[int, ...], ...] = ()
+    default: int | None = None
+
+
+def name_parts(name: str) -> tuple[str, ...]:
+    """The parts of a qualified name, however its framework writes them; ROS 2 says in the middle that it is a message."""
+    parts = tuple(part for part in name.replace("::", "/").replace(".", "/").split("/") if part)
+    return (*parts[:-2], parts[-1]) if len(parts) > 2 and parts[-2] == "msg" else parts
+
+
+def same_name(one: str, other: str) -> bool:
+    """Whether two qualified names are one: ``sensor_msgs/JointState`` and ``sensor_msgs/msg/JointState`` are."""
+    return one == other or name_parts(one) == name_parts(other)
 
 
 Scalar = Bool | Int | Float | Enum
@@ -170,13 +229,14 @@ Declaration = Struct | Enum
 
 @dataclass(frozen=True, slots=True)
 class Schema:
-    """Declared types by qualified name, and the sources that they were read from.
+    """Declared types and constants by qualified name, and the sources that they were read from.
 
     A `Ref` names a key of ``types``; the front end has made all names absolute.
     """
 
     types: Mapping[str, Declaration]
     sources: tuple[str, ...] = ()
+    constants: Mapping[str, NamedConstant] = field(default_factory=dict[str, "NamedConstant"])
 
     def resolve(self, type_: Type) -> Type:
         """The declared type behind a reference; every other type is itself."""

@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frameworks.protobuf import idl
-from rosetta_jit.frameworks.yarp import schema
+from rosetta_jit.frameworks.base import Readers, installed
 from rosetta_jit.frontend.mapping import parse
 from rosetta_jit.frontend.search import Reading, SearchPath
 from rosetta_jit.lowering import typed
@@ -22,7 +21,7 @@ from tests.golden import GOLDEN
 NAMES = ("types.proto", "wires.bottle-schema")
 FILES = tuple((name, (GOLDEN / "mapping" / name).read_text()) for name in NAMES)
 HEAD = "".join(f'import "{name}"\n' for name in NAMES)
-FRONT_ENDS = {".proto": idl.parse, ".bottle-schema": schema.parse}
+FRONT_ENDS = Readers({name: installed()[name] for name in ("yarp", "protobuf")})
 
 
 def checked(holder: str, wire: str, *rules: str, pack: tuple[str, ...] | None = None, reading: Reading | None = None) -> Checked:

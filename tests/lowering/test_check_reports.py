@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frameworks.protobuf import idl
-from rosetta_jit.frameworks.yarp import schema
+from rosetta_jit.frameworks.base import Readers, installed
 from rosetta_jit.frontend.mapping import parse
 from rosetta_jit.frontend.search import SearchPath
 from rosetta_jit.lowering.check import check
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
 
 FOLDER = GOLDEN / "mapping"
-FRONT_ENDS = {".proto": idl.parse, ".bottle-schema": schema.parse}
+FRONT_ENDS = Readers({name: installed()[name] for name in ("yarp", "protobuf")})
 FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".txt"}}
 
 

@@ -10,6 +10,7 @@ from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int,
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Entry, Number, Path, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:
+    from rosetta_jit.frameworks.base import Choices
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.wire.codec import WireType
 
@@ -30,7 +31,7 @@ PARTIAL = "protobuf-partial"
 """The same bytes, but required fields need not come and need not be set, as in Python's ``ParseFromString``."""
 
 
-def encode_type(struct: Struct, schema: Schema, name: str) -> Encoding:
+def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:  # noqa: ARG001 - there is nothing to choose
     """The encoding of a message type."""
     messages = _Messages(schema, recursive_structs(Ref(struct.name), schema), partial=name == PARTIAL)
     root = messages.message(struct, (), delimited=False)

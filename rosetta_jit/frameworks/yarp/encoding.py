@@ -21,6 +21,7 @@ from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, O
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Constant, Count, Encoding, Number, Padding, Path, Repeat, Seq, Table
 
 if TYPE_CHECKING:
+    from rosetta_jit.frameworks.base import Choices
     from rosetta_jit.model.types import Field, Type
 
 BOOLEANS = ((49, 1), (0, 0))
@@ -38,7 +39,7 @@ SCALARS = {
 }
 
 
-def encode_type(struct: Struct, schema: Schema, dialect: str) -> Encoding:
+def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) -> Encoding:
     """The encoding of a bottle schema's type: of one dialect by name, or ``yarp`` for any.
 
     Raises
@@ -50,7 +51,7 @@ def encode_type(struct: Struct, schema: Schema, dialect: str) -> Encoding:
         return Encoding(dialect, _forms(struct, schema, DIALECTS[dialect]), _Bottles(schema, DIALECTS[dialect]).message(struct))
     usable = [each for each in (YARP2012, YARP3, YARP4) if not _missing(struct, schema, each)]
     if not usable:
-        return encode_type(struct, schema, "yarp4")
+        return encode_type(struct, schema, "yarp4", choices)
     if not _has_text(struct, schema) and len(usable) > 1:
         usable = [each for each in usable if each is not YARP2012]
     forms = [_forms(struct, schema, each) for each in usable]
@@ -180,7 +181,7 @@ class _Bottles:
         if unit is None:
             return self.coded(path, (general,), None)
         special = (LIST | self.tag(unit, field), self.elements(resolved, path, tagged=False))
-        length = resolved.type.length if isinstance(resolved.type, Array) else None
+        length = resolved.type.fixed if isinstance(resolved.type, Array) else None
         forms = (general, special) if length == 0 else (special, general)
         return self.coded(path, forms, path if length is None and not field.option("vector") else None)
 
@@ -188,7 +189,7 @@ class _Bottles:
         """Count and elements of an array field; ``head`` are fields of the same list before them."""
         array = self.schema.resolve(field.type)
         assert isinstance(array, Array)
-        fixed = None if array.length is None else array.length + len(head)
+        fixed = None if array.fixed is None else array.fixed + len(head)
         count = Count("i32", value=fixed if fixed is not None else self.computed(field.length))
         inner = replace(field, constant=None, length=None, options=())
         item = self.element(inner, array.element, ()) if tagged else self.scalar(inner, array.element, ())

@@ -206,8 +206,8 @@ class Tree:
                 return Text(self._cell(lane, offset, "i64"), target, type_)
             case Bytes(), slots.Span(offset, target):
                 return Blob(self._cell(lane, offset, "i64"), target)
-            case Array(element, length), slots.Span(offset, target):
-                return self._array(self.schema.resolve(element), element, self._cell(lane, offset, "i64"), target, length)
+            case Array(element), slots.Span(offset, target):
+                return self._array(self.schema.resolve(element), element, self._cell(lane, offset, "i64"), target, type_.fixed)
             case Map(key, value), slots.Span(offset, target):
                 return self._pairs(key, value, self._cell(lane, offset, "i64"), target)
             case Ref(), slots.Span(offset, target):
