@@ -296,29 +296,30 @@ def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
     """The holder class, whose messages can serialise themselves if their manners have it."""
     manners = manners_of(header["manners"])
     base: Any = manners.base
-    if "programs_" in vars(base) and vars(base)["programs_"] is None:
-        base.programs_ = Serialising()
+    if manners.serialising is not None and vars(base)["programs_"] is None:
+        base.programs_ = Serialising(*manners.serialising)
     return holder_class_of(header["type"], manners)
 
 
 class Serialising:
     """The programs behind ``SerializeToString`` and its like: of each holder class its own, compiled when first used."""
 
-    def __init__(self) -> None:
+    def __init__(self, framework: str, encoding: str) -> None:
+        self._framework, self._encoding = framework, encoding
         self._made: dict[str, OwnPrograms] = {}
 
     def __get__(self, holder: Holder | None, holder_type: type[Holder]) -> OwnPrograms:
         text = holder_type.family_.text
         if text not in self._made:
-            self._made[text] = OwnPrograms(text)
+            self._made[text] = OwnPrograms(Request("decode", encoding=self._encoding, plain=text, framework=self._framework))
         return self._made[text]
 
 
 class OwnPrograms:
-    """Decoder and encoder of a message class into itself, as protobuf's Python has them: required fields may be missing."""
+    """Decoder and encoder of a message class into itself."""
 
-    def __init__(self, text: str) -> None:
-        self._request = Request("decode", encoding="protobuf-partial", plain=text, framework="protobuf")
+    def __init__(self, request: Request) -> None:
+        self._request = request
 
     def encode(self, holder: Any) -> bytes:
         """The bytes of a holder."""

@@ -84,6 +84,10 @@ class Framework:
         """Whether it has a front end for a file of that name."""
         return file.endswith(tuple(self.idl))
 
+    def claims(self, file: str) -> bool:
+        """Whether files of that name are its own."""
+        return any(fnmatch(file, pattern) for pattern in self.files)
+
     def front_end(self, file: str) -> FrontEnd:
         """The front end for a file that it `reads`, imported when it is first called."""
         return _lazy(next(place for suffix, place in self.idl.items() if file.endswith(suffix)))
@@ -106,7 +110,7 @@ class Readers:
         readers = [each for each in self.frameworks.values() if each.reads(file)]
         named = [each for each in readers if each.name == self.framework]
         encoding = [each for each in readers if self.encoding in each.encodings]
-        matching = [each for each in readers if any(fnmatch(file, pattern) for pattern in each.files)]
+        matching = [each for each in readers if each.claims(file)]
         return next(iter([*named, *encoding, *matching, *readers]), None)
 
     def find(self, file: str) -> FrontEnd | None:
@@ -117,16 +121,21 @@ class Readers:
     def guesses(self, type_: str) -> Iterator[str]:
         """The files in which a type of that name is likely declared."""
         parts = name_parts(type_)
-        for suffix in self.suffixes:
-            if len(parts) > 1:
-                yield "/".join((*parts[:-1], "msg", parts[-1])) + suffix
-            yield "/".join(parts) + suffix
+        names = ("/".join((*parts[:-1], "msg", parts[-1])), "/".join(parts)) if len(parts) > 1 else parts
+        for framework in sorted(self.likely, key=lambda each: not any(each.claims(type_ + suffix) for suffix in each.idl)):
+            for folder in ("", f"{framework.name}/"):
+                yield from (folder + name + suffix for name in names for suffix in framework.idl)
+
+    @property
+    def likely(self) -> tuple[Framework, ...]:
+        """All frameworks, or the one that the request means."""
+        every = tuple(self.frameworks.values())
+        return tuple(each for each in every if each.name == self.framework or self.encoding in each.encodings) or every
 
     @property
     def suffixes(self) -> tuple[str, ...]:
         """All suffixes that are read; those of the framework that the request means come first."""
-        meant = [each for each in self.frameworks.values() if each.name == self.framework or self.encoding in each.encodings]
-        return tuple(dict.fromkeys(suffix for each in (*meant, *self.frameworks.values()) for suffix in each.idl))
+        return tuple(dict.fromkeys(suffix for each in (*self.likely, *self.frameworks.values()) for suffix in each.idl))
 
 
 def manners_of(place: str) -> Manners:

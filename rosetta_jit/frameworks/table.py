@@ -4,19 +4,56 @@ from __future__ import annotations
 
 from rosetta_jit.frameworks.base import Framework
 
-_BOTTLES = "rosetta_jit.frameworks.yarp.encoding:encode_type"
-_MESSAGES = "rosetta_jit.frameworks.protobuf.encoding:encode_type"
+_HERE = "rosetta_jit.frameworks"
+_BOTTLES = f"{_HERE}.yarp.encoding:encode_type"
+_MESSAGES = f"{_HERE}.protobuf.encoding:encode_type"
+_CDR = f"{_HERE}.omg.cdr:encode_type"
+_OROCOS = f"{_HERE}.orocos.encoding:encode_type"
+_IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (
     Framework(
         "yarp",
-        idl={".bottle-schema": "rosetta_jit.frameworks.yarp.schema:parse"},
+        idl={".bottle-schema": f"{_HERE}.yarp.schema:parse", ".thrift": f"{_HERE}.yarp.thrift:parse"},
         encodings={"yarp": _BOTTLES, "yarp3": _BOTTLES, "yarp4": _BOTTLES, "yarp2012": _BOTTLES},
     ),
     Framework(
         "protobuf",
-        idl={".proto": "rosetta_jit.frameworks.protobuf.idl:parse"},
+        idl={".proto": f"{_HERE}.protobuf.idl:parse"},
         encodings={"protobuf": _MESSAGES, "protobuf-partial": _MESSAGES},
-        manners="rosetta_jit.frameworks.protobuf.manners:PROTOBUF",
+        manners=f"{_HERE}.protobuf.manners:PROTOBUF",
+    ),
+    Framework(
+        "ros1",
+        idl={".msg": f"{_HERE}.ros1.idl:parse"},
+        encodings={"ros1": f"{_HERE}.ros1.encoding:encode_type"},
+        manners=f"{_HERE}.ros1.manners:GENPY",
+        files=("*ros1/*.msg",),
+    ),
+    Framework(
+        "corba",
+        idl={".idl": _IDL},
+        encodings={"cdr-giop": _CDR},
+        manners=f"{_HERE}.corba.manners:OMNIORB",
+        byte_orders=("cdr-giop",),
+    ),
+    Framework(
+        "ros2",
+        idl={".msg": f"{_HERE}.ros2.idl:parse", ".idl": _IDL},
+        encodings={"cdr": _CDR, "cdr2": _CDR},
+        manners=f"{_HERE}.ros2.manners:RCLPY",
+        files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
+        byte_orders=("cdr", "cdr2"),
+    ),
+    Framework(
+        "lcm",
+        idl={".lcm": f"{_HERE}.lcm.idl:parse"},
+        encodings={"lcm": f"{_HERE}.lcm.encoding:encode_type"},
+        manners=f"{_HERE}.lcm.manners:LCM_GEN",
+    ),
+    Framework(
+        "orocos",
+        idl={".hpp": f"{_HERE}.orocos.header:parse", ".h": f"{_HERE}.orocos.header:parse", ".tlb": f"{_HERE}.orocos.typelib:parse"},
+        encodings={"rtt-mqueue": _OROCOS, "typelib": _OROCOS, "native": _OROCOS},
     ),
 )

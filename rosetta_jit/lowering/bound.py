@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
+from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
@@ -121,6 +123,18 @@ class WireFields:
         if not self.element:
             for _, codec in choice.alternatives:
                 self.declare(codec, ())
+
+    def choose(self, path: Path, number: int) -> None:
+        del path, number
+        raise MappingError((unmappable_place(None),))
+
+    def present(self, path: Path) -> Expr:
+        del path
+        raise MappingError((unmappable_place(None),))
+
+    @property
+    def scope(self) -> WireFields:
+        return self
 
     # --- binding -----------------------------------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@ from rosetta_jit.kernel.ir import (
     Convert,
     Copy,
     Expr,
+    Fill,
     Get,
     Place,
     Reserve,
@@ -28,9 +29,10 @@ from rosetta_jit.kernel.ir import (
     Wire,
     add,
     index,
+    mul,
     type_of,
 )
-from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
+from rosetta_jit.lowering.writer import MAX_SIZE, MESSAGE, Where, Writer
 from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
 
 if TYPE_CHECKING:
@@ -85,6 +87,19 @@ class Fields(Protocol):
         """Each alternative of a choice will put the same fields."""
         ...
 
+    def choose(self, path: Path, number: int) -> None:
+        """The union at a path has this case, 0 for none: decode says so, encode checks it."""
+        ...
+
+    def present(self, path: Path) -> Expr:
+        """Encode: whether an optional field is there."""
+        ...
+
+    @property
+    def scope(self) -> Fields:
+        """The fields of the struct around: those that lengths are computed from."""
+        ...
+
 
 class Elements(Protocol):
     """The fields of each element of an array."""
@@ -119,6 +134,11 @@ class HolderFields:
     cell: Cell
     where: Where = MESSAGE
     borrow: bool = False
+    owner: HolderFields | None = None
+
+    @property
+    def scope(self) -> HolderFields:
+        return self.owner or self
 
     def put(self, path: Path, value: Expr) -> None:
         cell = self.mark(path)
@@ -158,9 +178,14 @@ class HolderFields:
 
     def open(self, path: Path, count: Expr) -> HolderElements:
         cell = self.mark(path)
-        start = self.reserve(span_of(cell).lane, count)
+        lane = span_of(cell).lane
+        start = self.reserve(lane, count)
         self.set_span(cell, start, count)
-        return HolderElements(self, span_of(cell).lane, start, self.where.members(path))
+        if has_gaps(self.layout.lanes[lane].element):
+            stride = self.layout.lanes[lane].stride
+            self.writer.expect(Compare("le", count, index(MAX_SIZE // stride)), "count", self.where.members(path), "too many elements")
+            self.writer.emit(Fill(Place(lane, start), mul(count, stride)))
+        return HolderElements(self, lane, start, self.where.members(path))
 
     def elements(self, path: Path, stored: Stored) -> HolderElements:
         assert stored.start is not None
@@ -168,6 +193,24 @@ class HolderFields:
 
     def branch(self, choice: Choice) -> None:
         """Fields of a holder are written in whichever branch they come."""
+
+    def choose(self, path: Path, number: int) -> None:
+        cell = self.find(path)
+        assert isinstance(cell.slot, Variant)
+        place = cell.place(cell.slot.offset)
+        if self.writer.direction == "decode":
+            self.writer.emit(SetField(place, index(number)))
+        else:
+            agrees = Compare("eq", Get("i64", place), index(number))
+            self.writer.expect(agrees, "union", self.where.members(path[:-1]), "another case is set than the discriminator says")
+
+    def present(self, path: Path) -> Expr:
+        owner = self.find(path[:-1])
+        member = member_of(owner.slot, path[-1])
+        assert isinstance(owner.slot, Row)
+        assert member.presence is not None
+        place, mask = presence_bit(owner, owner.slot, member.presence)
+        return Compare("ne", Binary("and", Get("u64", place), mask), Const("u64", 0))
 
     # --- places ------------------------------------------------------------------------------------------------------
 
@@ -234,8 +277,10 @@ class HolderElements:
         return self
 
     def at(self, number: Expr) -> HolderFields:
-        cell = Cell(self.lane, add(self.start, number), self.parent.layout.lanes[self.lane].element)
-        return replace(self.parent, cell=cell, where=self.where.element(number))
+        slot = self.parent.layout.lanes[self.lane].element
+        cell = Cell(self.lane, add(self.start, number), slot)
+        owner = None if isinstance(slot, Row) else self.parent.scope
+        return replace(self.parent, cell=cell, where=self.where.element(number), owner=owner)
 
 
 def root_fields(writer: Writer, layout: Layout, *, borrow: bool = False) -> HolderFields:
@@ -250,6 +295,17 @@ def member_of(slot: Slot, name: str) -> Member:
             return next(member for member in members if member.name == name)
         case _:
             raise AssertionError(name)
+
+
+def has_gaps(slot: Slot) -> bool:
+    """Whether reading a value may leave parts of its slot as they were: what is absent, the other cases of a union."""
+    match slot:
+        case Row(_, _, words, members):
+            return words > 0 or any(has_gaps(member.slot) for member in members)
+        case Variant():
+            return True
+        case _:
+            return False
 
 
 def span_of(cell: Cell) -> Span:

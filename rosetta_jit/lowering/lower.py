@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, index
+from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.lowering.bound import Found, WireFields
 from rosetta_jit.lowering.fields import root_fields
@@ -59,6 +59,7 @@ def lower(
 def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, rules: tuple[Rule, ...] | None, *, borrow: bool) -> Block:
     with writer.nested() as body:
         writer.position = BEGIN if writer.direction != "size" else index(0)
+        writer.origin = add(writer.position, encoding.origin)
         holder = root_fields(writer, layout, borrow=borrow)
         writer.expect(Compare("lt", ROW, Capacity(0)), "index", Where(), "the holder has no row for the message")
         if writer.direction == "decode":

@@ -1,7 +1,6 @@
 """The walk over a codec: one for decoding, encoding and sizing. What is structural is the same for all of them.
 
-Direction is known to the leaves alone: a number is loaded, stored, or counted; a constant is expected, stored, or counted; a
-count is read and checked, or written.
+Direction is known to the leaves (`rosetta_jit.lowering.leaves`), and here where elements are opened or found, and cases chosen.
 """
 
 from __future__ import annotations
@@ -19,30 +18,27 @@ from rosetta_jit.kernel.ir import (
     Expr,
     For,
     If,
-    IsText,
-    Load,
     Local,
-    Scalar,
-    Select,
     Store,
     Switch,
     While,
-    Wire,
     add,
     index,
     mul,
-    type_of,
 )
-from rosetta_jit.lowering.computed import evaluate
-from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering import leaves
+from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
 from rosetta_jit.wire.codec import (
+    Align,
     Blob,
+    Cases,
     Choice,
     Codec,
     Computed,
     Constant,
-    Count,
+    Delimited,
+    Maybe,
     Number,
     Padding,
     Recursion,
@@ -55,14 +51,13 @@ from rosetta_jit.wire.codec import (
 from rosetta_jit.wire.size import fixed_size, minimum_size
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.fields import Elements, Fields
-    from rosetta_jit.model import expr
 
-LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 << 31, "u32": 1 << 32}
-"""The first count that a number on the wire cannot carry."""
+EMPTY_ELEMENTS = 1 << 16
+"""How many elements that take no bytes a message may have, whatever its own size."""
 
 
 def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
@@ -71,203 +66,66 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
         case Seq(items):
             for item in items:
                 walk(item, fields, writer)
-        case Number(path, scalar, order):
-            _number(writer, fields, path, scalar_name(scalar), order)
-        case Table():
-            _table(writer, fields, codec)
-        case Constant(_, bytes(value)):
-            _text_constant(writer, fields, codec.path, value)
-        case Constant():
-            _number_constant(writer, fields, codec)
-        case Computed(path, scalar, value, order):
-            _computed(writer, fields, path, scalar_name(scalar), value, order)
-        case Padding(scalar, value, order):
-            _padding(writer, fields.where, scalar_name(scalar), value, order)
-        case Blob():
-            _blob(writer, fields, codec)
+        case Number() | Table() | Constant() | Computed() | Padding() | Align() | Blob():
+            leaves.leaf(codec, fields, writer)
         case Repeat():
             _repeat(writer, fields, codec)
         case Choice():
             _choice(writer, fields, codec)
+        case Cases():
+            _cases(writer, fields, codec)
+        case Maybe():
+            _maybe(writer, fields, codec)
+        case Delimited():
+            _delimited(writer, fields, codec)
         case Tagged() | Varint() | Recursion():
-            raise AssertionError(codec)  # `tagged` and `recursion` read and write these
+            raise AssertionError(codec)  # `tagged`, `recursion` and `descent` read and write these
         case _:
             assert_never(codec)
 
 
-# --- leaves: the only place that asks for the direction --------------------------------------------------------------------
-
-
-def _number(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, order: str) -> None:
-    where = fields.where.members(path)
-    if writer.direction == "decode":
-        fields.put(path, writer.load(scalar, where, order))
-        return
-    value = fields.get(path) if writer.direction == "encode" else None
-    if value is None:
-        writer.require(WIDTH[scalar], where, "no room for the message")
-        writer.advance(WIDTH[scalar])
-    else:
-        writer.store(_as(scalar, value), where, order)
-
-
-def _table(writer: Writer, fields: Fields, table: Table) -> None:
-    where, scalar = fields.where.members(table.path), scalar_name(table.scalar)
-    detail = "not one of " + ", ".join(str(wire) for wire, _ in table.pairs)
-    if writer.direction == "decode":
-        at = writer.position
-        wire = writer.let("code", integer(writer.load(scalar, where, table.order)))
-        pairs: list[tuple[Expr, int]] = [(Compare("eq", wire, index(number)), value) for number, value in table.pairs]
-        writer.expect(_any(test for test, _ in pairs), "constant", where, detail, at=at)
-        fields.put(table.path, _select(pairs))
-        return
-    value = fields.get(table.path) if writer.direction == "encode" else None
-    if value is None:
-        writer.require(WIDTH[scalar], where)
-        writer.advance(WIDTH[scalar])
-        return
-    known = writer.let("code", integer(value))
-    written: list[tuple[Expr, int]] = [(Compare("eq", known, index(value)), number) for number, value in table.pairs]
-    writer.expect(_any(test for test, _ in written), "range", where, "the wire has no word for this value")
-    writer.store(_as(scalar, _select(written)), where, table.order)
-
-
-def _number_constant(writer: Writer, fields: Fields, constant: Constant) -> None:
-    where = fields.where.members(constant.path)
-    scalar = scalar_name(constant.scalar)
-    value = Const(scalar, constant.value if isinstance(constant.value, int | float) else 0)
-    if writer.direction == "decode":
-        at = writer.position
-        found = writer.load(scalar, where, constant.order)
-        writer.expect(Compare("eq", found, value), constant.kind, where, f"must be {constant.value}", at=at)
-        if constant.kind == "constant" and constant.path:
-            fields.put(constant.path, value)
-    else:
-        writer.store(value, where, constant.order)
-
-
-def _text_constant(writer: Writer, fields: Fields, path: tuple[str, ...], value: bytes) -> None:
-    where = fields.where.members(path)
-    writer.require(len(value), where)
-    for offset, number, scalar in _words(value):
-        at = add(writer.position, offset)
-        if writer.direction == "decode":
-            found = Compare("eq", Load(scalar, at), Const(scalar, number))
-            writer.expect(found, "constant", where, f"must be {value!r}", at=at)
-        elif writer.direction == "encode":
-            writer.emit(Store(at, Const(scalar, number)))
-    if writer.direction == "decode" and path:
-        fields.put_bytes(path, writer.position, index(len(value)))
-    writer.advance(len(value))
-
-
-def _computed(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, value: expr.Expr, order: str) -> None:
-    where = fields.where.members(path)
-    if writer.direction == "size":
-        writer.advance(WIDTH[scalar])
-        return
-    if writer.direction == "decode":
-        fields.put(path, writer.load(scalar, where, order))
-        writer.deferred.append(lambda: _agrees(writer, fields, fields.get(path), value, where, "constant"))
-    else:
-        expected = evaluate(value, fields, writer, where)
-        _in_range(writer, where, expected, scalar)
-        writer.store(_as(scalar, expected), where, order)
-
-
-def _agrees(writer: Writer, fields: Fields, found: Expr | None, value: expr.Expr, where: Where, kind: str) -> None:
-    """Checked when the message has been read, since any of its fields may determine the value."""
-    assert found is not None
-    known = writer.let("found", integer(found))
-    expected = evaluate(value, fields, writer, where)
-    writer.expect(Compare("eq", known, expected), kind, where, "must agree with the fields that determine it")
-
-
-def _padding(writer: Writer, where: Where, scalar: Scalar, value: int, order: str) -> None:
-    if writer.direction == "decode":
-        writer.require(WIDTH[scalar], where)
-        writer.advance(WIDTH[scalar])
-    else:
-        writer.store(Const(scalar, value), where, order)
-
-
-def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
-    where = fields.where.members(blob.path)
-    extra = int(blob.terminated)
-    if writer.direction == "decode":
-        total = read_count(writer, fields, blob.path, blob.count, "length", least=extra)
-        writer.require(total, where)
-        size = _without_terminator(writer, total, where) if blob.terminated else total
-        if blob.text:
-            writer.expect(IsText(Wire(writer.position), size), "text", where, "not valid UTF-8")
-        fields.put_bytes(blob.path, writer.position, size)
-        writer.advance(total)
-        return
-    stored = fields.stored(blob.path)
-    write_count(writer, blob.count, add(stored.size, extra), where)
-    writer.require(stored.size, where, "no room for the message")
-    if writer.direction == "encode":
-        fields.copy_bytes(blob.path, stored)
-    writer.advance(stored.size)
-    if blob.terminated:
-        writer.store(Const("u8", 0), where)
-
-
-def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:
-    last = Load("u8", Binary("sub", Binary("add", writer.position, total), index(1)))
-    writer.expect(Compare("eq", last, Const("u8", 0)), "constant", where, "a string must end with NUL")
-    return writer.let("length", Binary("sub", total, index(1)))
-
-
-def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
-    """A count that has come: not negative, and what the schema says it must be."""
-    where, scalar, at = fields.where.members(path), scalar_name(count.scalar), writer.position
-    found = writer.let("count", integer(writer.load(scalar, where, count.order)))
-    if isinstance(count.value, int):
-        writer.expect(Compare("eq", found, index(count.value)), kind, where, f"must be {count.value}", at=at)
-        return index(count.value)
-    rule = f"must be at least {least}" if least else "must not be negative"
-    writer.expect(Compare("ge", found, index(least)), kind, where, rule, at=at)
-    value = count.value
-    if value is not None:
-        writer.deferred.append(lambda: _agrees(writer, fields, fields.stored(path).size, value, where, kind))
-    return found
-
-
-def write_count(writer: Writer, count: Count, value: Expr, where: Where) -> None:
-    """A count to be written; one that the schema fixes must be that one."""
-    if isinstance(count.value, int):
-        writer.expect(Compare("eq", value, index(count.value)), "count", where, f"must be {count.value}")
-    scalar = scalar_name(count.scalar)
-    if scalar in LIMITS:
-        writer.expect(Compare("lt", value, index(LIMITS[scalar])), "range", where, "too many for the wire")
-    writer.store(_as(scalar, value), where, count.order)
-
-
-# --- structure: the same in every direction -------------------------------------------------------------------------------
-
-
 def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
-    where = fields.where.members(repeat.path)
-    if writer.direction == "decode":
-        total = read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
-        count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
-        walk(Seq(repeat.head), fields, writer)
-        least = minimum_size(repeat.item)
-        writer.require(mul(count, max(least, 1)), where, "the message ends before its elements")
-        elements = fields.open(repeat.path, count)
-    else:
-        fixed = repeat.count.value - repeat.extra if isinstance(repeat.count.value, int) else None
-        stored = fields.stored(repeat.path, fixed)
-        count = stored.size
-        write_count(writer, repeat.count, add(count, repeat.extra), where)
-        walk(Seq(repeat.head), fields, writer)
-        elements = fields.elements(repeat.path, stored)
-    size = fixed_size(repeat.item)
+    elements, count = begin_elements(writer, fields, repeat)
+    where, size = fields.where.members(repeat.path), fixed_size(repeat.item)
     if size is None:
         _each_in_turn(writer, repeat.item, elements, count)
     else:
         _each_at_its_place(writer, repeat.item, elements, count, size, where)
+
+
+def begin_elements(writer: Writer, fields: Fields, repeat: Repeat) -> tuple[Elements, Expr]:
+    """The count and what stands before the first element; the elements, and how many there are."""
+    where = fields.where.members(repeat.path)
+    if writer.direction == "decode":
+        total = leaves.read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
+        count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
+        walk(Seq(repeat.head), fields, writer)
+        _align_first(writer, repeat, count)
+        _plausible(writer, repeat, count, where)
+        return fields.open(repeat.path, count), count
+    fixed = repeat.count.value - repeat.extra if isinstance(repeat.count.value, int) else None
+    stored = fields.stored(repeat.path, fixed)
+    leaves.write_count(writer, fields, repeat.count, stored.size, where, extra=repeat.extra)
+    walk(Seq(repeat.head), fields, writer)
+    _align_first(writer, repeat, stored.size)
+    return fields.elements(repeat.path, stored), stored.size
+
+
+def _align_first(writer: Writer, repeat: Repeat, count: Expr) -> None:
+    if repeat.align > 1:
+        leaves.align(writer, repeat.align, Compare("gt", count, index(0)))
+
+
+def _plausible(writer: Writer, repeat: Repeat, count: Expr, where: Where) -> None:
+    """A message has at least as many bytes as its elements need, so that a count alone cannot take much memory."""
+    if isinstance(count, Const):
+        return
+    least = minimum_size(repeat.item)
+    if least:
+        writer.expect(Compare("le", count, index(MAX_SIZE // least)), "count", where, "too many elements")
+        writer.require(mul(count, least), where, "the message ends before its elements")
+    else:
+        writer.expect(Compare("le", count, index(EMPTY_ELEMENTS)), "count", where, "too many elements that take no bytes")
 
 
 def _each_at_its_place(writer: Writer, item: Codec, elements: Elements, count: Expr, size: int, where: Where) -> None:
@@ -349,41 +207,86 @@ def _alternative(writer: Writer, fields: Fields, codec: Codec, at: Local) -> Blo
     return block(body)
 
 
-# --- small things -----------------------------------------------------------------------------------------------------------
+def _cases(writer: Writer, fields: Fields, cases: Cases) -> None:
+    walk(cases.discriminator, fields, writer)
+    at = writer.var("next", writer.position)
+    switch_cases(writer, fields, cases, lambda codec: (walk(codec, fields, writer), writer.assign(at, writer.position)))
+    writer.position = at
 
 
-def _as(scalar: Scalar, value: Expr) -> Expr:
-    return value if type_of(value) == scalar else Convert(scalar, value)
+def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[Codec], object]) -> None:
+    """What is done in the case that the discriminator names, after it has come; where it names none, with an empty codec."""
+    value = writer.let("label", integer(_required(fields.get(discriminator_path(cases.discriminator)))))
+    blocks: list[tuple[int, Block]] = []
+    default: Block | None = None
+    for number, (labels, codec) in enumerate(cases.cases):
+        with writer.nested() as statements:
+            fields.choose(cases.path, number + 1)
+            body(codec)
+        blocks += [(label, block(statements)) for label in labels]
+        default = block(statements) if number == cases.default else default
+    if default is None:
+        with writer.nested() as statements:
+            fields.choose(cases.path, 0)
+            body(Seq(()))
+        default = block(statements)
+    writer.emit(Switch(value, tuple(blocks), default))
 
 
-def _in_range(writer: Writer, where: Where, value: Expr, scalar: Scalar) -> None:
-    limit = LIMITS[scalar]
-    low = -limit if scalar.startswith("i") else 0
-    inside = Binary("and", Compare("ge", value, index(low)), Compare("lt", value, index(limit)))
-    writer.expect(inside, "range", where, "does not fit on the wire")
+def discriminator_path(codec: Codec) -> tuple[str, ...]:
+    """The field that a discriminator carries."""
+    match codec:
+        case Number(path) | Table(path):
+            return path
+        case Seq(items):
+            return discriminator_path(items[-1])
+        case _:
+            raise AssertionError(codec)
 
 
-def _any(tests: Iterable[Expr]) -> Expr:
-    result: Expr | None = None
-    for test in tests:
-        result = test if result is None else Binary("or", result, test)
-    return result or Const("bool", value=False)
+def _maybe(writer: Writer, fields: Fields, maybe: Maybe) -> None:
+    at = writer.var("next", writer.position)
+    if_present(writer, fields, maybe, lambda codec: (walk(codec, fields, writer), writer.assign(at, writer.position)))
+    writer.position = at
 
 
-def _select(pairs: list[tuple[Expr, int]]) -> Expr:
-    result: Expr = index(pairs[-1][1])
-    for test, value in reversed(pairs[:-1]):
-        result = Select(test, index(value), result)
-    return result
+def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Codec], object]) -> None:
+    """The flag, and what is done if the field is there; otherwise with an empty codec."""
+    where, begin = fields.where.members(maybe.path), writer.position
+    if writer.direction == "decode":
+        flag = writer.let("flag", writer.load("u8", where))
+        writer.expect(Compare("le", flag, Const("u8", 1)), "constant", where, "must be 0 or 1", at=begin)
+        present: Expr = Compare("ne", flag, Const("u8", 0))
+    else:
+        present = writer.let("present", fields.present(maybe.path))
+        writer.store(Convert("u8", present), where)
+    blocks: list[Block] = []
+    for codec in (maybe.value, Seq(())):
+        with writer.nested() as statements:
+            body(codec)
+        blocks.append(block(statements))
+    writer.emit(If(present, blocks[0], blocks[1]))
 
 
-def _words(value: bytes) -> list[tuple[int, int, Scalar]]:
-    """Bytes as the fewest little-endian words: offset, number, type."""
-    words: list[tuple[int, int, Scalar]] = []
-    offset = 0
-    sizes: tuple[tuple[int, Scalar], ...] = ((8, "u64"), (4, "u32"), (2, "u16"), (1, "u8"))
-    while offset < len(value):
-        size, scalar = next(each for each in sizes if each[0] <= len(value) - offset)
-        words.append((offset, int.from_bytes(value[offset : offset + size], "little"), scalar))
-        offset += size
-    return words
+def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
+    where, scalar, begin = fields.where.members(delimited.path), scalar_name(delimited.scalar), writer.position
+    if writer.direction == "decode":
+        size = writer.let("size", integer(writer.load(scalar, where, delimited.order)))
+        writer.require(size, where)
+        stop = writer.let("stop", Binary("add", writer.position, size))
+        walk(delimited.value, fields, writer)
+        writer.expect(Compare("eq", writer.position, stop), "length", where, "its content is not as long as it says", at=begin)
+        return
+    writer.require(WIDTH[scalar], where, "no room for the message")
+    writer.advance(WIDTH[scalar])
+    inside = writer.let("inside", writer.position)
+    walk(delimited.value, fields, writer)
+    if writer.direction == "encode":
+        size = writer.let("size", Binary("sub", writer.position, inside))
+        writer.expect(Compare("lt", size, index(leaves.LIMITS[scalar])), "range", where, "too long for the wire")
+        writer.emit(Store(begin, converted(size, scalar), ">" if delimited.order == ">" else "<"))
+
+
+def _required(value: Expr | None) -> Expr:
+    assert value is not None
+    return value

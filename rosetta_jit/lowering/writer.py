@@ -74,11 +74,12 @@ MESSAGE = Where()
 
 @dataclass(slots=True)
 class Writer:
-    """Collects statements. ``position`` is always a local plus a constant."""
+    """Collects statements. ``position`` is always a local plus a constant; alignment counts from ``origin``."""
 
     direction: Direction
     block: list[Stmt] = field(default_factory=list[Stmt])
     position: Expr = BEGIN
+    origin: Expr = BEGIN
     sites: list[Site] = field(default_factory=lambda: [Site("grow", "", "a lane is too small")])
     names: set[str] = field(default_factory=set[str])
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])

@@ -4,13 +4,14 @@
     Type  = [word, ...]                               the word of the model in lower case, then its attributes in order
     Field = [name, Type, number, unit, default, required, options]
 
-Documentation, spans and expressions (constants and lengths that other fields tell) stay behind: only the compiler reads them.
+Documentation, spans, and what a bottle schema computes stay behind: only the compiler reads them.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
+from rosetta_jit.model import expr
 from rosetta_jit.model.types import (
     Array,
     Bool,
@@ -93,11 +94,11 @@ class _Writing:
             case String(encoding, spelling, maximum):
                 return ["string", encoding, spelling, maximum]
             case Bytes(spelling, length, maximum):
-                return ["bytes", spelling, _fixed(length), maximum]
+                return ["bytes", spelling, _plain_length(length), maximum]
             case Enum(name, values, closed):
                 return ["enum", name, [list(pair) for pair in values], closed]
             case Array(element, length, maximum):
-                return ["array", self.type(element, depth + 1), _fixed(length), maximum]
+                return ["array", self.type(element, depth + 1), _plain_length(length), maximum]
             case Struct(name, fields):
                 constants = [[each.name, self.type(each.type, depth + 1), _plain_constant(each.value)] for each in type_.constants]
                 return ["struct", name, [self.field(each, depth + 1) for each in fields], constants, _plain_options(type_.options)]
@@ -119,8 +120,17 @@ class _Writing:
         return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options]
 
 
-def _fixed(length: object) -> int | None:
+def _plain_length(length: object) -> Any:
+    """A number, or the path of the field that tells it."""
+    if isinstance(length, expr.Path):
+        return [step.name for step in length.steps if isinstance(step, expr.Member)]
     return length if isinstance(length, int) else None
+
+
+def _length(plain: Any) -> Any:
+    if isinstance(plain, list):
+        return expr.Path("wire", tuple(expr.Member(name) for name in cast("list[str]", plain)))
+    return plain
 
 
 def _plain_options(options: tuple[tuple[str, Constant], ...]) -> list[Any]:
@@ -144,11 +154,11 @@ def _type(plain: list[Any], depth: int) -> Type:
         case ["string", encoding, spelling, maximum]:
             return String(encoding, spelling, maximum)
         case ["bytes", spelling, length, maximum]:
-            return Bytes(spelling, length, maximum)
+            return Bytes(spelling, _length(length), maximum)
         case ["enum", name, values, closed]:
             return Enum(name, tuple((each, number) for each, number in values), closed)
         case ["array", element, length, maximum]:
-            return Array(_type(element, depth + 1), length, maximum)
+            return Array(_type(element, depth + 1), _length(length), maximum)
         case ["struct", name, fields, constants, options]:
             named = tuple(NamedConstant(each, _type(type_, depth + 1), _constant(value)) for each, type_, value in constants)
             return Struct(name, tuple(_field(each, depth + 1) for each in fields), constants=named, options=_options(options))

@@ -1,7 +1,8 @@
 r"""A codec: an invertible description of bytes, without a direction.
 
-    Codec  = Number | Table | Varint | Constant | Computed | Padding | Blob | Seq | Repeat | Choice | Tagged | Recursion
-    Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes
+    Codec  = Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Seq | Repeat | Choice | Cases | Maybe
+           | Delimited | Tagged | Recursion
+    Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes, or that alone
 
 A leaf names the field that it carries by a path relative to the element around it: the message, an element of a `Repeat`, or a message of
 a `Tagged` field. The path () is that element itself. What decoding and encoding do with a leaf is none of its business.
@@ -80,11 +81,24 @@ class Padding:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """A number of elements or bytes before them: of a scalar type or a varint. ``value`` fixes or computes it."""
+    """A number of elements or bytes before them: of a scalar type or a varint. ``value`` fixes or computes it.
 
-    scalar: str | Literal["varint"]
+    Without a ``scalar`` nothing is on the wire, and ``value`` tells it: an expression reads fields of the struct around the array that
+    have come before. ``maximum`` bounds it. Each element counts as ``unit``.
+    """
+
+    scalar: str | Literal["varint"] | None
     order: Order = "<"
     value: int | Expr | None = None
+    maximum: int | None = None
+    unit: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Align:
+    """Padding up to the next multiple of ``size`` bytes from the origin of the encoding. Zeros are written."""
+
+    size: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,13 +118,17 @@ class Seq:
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """Counted elements of an array. Other fields may stand between the count and the elements (``head``), and be counted with them."""
+    """Counted elements of an array. Other fields may stand between the count and the elements (``head``), and be counted with them.
+
+    Before the first element, if there is one, there is padding up to a multiple of ``align`` bytes.
+    """
 
     path: Path
     count: Count
     item: Codec
     head: tuple[Codec, ...] = ()
     extra: int = 0
+    align: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +142,38 @@ class Choice:
     scalar: str
     alternatives: tuple[tuple[int, Codec], ...]
     when_empty: int = 0
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Cases:
+    """A discriminator, and what follows for its values: one of the cases of the union at ``path``, or nothing.
+
+    The codecs' paths start where that of the union does. ``default`` is the number of the case for any other value; without one there
+    is nothing.
+    """
+
+    path: Path
+    discriminator: Codec
+    cases: tuple[tuple[tuple[int, ...], Codec], ...]
+    default: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Maybe:
+    """A byte that says whether the optional field at ``path`` follows."""
+
+    path: Path
+    value: Codec
+
+
+@dataclass(frozen=True, slots=True)
+class Delimited:
+    """The number of bytes of what follows, then that."""
+
+    path: Path
+    value: Codec
+    scalar: str = "u32"
     order: Order = "<"
 
 
@@ -166,14 +216,31 @@ class Tagged:
 
 @dataclass(frozen=True, slots=True)
 class Recursion:
-    """A tagged message of a recursive struct, by name."""
+    """A value of a recursive struct, by name."""
 
     path: Path
     struct: str
     group: int | None = None
 
 
-Codec = Number | Table | Varint | Constant | Computed | Padding | Blob | Seq | Repeat | Choice | Tagged | Recursion
+Codec = (
+    Number
+    | Table
+    | Varint
+    | Constant
+    | Computed
+    | Padding
+    | Align
+    | Blob
+    | Seq
+    | Repeat
+    | Choice
+    | Cases
+    | Maybe
+    | Delimited
+    | Tagged
+    | Recursion
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,10 +248,13 @@ class Encoding:
     """All that a wire is for one type.
 
     ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
-    ``recursive`` are the messages of recursive structs.
+    ``recursive`` are the messages of recursive structs, ``nested`` their codecs where the message is not `Tagged`. ``origin`` is where
+    alignment counts from, in bytes behind the begin of the message.
     """
 
     name: str
     attempts: tuple[Codec, ...]
     written: Codec | None
     recursive: Mapping[str, Tagged] = field(default_factory=dict["str", "Tagged"])
+    nested: Mapping[str, Codec] = field(default_factory=dict["str", "Codec"])
+    origin: int = 0

@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.wire.codec import (
+    Align,
     Blob,
+    Cases,
     Choice,
     Codec,
     Computed,
     Constant,
     Count,
+    Delimited,
+    Maybe,
     Number,
     Padding,
     Recursion,
@@ -35,8 +39,8 @@ def show_encoding(encoding: Encoding) -> str:
         lines += [f"attempt {number}", *_lines(attempt, 1)]
     if encoding.written is not None and encoding.written not in encoding.attempts:
         lines += ["written", *_lines(encoding.written, 1)]
-    for name, tagged in encoding.recursive.items():
-        lines += [f"message {name}", *_lines(tagged, 1)]
+    for name, each in (*encoding.recursive.items(), *encoding.nested.items()):
+        lines += [f"message {name}", *_lines(each, 1)]
     return "\n".join(lines) + "\n"
 
 
@@ -46,8 +50,9 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
         case Seq(items):
             for item in items:
                 yield from _lines(item, depth)
-        case Repeat(path, count, item, head, extra):
-            yield f"{indent}{_path(path)}: {_count(count)} elements" + (f", {extra} fields among them:" if extra else ", each:")
+        case Repeat(path, count, item, head, extra, align):
+            aligned = f" aligned to {align}" if align > 1 else ""
+            yield f"{indent}{_path(path)}: {_count(count)} elements{aligned}" + (f", {extra} fields among them:" if extra else ", each:")
             for each in (*head, item):
                 yield from _lines(each, depth + 1)
         case Choice(path, scalar, alternatives, _, order):
@@ -55,6 +60,18 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             for value, each in alternatives:
                 yield f"{indent}{value}:"
                 yield from _lines(each, depth + 1)
+        case Cases(path, discriminator, cases, default):
+            yield from _lines(discriminator, depth)
+            for number, (labels, each) in enumerate(cases):
+                words = [*map(str, labels), *(["any other"] if number == default else [])]
+                yield f"{indent}{', '.join(words)}, of {_path(path)}:"
+                yield from _lines(each, depth + 1)
+        case Maybe(path, value):
+            yield f"{indent}{_path(path)}: u8 that says whether it follows"
+            yield from _lines(value, depth + 1)
+        case Delimited(path, value, scalar, order):
+            yield f"{indent}{_path(path)}: {_scalar(scalar, order)} bytes of"
+            yield from _lines(value, depth + 1)
         case Tagged(path, entries, required, delimited, group):
             kind = "delimited message" if delimited else "message" if group is None else f"group {group}"
             yield f"{indent}{_path(path)}: {kind}" + (f", required: {', '.join(required)}" if required else "")
@@ -64,7 +81,7 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield indent + _leaf(codec)
 
 
-def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Blob | Recursion) -> str:
+def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Recursion) -> str:
     match codec:
         case Number(path, scalar, order):
             return f"{_path(path)}: {_scalar(scalar, order)}"
@@ -79,6 +96,8 @@ def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Blob 
             return f"{_path(path)}: {_scalar(scalar, order)} = {show_expr(value)}"
         case Padding(scalar, value, order):
             return f"padding {_scalar(scalar, order)} {value}"
+        case Align(size):
+            return f"padding to a multiple of {size} bytes"
         case Blob(path, count, text, terminated):
             return f"{_path(path)}: {_count(count)} bytes{' of text' if text else ''}{' and NUL' if terminated else ''}"
         case Recursion(path, struct, _):
@@ -102,9 +121,12 @@ def _scalar(scalar: str, order: Order) -> str:
 
 
 def _count(count: Count) -> str:
+    bound = "" if count.maximum is None else f" at most {count.maximum}"
+    if count.scalar is None:
+        return f"{count.value if isinstance(count.value, int) else show_expr(count.value) if count.value else ''}{bound}"
     match count.value:
         case None:
-            return f"{_scalar(count.scalar, count.order)} count of"
+            return f"{_scalar(count.scalar, count.order)} count of{bound}"
         case int(value):
             return f"{_scalar(count.scalar, count.order)} {value} for"
         case value:

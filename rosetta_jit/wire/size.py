@@ -5,12 +5,16 @@ from __future__ import annotations
 from typing import assert_never
 
 from rosetta_jit.wire.codec import (
+    Align,
     Blob,
+    Cases,
     Choice,
     Codec,
     Computed,
     Constant,
     Count,
+    Delimited,
+    Maybe,
     Number,
     Padding,
     Recursion,
@@ -25,6 +29,11 @@ WIDTH = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i
 """Bytes of a scalar, at least."""
 
 
+def count_width(count: Count) -> int:
+    """Bytes of a count, at least."""
+    return 0 if count.scalar is None else WIDTH[count.scalar]
+
+
 def fixed_size(codec: Codec) -> int | None:
     """The size in bytes where it does not depend on values, else None."""
     match codec:
@@ -35,10 +44,12 @@ def fixed_size(codec: Codec) -> int | None:
         case Seq(items):
             sizes = [fixed_size(item) for item in items]
             return None if None in sizes else sum(size for size in sizes if size is not None)
-        case Repeat(_, Count(scalar, _, int(count)), item, head, extra) if scalar != "varint":
+        case Repeat(_, Count(value=int(number)), item, head, extra, 1) if codec.count.scalar != "varint":
             size, before = fixed_size(item), fixed_size(Seq(head))
-            return None if size is None or before is None else WIDTH[scalar] + before + (count - extra) * size
-        case Varint() | Blob() | Repeat() | Choice() | Tagged() | Recursion():
+            return None if size is None or before is None else count_width(codec.count) + before + (number - extra) * size
+        case Blob(_, Count(None, _, int(number)), _, terminated):
+            return number + terminated
+        case Varint() | Align() | Blob() | Repeat() | Choice() | Cases() | Maybe() | Delimited() | Tagged() | Recursion():
             return None
         case _:
             assert_never(codec)
@@ -49,13 +60,21 @@ def minimum_size(codec: Codec) -> int:
     match codec:
         case Seq(items):
             return sum(minimum_size(item) for item in items)
-        case Repeat(_, Count(scalar, _, count), item, head, extra):
-            elements = count - extra if isinstance(count, int) else 0
-            return WIDTH[scalar] + minimum_size(Seq(head)) + elements * minimum_size(item)
+        case Repeat(_, count, item, head, extra):
+            elements = count.value - extra if isinstance(count.value, int) else 0
+            return count_width(count) + minimum_size(Seq(head)) + elements * minimum_size(item)
         case Choice(_, scalar, alternatives, _, _):
             return WIDTH[scalar] + min(minimum_size(each) for _, each in alternatives)
         case Blob(_, count, _, terminated):
-            return WIDTH[count.scalar] + terminated
+            return count_width(count) + (count.value if isinstance(count.value, int) else terminated)
+        case Cases(_, discriminator):
+            return minimum_size(discriminator)
+        case Maybe():
+            return 1
+        case Delimited(_, value, scalar):
+            return WIDTH[scalar] + minimum_size(value)
+        case Align():
+            return 0
         case Varint() | Recursion():
             return 1
         case Tagged(_, _, _, delimited, group):

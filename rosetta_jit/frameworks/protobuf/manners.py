@@ -254,5 +254,7 @@ def members(family: Family) -> dict[str, Any]:
     return {name: value for name, value in found.items() if not name.startswith("__")} | {"DESCRIPTOR": descriptor}
 
 
-PROTOBUF = Manners(ProtobufMessage, NumberArray, repeated, MapField, assigns_whole=False, members=members)
+PROTOBUF = Manners(
+    ProtobufMessage, NumberArray, repeated, MapField, assigns_whole=False, members=members, serialising=("protobuf", "protobuf-partial")
+)
 """The manners of protobuf's messages."""

@@ -43,6 +43,9 @@ class Manners:
         Whether arrays, maps and messages can be assigned to.
     members : callable
         What else the class of a struct has, by name, given its family: constants, nested classes.
+    serialising : tuple of str
+        Framework and encoding of the base's methods that serialise; with it, ``programs_`` of every holder has `encode`, `size` and
+        `decode_into`.
     """
 
     base: type[Holder]
@@ -51,6 +54,7 @@ class Manners:
     mapping: Callable[[Message, Entry], Any]
     assigns_whole: bool
     members: Callable[[Family], dict[str, Any]]
+    serialising: tuple[str, str] | None = None
 
 
 def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class has nothing but its fields
@@ -130,7 +134,7 @@ def _shown(record: Record, base: type) -> list[str]:
 
 
 def _class(qualified: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:
-    module, _, name = qualified.rpartition(".")
+    module, _, name = qualified.replace("::", ".").replace("/", ".").rpartition(".")
     return type(name or "Message", bases, {"__module__": module, **namespace})
 
 
