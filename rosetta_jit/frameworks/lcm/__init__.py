@@ -1,0 +1,1 @@
+"""LCM: `.lcm`, fingerprints, the wire encoding, and the manners of lcm-gen's classes."""

@@ -1,0 +1,102 @@
+"""How LCM writes a message: the fingerprint, then the fields in order, big-endian, without padding. Arrays have no count of their own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.lcm.fingerprint import MAX_DEPTH, fingerprint
+from rosetta_jit.model import expr
+from rosetta_jit.model.layout import MAX_SLOTS, recursive_structs
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.wire.codec import Blob, Codec, Constant, Count, Encoding, Number, Path, Recursion, Repeat, Seq, Table
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.base import Choices
+    from rosetta_jit.model.types import Schema, Type
+
+STRING = Count("i32", ">")
+
+ANY = 1 << 32
+"""More bytes than any message has."""
+
+STRICT = ((0, 0), (1, 1))
+"""What a boolean may be on the wire."""
+
+LENIENT = (*STRICT, *((number, 1) for number in range(-128, 128) if number not in {0, 1}))
+"""Every byte, as lcm-gen's readers take them."""
+
+
+def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
+    """The encoding of a message type.
+
+    Raises
+    ------
+    SchemaError
+        If structs contain each other too deep or too often.
+    """
+    writing = _Fields(schema, recursive_structs(Ref(struct.name), schema), LENIENT if "bool" in choices.lenient else STRICT)
+    first = Constant((), fingerprint(struct, schema), "u64", ">")
+    root = Seq((first, *writing.fields(struct, ())))
+    nested = {each: Seq(writing.fields(_struct(schema, each), ())) for each in sorted(writing.recursive)}
+    return Encoding(name, (root,), root, nested=(nested,) if nested else (), spare=ANY if "trailing" in choices.lenient else 0)
+
+
+@dataclass(slots=True)
+class _Fields:
+    """Codecs of fields. Paths start at the message, at an element of an array, or at a recursive struct."""
+
+    schema: Schema
+    recursive: frozenset[str]
+    booleans: tuple[tuple[int, int], ...]
+    made: int = 0
+
+    def fields(self, struct: Struct, around: Path) -> tuple[Codec, ...]:
+        self.made += len(struct.fields)
+        if self.made > MAX_SLOTS:
+            raise SchemaError((say.too_deep(struct.name, struct.span, MAX_DEPTH),))
+        return tuple(self.value(each.type, (*around, each.name), around) for each in struct.fields)
+
+    def value(self, type_: Type, path: Path, around: Path) -> Codec:
+        """What is at a path; ``around`` is that of the struct whose fields tell sizes."""
+        match type_:
+            case Int(bits, signed):
+                return Number(path, f"{'i' if signed else 'u'}{bits}", ">")
+            case Float(bits):
+                return Number(path, f"f{bits}", ">")
+            case Bool():
+                return Table(path, "i8", self.booleans, ">")
+            case String():
+                return Blob(path, STRING, text=True, terminated=True)
+            case Bytes(_, length):
+                return Blob(path, _told(length, around))
+            case Array(element, length):
+                return Repeat(path, _told(length, around), self.value(element, (), around))
+            case Enum():
+                return Number(path, "i32", ">")
+            case Ref(name) if name in self.recursive:
+                return Recursion(path, name)
+            case Ref(name):
+                return self.value(self.schema.types[name], path, around)
+            case Struct():
+                return Seq(self.fields(type_, path))
+            case Optional() | Map() | Union():
+                raise AssertionError(type_)
+            case _:
+                assert_never(type_)
+
+
+def _told(length: int | expr.Expr | None, around: Path) -> Count:
+    """The count that stands nowhere, but that the type or a field tells."""
+    if isinstance(length, expr.Path):
+        return Count(None, value=expr.Path("wire", (*map(expr.Member, around), *length.steps)))
+    assert length is not None
+    return Count(None, value=length)
+
+
+def _struct(schema: Schema, name: str) -> Struct:
+    struct = schema.types[name]
+    assert isinstance(struct, Struct)
+    return struct
