@@ -1,0 +1,71 @@
+"""What differs between the `.msg` files of ROS 1 and of ROS 2."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import re
+    from collections.abc import Mapping
+
+    from rosetta_jit.model.types import Bool, Float, Int, String, Struct
+
+    Scalar = Bool | Int | Float | String
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """How names of one kind look: a pattern, and the same in words."""
+
+    pattern: re.Pattern[str]
+    words: str
+
+    def allows(self, name: str) -> bool:
+        """Whether a name is one of these."""
+        return self.pattern.fullmatch(name) is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """One of the two languages.
+
+    Attributes
+    ----------
+    name
+        Of the framework, and of the folder in which its definitions are shipped.
+    qualified
+        The name of a message, made from ``package`` and ``name``.
+    scalars
+        What the builtin words mean.
+    octets
+        Those of them whose arrays are bytes.
+    structs
+        Builtin words that are structs.
+    aliases
+        Words that stand for a message of a certain package.
+    line_ends
+        Where a line ends, as the peer splits them.
+    truths
+        The words for true and false, in lower case if case does not matter.
+    extended
+        Defaults, bounds, `@optional` and quoted strings; a string constant of the other language goes to the end of its line.
+    """
+
+    name: str
+    qualified: str
+    scalars: Mapping[str, Scalar]
+    octets: frozenset[str]
+    packages: Rule
+    messages: Rule
+    fields: Rule
+    constants: Rule
+    integers: re.Pattern[str]
+    line_ends: re.Pattern[str]
+    extended: bool
+    structs: Mapping[str, Struct] = field(default_factory=dict[str, "Struct"])
+    aliases: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def message(self, package: str, name: str) -> str:
+        """The qualified name of a message; a package that is not known is left out."""
+        return self.qualified.format(package=package, name=name) if package else name

@@ -1,0 +1,167 @@
+"""Reads the lines of one definition. Each is a comment, a field, or a constant; what is wrong with one does not keep the others.
+
+Field    = ["@optional"] TypeName Word [default]        Constant = TypeName Word "=" value
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import ros as say
+from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, Word
+from rosetta_jit.frameworks.ros.typenames import type_name
+from rosetta_jit.frameworks.ros.values import array_values, scalar_value
+from rosetta_jit.model.types import String
+from rosetta_jit.source import Span
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.ros.dialect import Dialect, Rule, Scalar
+    from rosetta_jit.frameworks.ros.sections import Section
+    from rosetta_jit.frameworks.ros.tree import TypeName, Values
+    from rosetta_jit.model.types import Constant as Value
+
+BLANKS = " \t\r"
+DECLARATION = re.compile(r"([^ \t]+)([ \t]*)(.*)", re.DOTALL)
+MAX_PROBLEMS = 100
+"""Problems of all files together, beyond which reading stops."""
+
+
+def read(section: Section, dialect: Dialect, problems: list[Diagnostic]) -> Definition:
+    """The definition of a section; its mistakes are added to the problems."""
+    if not dialect.messages.allows(section.short):
+        problems.append(say.wrong_file_name(section.named, section.short, dialect.messages.words))
+    return _Reader(section, dialect, problems).definition()
+
+
+@dataclass(slots=True)
+class _Reader:
+    section: Section
+    dialect: Dialect
+    problems: list[Diagnostic]
+    optional: Span | None = None
+    names: dict[str, Span] = field(default_factory=dict[str, Span])
+    constants: list[Constant] = field(default_factory=list[Constant])
+    fields: list[Field] = field(default_factory=list[Field])
+
+    def definition(self) -> Definition:
+        section = self.section
+        at = section.start
+        while at < section.end and len(self.problems) < MAX_PROBLEMS:
+            match = self.dialect.line_ends.search(section.source.text, at, section.end)
+            end = match.start() if match else section.end
+            self._line(self._word(at, end))
+            at = match.end() if match else section.end
+        if self.optional is not None:
+            self.problems.append(say.optional_nothing(self.optional))
+        name = self.dialect.message(section.package, section.short)
+        return Definition(name, section.package, section.source, section.named, section.text, tuple(self.constants), tuple(self.fields))
+
+    def _line(self, line: Word) -> None:
+        clean = self._part(line, 0, line.text.find("#") if "#" in line.text else None)
+        if not clean.text:
+            return
+        if self.dialect.extended and clean.span.start > line.span.start:
+            self.problems.append(say.indented(clean.span))
+            return
+        if clean.text.startswith("@"):
+            clean = self._annotated(clean)
+            if not clean.text:
+                return
+        self._declaration(clean, line)
+        self.optional = None
+
+    def _annotated(self, clean: Word) -> Word:
+        """What stands behind an annotation."""
+        match = DECLARATION.fullmatch(clean.text)
+        assert match is not None
+        if not self.dialect.extended or match[1] != "@optional" or self.optional is not None:
+            self.problems.append(say.annotation(self._part(clean, 0, match.end(1)).span, match[1], again=self.optional is not None))
+            return self._part(clean, len(clean.text))
+        self.optional = self._part(clean, 0, match.end(1)).span
+        return self._part(clean, match.end(1))
+
+    def _declaration(self, clean: Word, line: Word) -> None:
+        match = DECLARATION.fullmatch(clean.text)
+        assert match is not None
+        first, rest = self._part(clean, 0, match.end(1)), self._part(clean, match.start(3))
+        if not rest.text:
+            self.problems.append(say.not_a_declaration(clean.span))
+        elif not self.dialect.extended and " " not in match[2]:
+            self.problems.append(say.tab(Span(clean.span.source, first.span.end, rest.span.start)))
+        elif "=" in rest.text:
+            self._constant(first, rest, line)
+        else:
+            self._field(first, rest)
+
+    def _field(self, first: Word, rest: Word) -> None:
+        match = DECLARATION.fullmatch(rest.text)
+        assert match is not None
+        name, value = self._part(rest, 0, match.end(1)), self._part(rest, match.start(3))
+        type_ = type_name(first, self.section.package, self.dialect, self.problems)
+        named = self._named(name, "field", self.dialect.fields)
+        if value.text and not self.dialect.extended:
+            self.problems.append(say.too_much(value.span))
+        elif type_ is not None and named:
+            self.fields.append(Field(type_, name, self._default(type_, value), self.optional is not None))
+
+    def _default(self, type_: TypeName, value: Word) -> Value | Values | None:
+        if not value.text:
+            return None
+        scalar = self.dialect.scalars.get(type_.base)
+        if scalar is None:
+            self.problems.append(say.default_of_message(value.span))
+            return None
+        element = self._bounded(type_)
+        default = array_values(value.text, type_, element, self.dialect) if type_.array else scalar_value(value.text, element, self.dialect)
+        if default is None:
+            self.problems.append(say.not_a_value(value.span, type_.written))
+        return default
+
+    def _constant(self, first: Word, rest: Word, line: Word) -> None:
+        equals = rest.text.index("=")
+        name, value = self._part(rest, 0, equals), self._part(rest, equals + 1)
+        if first.text == "string" and not self.dialect.extended:
+            value = self._part(line, rest.span.start + equals + 1 - line.span.start)
+        scalar = self.dialect.scalars.get(first.text)
+        named = self._named(name, "constant", self.dialect.constants)
+        if scalar is None:
+            self.problems.append(say.not_a_constant_type(first.span, first.text, tuple(self.dialect.scalars)))
+            return
+        number = scalar_value(value.text, scalar, self.dialect)
+        if number is None:
+            self.problems.append(say.not_a_value(value.span if value.text else rest.span, first.text))
+        type_ = type_name(first, "", self.dialect, self.problems)
+        if type_ is not None and number is not None and named:
+            self.constants.append(Constant(type_, name, value, number))
+
+    def _bounded(self, type_: TypeName) -> Scalar:
+        """The scalar type, with the bound of a string."""
+        scalar = self.dialect.scalars[type_.base]
+        return replace(scalar, maximum=type_.text_maximum) if isinstance(scalar, String) else scalar
+
+    def _named(self, name: Word, what: str, rule: Rule) -> bool:
+        """Whether a name is a good one."""
+        if not rule.allows(name.text):
+            self.problems.append(say.not_a_name(name.span, name.text, what, rule.words))
+        elif name.text in self.names:
+            self.problems.append(say.duplicate(name.span, name.text, self.names[name.text]))
+        else:
+            self.names[name.text] = name.span
+            return True
+        return False
+
+    def _word(self, start: int, end: int) -> Word:
+        source = self.section.source
+        text = source.text[start:end]
+        return Word(text.replace("\t", " ") if self.dialect.extended else text, Span(source, start, end))
+
+    def _part(self, word: Word, start: int, end: int | None = None) -> Word:
+        """Characters of a word without the blanks around them."""
+        text = word.text[start:end]
+        start += len(text) - len(text.lstrip(BLANKS))
+        text = text.strip(BLANKS)
+        begin = word.span.start + start
+        return Word(text, Span(word.span.source, begin, begin + len(text)))

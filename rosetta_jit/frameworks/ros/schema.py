@@ -1,0 +1,93 @@
+"""The model of definitions. Defaults of an array are its field's option ``default``, a list in JSON; those of bytes are bytes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.ros.gather import gather
+from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS
+from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.ros import tree
+    from rosetta_jit.frameworks.ros.dialect import Dialect
+    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.model.types import Constant, Type
+    from rosetta_jit.source import Source
+
+    Options = tuple[tuple[str, Constant], ...]
+
+
+def definitions_of(source: Source, load: Load, dialect: Dialect) -> tuple[tree.Definition, ...]:
+    """The definitions of a source and of all that it needs, those that others need first.
+
+    Raises
+    ------
+    SchemaError
+        With everything that is wrong in any of the texts.
+    """
+    problems: list[Diagnostic] = []
+    definitions = gather(source, load, dialect, problems)
+    if problems:
+        raise SchemaError(tuple(sorted(problems[:MAX_PROBLEMS], key=_place)))
+    return definitions
+
+
+def schema_of(
+    definitions: Iterable[tree.Definition], dialect: Dialect, options: Callable[[tree.Definition], Options] = lambda _: ()
+) -> Schema:
+    """The schema of definitions, each with the options that are computed from it."""
+    definitions = tuple(definitions)
+    words = {each.type.base for definition in definitions for each in definition.fields}
+    structs = {name: struct for name, struct in dialect.structs.items() if name in words}
+    messages = {each.name: _struct(each, dialect, options(each)) for each in reversed(definitions)}
+    sources = dict.fromkeys(each.source.name for each in reversed(definitions))
+    return Schema(MappingProxyType(messages | structs), tuple(sources))
+
+
+def _place(problem: Diagnostic) -> tuple[str, int]:
+    return ("", 0) if problem.span is None else (problem.span.source.name, problem.span.start)
+
+
+def _struct(definition: tree.Definition, dialect: Dialect, options: Options) -> Struct:
+    fields = tuple(_field(each, dialect) for each in definition.fields)
+    constants = tuple(NamedConstant(each.name.text, dialect.scalars[each.type.base], each.value) for each in definition.constants)
+    return Struct(definition.name, fields, span=definition.span, constants=constants, options=options)
+
+
+def _field(field: tree.Field, dialect: Dialect) -> Field:
+    type_ = _type(field.type, dialect)
+    default, options = _default(field.default, type_)
+    wrapped = Optional(type_) if field.optional else type_
+    return Field(field.name.text, wrapped, default=default, options=options, span=field.name.span)
+
+
+def _default(default: Constant | tree.Values | None, type_: Type) -> tuple[Constant | None, Options]:
+    if not isinstance(default, tuple):
+        return default, ()
+    if isinstance(type_, Bytes):
+        return bytes(int(each) for each in default), ()
+    return None, (("default", json.dumps(default)),)
+
+
+def _type(name: tree.TypeName, dialect: Dialect) -> Type:
+    element = _element(name, dialect.scalars)
+    if not name.array:
+        return element
+    if name.base in dialect.octets:
+        return Bytes(name.base, name.length, name.maximum)
+    return Array(element, name.length, name.maximum)
+
+
+def _element(name: tree.TypeName, scalars: Mapping[str, Type]) -> Type:
+    scalar = scalars.get(name.base)
+    if scalar is None:
+        return Ref(name.base, name.span)
+    return replace(scalar, maximum=name.text_maximum) if isinstance(scalar, String) else scalar
