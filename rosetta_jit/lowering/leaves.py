@@ -5,6 +5,7 @@ A number is loaded, stored, or counted; a constant is expected, stored, or count
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
@@ -15,8 +16,11 @@ from rosetta_jit.kernel.ir import (
     Convert,
     Expr,
     Fill,
+    For,
+    If,
     IsText,
     Load,
+    Local,
     Scalar,
     Select,
     Store,
@@ -29,16 +33,16 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.lowering.computed import evaluate
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, integer
-from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table
+from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Utf16
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Generator, Iterable
 
     from rosetta_jit.lowering.fields import Fields
     from rosetta_jit.model import expr
     from rosetta_jit.wire.codec import Count
 
-Leaf = Number | Table | Constant | Computed | Padding | Align | Blob
+Leaf = Number | Table | Constant | Computed | Padding | Align | Blob | Utf16
 
 LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 << 31, "u32": 1 << 32}
 """The first count that a number on the wire cannot carry."""
@@ -66,6 +70,8 @@ def leaf(codec: Leaf, fields: Fields, writer: Writer) -> None:
             align(writer, size)
         case Blob():
             _blob(writer, fields, codec)
+        case Utf16():
+            _utf16(writer, fields, codec)
         case _:
             assert_never(codec)
 
@@ -206,6 +212,65 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
     writer.advance(stored.size)
     if blob.terminated:
         writer.store(Const("u8", 0), where)
+
+
+def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
+    where = fields.where.members(text.path)
+    if writer.direction == "decode":
+        units = read_count(writer, fields, text.path, text.count, "length")
+        writer.require(mul(units, 2), where)
+        little, marks = _byte_order_mark(writer, units)
+        begin = writer.let("text", add(writer.position, mul(marks, 2)))
+        count = writer.let("units", Binary("sub", units, marks))
+        writer.expect(Compare("ge", count, index(0)), "length", where, "no such length")  # true anyway; said for the proof
+        elements = fields.open(text.path, count)
+        with _each(writer, count) as number:
+            at = writer.let("unit", add(begin, mul(number, 2)))
+            writer.require(2, where, at=at)
+            elements.at(number).put((), Select(little, Load("u16", at), Load("u16", at, ">")))
+        writer.advance(mul(units, 2))
+        return
+    stored = fields.stored(text.path)
+    writer.expect(Compare("lt", stored.size, index(1 << 30)), "range", where, "too many for the wire")
+    marks = writer.let("marks", Convert("i64", Compare("gt", stored.size, index(0))))
+    write_count(writer, fields, text.count, writer.let("units", Binary("add", stored.size, marks)), where)
+    writer.require(mul(add(stored.size, marks), 2), where, "no room for the message")
+    begin = writer.position
+    if writer.direction == "encode":
+        elements = fields.elements(text.path, stored)
+        with writer.nested() as marked:
+            writer.require(2, where, at=begin)
+            writer.emit(Store(begin, Const("u16", 0xFEFF)))
+        writer.emit(If(Compare("gt", marks, index(0)), tuple(marked)))
+        first = writer.let("text", add(begin, mul(marks, 2)))
+        with _each(writer, stored.size) as number:
+            at = writer.let("unit", add(first, mul(number, 2)))
+            writer.require(2, where, at=at)
+            unit = elements.at(number).get(())
+            assert unit is not None
+            writer.emit(Store(at, unit))
+    writer.advance(mul(add(stored.size, marks), 2))
+
+
+def _byte_order_mark(writer: Writer, units: Expr) -> tuple[Expr, Expr]:
+    """Whether a text is little-endian, and how many marks say so."""
+    mark = writer.var("mark", Const("u16", 0))
+    with writer.nested() as there:
+        writer.require(2, Where(), at=writer.position)
+        writer.assign(mark, Load("u16", writer.position, ">"))
+    writer.emit(If(Compare("gt", units, index(0)), tuple(there)))
+    little = writer.let("little", Compare("eq", mark, Const("u16", 0xFFFE)))
+    marked = Binary("or", little, Compare("eq", mark, Const("u16", 0xFEFF)))
+    return little, writer.let("marks", Select(marked, index(1), index(0)))
+
+
+@contextmanager
+def _each(writer: Writer, count: Expr) -> Generator[Local]:
+    """A loop over so many elements; gives the number of each."""
+    number = Local("i64", writer.fresh("i"))
+    with writer.nested() as body:
+        yield number
+    writer.emit(For(number.name, count, tuple(body)))
 
 
 def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:

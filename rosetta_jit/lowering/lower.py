@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.lowering.bound import Found, WireFields
+from rosetta_jit.lowering.descent import descend
 from rosetta_jit.lowering.fields import root_fields
 from rosetta_jit.lowering.recursion import cursors, read_rows
 from rosetta_jit.lowering.recursion_write import write_root
@@ -23,6 +24,8 @@ from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.lowering.fields import HolderFields
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.layout import Layout
@@ -69,14 +72,17 @@ def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, ru
         else:
             _mapped(writer, attempt, holder, rules)
         if writer.direction == "decode":
-            writer.expect(Compare("eq", writer.position, END), "trailing", Where(), "bytes are left over")
+            spare = writer.position if not encoding.spare else add(writer.position, encoding.spare)
+            writer.expect(Compare("eq" if not encoding.spare else "ge", spare, END), "trailing", Where(), "bytes are left over")
         writer.emit(Return(writer.position))
     return block(body)
 
 
 def _own(writer: Writer, encoding: Encoding, attempt: Codec, holder: HolderFields) -> None:
     """The holder is of the wire's own type."""
-    if not isinstance(attempt, Tagged):
+    if encoding.nested:
+        descend(_nested(encoding, attempt), attempt, holder, writer)
+    elif not isinstance(attempt, Tagged):
         with writer.whole():
             walk(attempt, holder, writer)
     elif writer.direction == "decode":
@@ -85,6 +91,12 @@ def _own(writer: Writer, encoding: Encoding, attempt: Codec, holder: HolderField
         read_rows(encoding, holder, writer, rows)
     else:
         write_root(encoding, holder, attempt, writer)
+
+
+def _nested(encoding: Encoding, attempt: Codec) -> Mapping[str, Codec]:
+    """The codecs of recursive structs in the messages of an attempt."""
+    number = next((number for number, each in enumerate(encoding.attempts) if each is attempt), 0)
+    return encoding.nested[number]
 
 
 def _mapped(writer: Writer, attempt: Codec, fields: HolderFields, rules: tuple[Rule, ...]) -> None:

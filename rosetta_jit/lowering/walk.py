@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
-    WIDTH,
     Assign,
     Binary,
     Compare,
@@ -19,7 +18,7 @@ from rosetta_jit.kernel.ir import (
     For,
     If,
     Local,
-    Store,
+    Select,
     Switch,
     While,
     add,
@@ -27,7 +26,8 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 from rosetta_jit.lowering import leaves
-from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.members import members, store_size
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
 from rosetta_jit.wire.codec import (
     Align,
@@ -39,6 +39,7 @@ from rosetta_jit.wire.codec import (
     Constant,
     Delimited,
     Maybe,
+    Members,
     Number,
     Padding,
     Recursion,
@@ -46,6 +47,7 @@ from rosetta_jit.wire.codec import (
     Seq,
     Table,
     Tagged,
+    Utf16,
     Varint,
 )
 from rosetta_jit.wire.size import fixed_size, minimum_size
@@ -66,7 +68,7 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
         case Seq(items):
             for item in items:
                 walk(item, fields, writer)
-        case Number() | Table() | Constant() | Computed() | Padding() | Align() | Blob():
+        case Number() | Table() | Constant() | Computed() | Padding() | Align() | Blob() | Utf16():
             leaves.leaf(codec, fields, writer)
         case Repeat():
             _repeat(writer, fields, codec)
@@ -78,6 +80,8 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
             _maybe(writer, fields, codec)
         case Delimited():
             _delimited(writer, fields, codec)
+        case Members():
+            members(codec, fields, writer, walk)
         case Tagged() | Varint() | Recursion():
             raise AssertionError(codec)  # `tagged`, `recursion` and `descent` read and write these
         case _:
@@ -216,21 +220,33 @@ def _cases(writer: Writer, fields: Fields, cases: Cases) -> None:
 
 def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[Codec], object]) -> None:
     """What is done in the case that the discriminator names, after it has come; where it names none, with an empty codec."""
-    value = writer.let("label", integer(_required(fields.get(discriminator_path(cases.discriminator)))))
+    value = _first_label(writer, cases, integer(_required(fields.get(discriminator_path(cases.discriminator)))))
     blocks: list[tuple[int, Block]] = []
     default: Block | None = None
     for number, (labels, codec) in enumerate(cases.cases):
         with writer.nested() as statements:
             fields.choose(cases.path, number + 1)
             body(codec)
-        blocks += [(label, block(statements)) for label in labels]
-        default = block(statements) if number == cases.default else default
+        if number == cases.default:
+            default = block(statements)
+        else:
+            blocks.append((labels[0], block(statements)))
     if default is None:
         with writer.nested() as statements:
             fields.choose(cases.path, 0)
             body(Seq(()))
         default = block(statements)
     writer.emit(Switch(value, tuple(blocks), default))
+
+
+def _first_label(writer: Writer, cases: Cases, value: Expr) -> Expr:
+    """The first label of the case that a value names, so that each case is written once."""
+    value = writer.let("label", value)
+    first: Expr = value
+    for number, (labels, _) in enumerate(cases.cases):
+        for other in labels[1:] if number != cases.default else ():
+            first = Select(Compare("eq", value, index(other)), index(labels[0]), first)
+    return writer.let("case", first)
 
 
 def discriminator_path(codec: Codec) -> tuple[str, ...]:
@@ -269,22 +285,19 @@ def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Cod
 
 
 def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
-    where, scalar, begin = fields.where.members(delimited.path), scalar_name(delimited.scalar), writer.position
+    where, begin = fields.where.members(delimited.path), writer.position
     if writer.direction == "decode":
-        size = writer.let("size", integer(writer.load(scalar, where, delimited.order)))
+        size = writer.let("size", integer(writer.load("u32", where, delimited.order)))
         writer.require(size, where)
         stop = writer.let("stop", Binary("add", writer.position, size))
         walk(delimited.value, fields, writer)
         writer.expect(Compare("eq", writer.position, stop), "length", where, "its content is not as long as it says", at=begin)
         return
-    writer.require(WIDTH[scalar], where, "no room for the message")
-    writer.advance(WIDTH[scalar])
+    writer.require(4, where, "no room for the message")
+    writer.advance(4)
     inside = writer.let("inside", writer.position)
     walk(delimited.value, fields, writer)
-    if writer.direction == "encode":
-        size = writer.let("size", Binary("sub", writer.position, inside))
-        writer.expect(Compare("lt", size, index(leaves.LIMITS[scalar])), "range", where, "too long for the wire")
-        writer.emit(Store(begin, converted(size, scalar), ">" if delimited.order == ">" else "<"))
+    store_size(writer, begin, inside, where, delimited.order)
 
 
 def _required(value: Expr | None) -> Expr:

@@ -1,7 +1,7 @@
 r"""A codec: an invertible description of bytes, without a direction.
 
     Codec  = Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Seq | Repeat | Choice | Cases | Maybe
-           | Delimited | Tagged | Recursion
+           | Delimited | Members | Utf16 | Tagged | Recursion
     Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes, or that alone
 
 A leaf names the field that it carries by a path relative to the element around it: the message, an element of a `Repeat`, or a message of
@@ -168,12 +168,43 @@ class Maybe:
 
 
 @dataclass(frozen=True, slots=True)
+class Utf16:
+    """Counted octets of UTF-16, which may begin with a byte order mark and are big-endian without one (CORBA 3.3 part 2, 9.3.1.6).
+
+    Written with the mark of a little-endian writer, as omniORB does; the empty string is nothing.
+    """
+
+    path: Path
+    count: Count
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A member of a mutable struct: its id, its codec, and how its length is told (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2)."""
+
+    number: int
+    path: Path
+    value: Codec
+    length_code: int
+    optional: bool = False
+    must_understand: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Members:
+    """The number of bytes of what follows, then members with their ids in any order, unknown ones skipped (PL_CDR2)."""
+
+    path: Path
+    members: tuple[Member, ...]
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
 class Delimited:
     """The number of bytes of what follows, then that."""
 
     path: Path
     value: Codec
-    scalar: str = "u32"
     order: Order = "<"
 
 
@@ -238,6 +269,8 @@ Codec = (
     | Cases
     | Maybe
     | Delimited
+    | Members
+    | Utf16
     | Tagged
     | Recursion
 )
@@ -248,13 +281,33 @@ class Encoding:
     """All that a wire is for one type.
 
     ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
-    ``recursive`` are the messages of recursive structs, ``nested`` their codecs where the message is not `Tagged`. ``origin`` is where
-    alignment counts from, in bytes behind the begin of the message.
+    ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
+    ``origin`` is where alignment counts from, in bytes behind the begin of the message. So many bytes may be left over at its end: ``spare``.
     """
 
     name: str
     attempts: tuple[Codec, ...]
     written: Codec | None
     recursive: Mapping[str, Tagged] = field(default_factory=dict["str", "Tagged"])
-    nested: Mapping[str, Codec] = field(default_factory=dict["str", "Codec"])
+    nested: tuple[Mapping[str, Codec], ...] = ()
     origin: int = 0
+    spare: int = 0
+
+
+def recurses(codec: Codec) -> bool:
+    """Whether a codec that is not tagged reaches a recursive struct."""
+    match codec:
+        case Recursion():
+            return True
+        case Seq(items):
+            return any(recurses(each) for each in items)
+        case Repeat(_, _, item):
+            return recurses(item)
+        case Cases(_, _, cases):
+            return any(recurses(each) for _, each in cases)
+        case Maybe(_, value) | Delimited(_, value):
+            return recurses(value)
+        case Members(_, members):
+            return any(recurses(each.value) for each in members)
+        case _:
+            return False

@@ -16,6 +16,7 @@ from rosetta_jit.wire.codec import (
     Count,
     Delimited,
     Maybe,
+    Members,
     Number,
     Padding,
     Recursion,
@@ -23,6 +24,7 @@ from rosetta_jit.wire.codec import (
     Seq,
     Table,
     Tagged,
+    Utf16,
     Varint,
 )
 
@@ -39,8 +41,9 @@ def show_encoding(encoding: Encoding) -> str:
         lines += [f"attempt {number}", *_lines(attempt, 1)]
     if encoding.written is not None and encoding.written not in encoding.attempts:
         lines += ["written", *_lines(encoding.written, 1)]
-    for name, each in (*encoding.recursive.items(), *encoding.nested.items()):
-        lines += [f"message {name}", *_lines(each, 1)]
+    for messages in (encoding.recursive, *encoding.nested[:1]):
+        for name, each in messages.items():
+            lines += [f"message {name}", *_lines(each, 1)]
     return "\n".join(lines) + "\n"
 
 
@@ -69,9 +72,14 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
         case Maybe(path, value):
             yield f"{indent}{_path(path)}: u8 that says whether it follows"
             yield from _lines(value, depth + 1)
-        case Delimited(path, value, scalar, order):
-            yield f"{indent}{_path(path)}: {_scalar(scalar, order)} bytes of"
+        case Delimited(path, value, order):
+            yield f"{indent}{_path(path)}: {_scalar('u32', order)} bytes of"
             yield from _lines(value, depth + 1)
+        case Members(path, members, order):
+            yield f"{indent}{_path(path)}: {_scalar('u32', order)} bytes of members"
+            for member in members:
+                yield f"{indent}  {member.number}{' optional' if member.optional else ''} {_path(member.path)}"
+                yield from _lines(member.value, depth + 2)
         case Tagged(path, entries, required, delimited, group):
             kind = "delimited message" if delimited else "message" if group is None else f"group {group}"
             yield f"{indent}{_path(path)}: {kind}" + (f", required: {', '.join(required)}" if required else "")
@@ -81,7 +89,7 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield indent + _leaf(codec)
 
 
-def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Recursion) -> str:
+def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Utf16 | Recursion) -> str:
     match codec:
         case Number(path, scalar, order):
             return f"{_path(path)}: {_scalar(scalar, order)}"
@@ -100,6 +108,8 @@ def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align
             return f"padding to a multiple of {size} bytes"
         case Blob(path, count, text, terminated):
             return f"{_path(path)}: {_count(count)} bytes{' of text' if text else ''}{' and NUL' if terminated else ''}"
+        case Utf16(path, count):
+            return f"{_path(path)}: {_count(count)} bytes of UTF-16"
         case Recursion(path, struct, _):
             return f"{_path(path)}: message {struct}"
         case _:

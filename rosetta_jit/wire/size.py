@@ -15,6 +15,7 @@ from rosetta_jit.wire.codec import (
     Count,
     Delimited,
     Maybe,
+    Members,
     Number,
     Padding,
     Recursion,
@@ -22,6 +23,7 @@ from rosetta_jit.wire.codec import (
     Seq,
     Table,
     Tagged,
+    Utf16,
     Varint,
 )
 
@@ -49,7 +51,20 @@ def fixed_size(codec: Codec) -> int | None:
             return None if size is None or before is None else count_width(codec.count) + before + (number - extra) * size
         case Blob(_, Count(None, _, int(number)), _, terminated):
             return number + terminated
-        case Varint() | Align() | Blob() | Repeat() | Choice() | Cases() | Maybe() | Delimited() | Tagged() | Recursion():
+        case (
+            Varint()
+            | Align()
+            | Blob()
+            | Repeat()
+            | Choice()
+            | Cases()
+            | Maybe()
+            | Delimited()
+            | Members()
+            | Utf16()
+            | Tagged()
+            | Recursion()
+        ):
             return None
         case _:
             assert_never(codec)
@@ -71,10 +86,12 @@ def minimum_size(codec: Codec) -> int:
             return minimum_size(discriminator)
         case Maybe():
             return 1
-        case Delimited(_, value, scalar):
-            return WIDTH[scalar] + minimum_size(value)
+        case Delimited(_, value):
+            return 4 + minimum_size(value)
         case Align():
             return 0
+        case Members() | Utf16():
+            return 4
         case Varint() | Recursion():
             return 1
         case Tagged(_, _, _, delimited, group):

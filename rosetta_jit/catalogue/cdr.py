@@ -1,0 +1,49 @@
+"""What CDR cannot carry, or peers do not agree on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from rosetta_jit.source import Span
+
+
+def no_wide_strings(span: Span | None, name: str) -> Diagnostic:
+    """A wide string on DDS, where implementations do not agree on its bytes."""
+    notes = ("Fast CDR 1 writes four bytes a character, others two, and neither says which",)
+    help_ = "use a string: it is UTF-8"
+    return Diagnostic(
+        "error", "wide-string", f"`{name}` is a wide string, whose bytes DDS peers do not agree on", span, notes=notes, help=help_
+    )
+
+
+def no_optionals(span: Span | None, name: str) -> Diagnostic:
+    """An optional member in an encoding that has none."""
+    what = f"`{name}` is optional, which plain CDR cannot say"
+    return Diagnostic("error", "optional-member", what, span, help='choose encoding="cdr2"')
+
+
+def no_mutables(span: Span | None, name: str) -> Diagnostic:
+    """A mutable struct in an encoding that has none."""
+    what = f"`{name}` is mutable, which plain CDR cannot say"
+    return Diagnostic("error", "mutable-struct", what, span, help='choose encoding="cdr2"')
+
+
+def no_recursion(span: Span | None, name: str) -> Diagnostic:
+    """A recursive struct in XCDR2, where sizes stand before everything."""
+    return Diagnostic(
+        "error", "recursive-struct", f"`{name}` contains itself, which cdr2 does not carry yet", span, help='choose encoding="cdr"'
+    )
+
+
+def nested_recursion(span: Span | None, name: str) -> Diagnostic:
+    """A recursive struct within the elements of an array, which are something else."""
+    what = f"the elements of `{name}` contain a recursive struct, and are not recursive themselves"
+    return Diagnostic("error", "nested-recursion", what, span, help="make the recursive struct itself the element")
+
+
+def no_such_scalar(span: Span | None, name: str) -> Diagnostic:
+    """A type that CDR has no bytes for."""
+    return Diagnostic("error", "no-encoding", f"CDR has no bytes for `{name}`", span)

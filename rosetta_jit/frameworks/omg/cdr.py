@@ -1,0 +1,275 @@
+"""Common Data Representation, in which CORBA and DDS write a type.
+
+cdr-giop    CORBA 3.3 part 2, 9.3: no header, the byte order is told elsewhere
+cdr         DDS-XTypes 1.3, 7.4.1 (XCDR1 of final types), behind an encapsulation header of four bytes that says the byte order
+cdr2        DDS-XTypes 1.3, 7.4.3 (XCDR2): nothing is aligned to more than four bytes, and what may change has its size before it
+
+Everything is written at a multiple of its size from the origin, behind the header: that rule is `_Rules.aligned`, and nowhere else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import cdr as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
+from rosetta_jit.wire.codec import (
+    Align,
+    Blob,
+    Cases,
+    Codec,
+    Constant,
+    Count,
+    Delimited,
+    Encoding,
+    Maybe,
+    Member,
+    Members,
+    Number,
+    Padding,
+    Path,
+    Recursion,
+    Repeat,
+    Seq,
+    Table,
+    Utf16,
+    recurses,
+)
+from rosetta_jit.wire.size import WIDTH
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.base import Choices
+    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.wire.codec import Order
+
+HEADER_BYTES = 4
+EXTENSIBILITY = {"final": 0x06, "appendable": 0x08, "mutable": 0x0A}
+"""Representation identifiers of XCDR2 (DDS-XTypes 1.3, table 60), of the big-endian form; the little-endian one is one more."""
+PADDING_OF_PAYLOADS = 3
+DUAL_USE = {1: 5, 4: 6, 8: 7}
+"""Length codes of sequences whose count is also their length, by the size of their elements."""
+
+
+def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
+    """The encoding of a message."""
+    orders: dict[str | None, tuple[Order, ...]] = {"little": ("<",), "big": (">",), None: ("<",) if name == "cdr-giop" else ("<", ">")}
+    attempts: list[Codec] = []
+    nested: list[dict[str, Codec]] = []
+    recursive = recursive_structs(Ref(struct.name), schema)
+    if recursive and name == "cdr2":
+        raise SchemaError((words.no_recursion(struct.span, struct.name),))
+    for order in orders[choices.byte_order]:
+        rules = _Rules(schema, name, order, recursive, choices.lenient)
+        attempts.append(rules.message(struct))
+        nested += [{each: rules.settled(rules.members(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
+    origin = 0 if name == "cdr-giop" else HEADER_BYTES
+    spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
+    return Encoding(name, tuple(attempts), attempts[0], nested=tuple(nested) if recursive else (), origin=origin, spare=spare)
+
+
+@dataclass(frozen=True, slots=True)
+class _Rules:
+    """How values are written in one encoding and byte order."""
+
+    schema: Schema
+    encoding: str
+    order: Order
+    recursive: frozenset[str]
+    lenient: frozenset[str]
+
+    @property
+    def second(self) -> bool:
+        return self.encoding == "cdr2"
+
+    def message(self, struct: Struct) -> Codec:
+        body = self.settled(self.struct(struct, ()), ORIGIN)
+        return body if self.encoding == "cdr-giop" else Seq((*self.header(struct), body))
+
+    def settled(self, codec: Codec, phase: Phase) -> Codec:
+        return settle(codec, phase)[0]
+
+    def header(self, struct: Struct) -> tuple[Codec, ...]:
+        """The representation identifier, and two bytes of options that no reader needs."""
+        base = EXTENSIBILITY[_extensibility(struct)] if self.second else 0
+        return Constant((), bytes((0, base + (self.order == "<")))), Padding("u16", 0)
+
+    def aligned(self, codec: Codec, size: int) -> Codec:
+        return Seq((Align(min(size, 4 if self.second else 8)), codec))
+
+    # --- structs and unions ------------------------------------------------------------------------------------------
+
+    def struct(self, struct: Struct, path: Path) -> Codec:
+        extensibility = _extensibility(struct)
+        if extensibility == "mutable":
+            return self.mutable(struct, path)
+        body = self.members(struct, path)
+        return self.sized(body, path) if self.second and extensibility == "appendable" else body
+
+    def sized(self, codec: Codec, path: Path) -> Codec:
+        """With the number of its bytes before it (DHEADER)."""
+        return self.aligned(Delimited(path, codec, self.order), 4)
+
+    def members(self, struct: Struct, path: Path) -> Codec:
+        if not struct.fields:  # rosidl gives a struct without members one, which it calls structure_needs_at_least_one_member
+            return Padding("u8", 0)
+        union = next((each.type for each in struct.fields if isinstance(each.type, Union) and each.type.discriminator), None)
+        told = () if union is None else (union.discriminator,)
+        return Seq(tuple(self.field(each, path, struct) for each in struct.fields if each.name not in told))
+
+    def field(self, field: Field, path: Path, struct: Struct) -> Codec:
+        own = (*path, field.name)
+        match field.type:
+            case Union() as union:
+                return self.union(union, own, struct)
+            case Optional(value):
+                if not self.second:
+                    raise SchemaError((words.no_optionals(field.span, field.name),))
+                return Maybe(own, self.value(value, own, field))
+            case type_:
+                return self.value(type_, own, field)
+
+    def union(self, union: Union, path: Path, struct: Struct) -> Codec:
+        teller = next(each for each in struct.fields if each.name == union.discriminator)
+        discriminator = self.value(teller.type, (*path[:-1], teller.name), teller)
+        cases = tuple((labels, self.field(case, path, struct)) for labels, case in zip(union.labels, union.cases, strict=True))
+        return Cases(path, discriminator, cases, union.default)
+
+    def mutable(self, struct: Struct, path: Path) -> Codec:
+        if not self.second:
+            raise SchemaError((words.no_mutables(struct.span, struct.name),))
+        members = tuple(self.member(each, number, (*path, each.name)) for number, each in enumerate(struct.fields))
+        return self.aligned(Members(path, members, self.order), 4)
+
+    def member(self, field: Field, position: int, path: Path) -> Member:
+        optional = isinstance(field.type, Optional)
+        value = self.value(field.type.value if isinstance(field.type, Optional) else field.type, path, field)
+        number = position if field.number is None else field.number
+        return Member(number, path, value, self.length_code(field.type), optional, bool(field.option("must_understand")))
+
+    def length_code(self, type_: Type) -> int:
+        """How the length of a member is told: by the code, by a word of its own, or by its first word."""
+        match self.schema.resolve(type_):
+            case Bool() | Int() | Float() | Enum() as scalar:
+                return {1: 0, 2: 1, 4: 2, 8: 3}[WIDTH[scalar_of(scalar)]]
+            case String() | Bytes(length=None):
+                return DUAL_USE[1]
+            case Array(element, length):
+                primitive = self.primitive(element)
+                if primitive is None:
+                    return DUAL_USE[1]
+                return 4 if length is not None else DUAL_USE.get(primitive, 4)
+            case Optional(value):
+                return self.length_code(value)
+            case _:
+                return 4
+
+    def primitive(self, type_: Type) -> int | None:
+        """The size of a primitive element, for which XCDR2 writes no DHEADER; that of an array's innermost."""
+        match type_:
+            case Bool() | Int() | Float():
+                return WIDTH[scalar_of(type_)]
+            case Array(element, int()):
+                return self.primitive(element)
+            case Bytes(length=int()):
+                return 1
+            case _:
+                return None
+
+    # --- values ------------------------------------------------------------------------------------------------------
+
+    def value(self, type_: Type, path: Path, field: Field) -> Codec:
+        match type_:
+            case Bool():
+                return Number(path, "bool") if "bool" in self.lenient else Table(path, "u8", ((0, 0), (1, 1)))
+            case Int(16, _, "wchar") if self.encoding == "cdr-giop":
+                return Seq((Constant(path[:0], 2, "u8", kind="count"), Number(path, "u16", ">")))
+            case Int() | Float():
+                scalar = scalar_of(type_)
+                return self.aligned(Number(path, scalar, self.order), WIDTH[scalar])
+            case Enum():
+                return self.enumerator(type_, path)
+            case String():
+                return self.string(type_, path, field)
+            case Bytes(_, length, maximum):
+                return Blob(path, Count(None, value=length)) if length is not None else self.counted(Blob(path, self.count(maximum)))
+            case Array():
+                return self.array(type_, path, field)
+            case Map(key, value):
+                entry = Seq(tuple(self.field(each, (), Struct("", ())) for each in map_entry(key, value).fields))
+                repeat = self.counted(Repeat(path, self.count(None), entry, align=leading(entry)))
+                plain = self.primitive(key) is not None and self.primitive(value) is not None
+                return self.sized(repeat, path) if self.second and not plain else repeat
+            case Ref(name) if name in self.recursive:
+                return Repeat(path, Count(None, value=1), Recursion((), name))
+            case Ref(name):
+                declared = self.schema.types[name]
+                return self.enumerator(declared, path) if isinstance(declared, Enum) else self.struct(declared, path)
+            case Struct():
+                return self.struct(type_, path)
+            case Optional() | Union():
+                raise SchemaError((words.no_such_scalar(field.span, field.name),))
+            case _:
+                assert_never(type_)
+
+    def enumerator(self, enum: Enum, path: Path) -> Codec:
+        if "enum" in self.lenient:
+            return self.aligned(Number(path, "i32", self.order), 4)
+        numbers = tuple((number, number) for number in sorted({number for _, number in enum.values}))
+        return self.aligned(Table(path, "i32", numbers, self.order), 4)
+
+    def string(self, string: String, path: Path, field: Field) -> Codec:
+        if string.encoding == "utf-16":
+            if self.encoding != "cdr-giop":
+                raise SchemaError((words.no_wide_strings(field.span, field.name),))
+            return self.counted(Utf16(path, replace(self.count(string.maximum), unit=2)))
+        text = string.encoding == "utf-8" and "text" not in self.lenient
+        return self.counted(Blob(path, self.count(string.maximum), text=text, terminated=True))
+
+    def counted(self, codec: Codec) -> Codec:
+        return self.aligned(codec, 4)
+
+    def count(self, maximum: int | None) -> Count:
+        return Count("u32", self.order, maximum=None if "bounds" in self.lenient else maximum)
+
+    def array(self, array: Array, path: Path, field: Field) -> Codec:
+        plain = self.elements(array, path, field)
+        headed = self.second and self.primitive(array.element) is None
+        return self.sized(plain, path) if headed else plain
+
+    def elements(self, array: Array, path: Path, field: Field) -> Codec:
+        inner = array.element
+        if isinstance(inner, Array) and inner.fixed is not None and array.fixed is not None:
+            item = self.elements(inner, (), field)  # the dimensions of one array
+        else:
+            item = self.value(inner, (), field) if not self.recurses(inner) else Recursion((), _name(inner))
+        if not isinstance(item, Recursion) and recurses(item):
+            raise SchemaError((words.nested_recursion(field.span, field.name),))
+        if array.fixed is not None:
+            repeat = Repeat(path, Count(None, value=array.fixed), item)
+            return Seq((Align(leading(item)), repeat)) if array.fixed and leading(item) > 1 else repeat
+        return self.counted(Repeat(path, self.count(array.maximum), item, align=leading(item)))
+
+    def recurses(self, type_: Type) -> bool:
+        return isinstance(type_, Ref) and type_.name in self.recursive
+
+
+
+def _extensibility(struct: Struct) -> str:
+    """As the IDL says; idlc and rosidl take a struct for final where it does not."""
+    found = struct.option("extensibility")
+    return found if isinstance(found, str) else "final"
+
+
+def _struct(schema: Schema, name: str) -> Struct:
+    struct = schema.types[name]
+    assert isinstance(struct, Struct)
+    return struct
+
+
+def _name(type_: Type) -> str:
+    assert isinstance(type_, Ref)
+    return type_.name

@@ -1,0 +1,147 @@
+"""Members of mutable structs, each with its id and its length before it (DDS-XTypes 1.3, 7.4.3.4.2: PL_CDR2)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import BEGIN, Binary, Compare, Const, Convert, Expr, If, Local, Select, Store, Switch, While, add, index
+from rosetta_jit.lowering import leaves
+from rosetta_jit.lowering.writer import Writer, block, integer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Block
+    from rosetta_jit.lowering.fields import Fields
+    from rosetta_jit.lowering.writer import Where
+    from rosetta_jit.wire.codec import Codec, Member, Members
+
+    Walk = Callable[[Codec, Fields, Writer], None]
+
+ID_BITS, CODE_SHIFT, MUST_UNDERSTAND = 0x0FFF_FFFF, 28, 1 << 31
+OWN_LENGTH = 4
+"""The first length code with a word of its own for the length; codes above share it with the member's first word."""
+UNITS = {5: 1, 6: 4, 7: 8}
+"""By what that first word is multiplied, and four is added."""
+
+
+def members(codec: Members, fields: Fields, writer: Writer, walk: Walk) -> None:
+    """Read or write all members, and the number of their bytes before them."""
+    where, begin = fields.where.members(codec.path), writer.position
+    if writer.direction == "decode":
+        size = writer.let("size", integer(writer.load("u32", where, codec.order)))
+        writer.require(size, where)
+        _read(codec, fields, writer, walk, writer.let("stop", Binary("add", writer.position, size)))
+        return
+    writer.require(4, where, "no room for the message")
+    writer.advance(4)
+    inside = writer.let("inside", writer.position)
+    for member in codec.members:
+        _write(codec, member, fields, writer, walk)
+    store_size(writer, begin, inside, where, codec.order)
+
+
+# --- reading -----------------------------------------------------------------------------------------------------------------
+
+
+def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr) -> None:
+    where = fields.where.members(codec.path)
+    at = writer.var("at", writer.position)
+    seen = [writer.var("seen", Const("u64", 0)) for _ in range(0, len(codec.members), 64)]
+    with writer.nested() as body:
+        writer.position = at
+        leaves.align(writer, 4)
+        head = writer.let("head", integer(writer.load("u32", where, codec.order)))
+        start, size = _extent(writer, codec, head, where)
+        writer.require(size, where, at=start)
+        behind = writer.let("behind", Binary("add", start, size))
+        writer.expect(Compare("le", behind, stop), "truncated", where, "a member goes beyond its struct")
+        cases: list[tuple[int, Block]] = []
+        for number, member in enumerate(codec.members):
+            with writer.nested() as one:
+                writer.position = start
+                _once(writer, seen[number // 64], 1 << number % 64, fields.where.members(member.path))
+                walk(member.value, fields, writer)
+                fits = Compare("eq", writer.position, behind)
+                writer.expect(fits, "length", fields.where.members(member.path), "its content is not as long as it says")
+            cases.append((member.number, block(one)))
+        with writer.nested() as unknown:
+            known = Compare("eq", Binary("and", head, index(MUST_UNDERSTAND)), index(0))
+            writer.expect(known, "tag", where, "an unknown member that must be understood")
+        writer.emit(Switch(Binary("and", head, index(ID_BITS)), tuple(cases), block(unknown)))
+        writer.assign(at, behind)
+    invariant = (Compare("ge", at, BEGIN), Compare("le", at, stop))
+    writer.emit(While(Compare("lt", at, stop), block(body), invariant, at))
+    writer.position = at
+    for number, member in enumerate(codec.members):
+        if not member.optional:
+            there = Compare("ne", Binary("and", seen[number // 64], Const("u64", 1 << number % 64)), Const("u64", 0))
+            writer.expect(there, "missing", fields.where.members(member.path), "a member did not come")
+
+
+def _once(writer: Writer, seen: Local, bit: int, where: Where) -> None:
+    new = Compare("eq", Binary("and", seen, Const("u64", bit)), Const("u64", 0))
+    writer.expect(new, "tag", where, "a member comes twice")
+    writer.assign(seen, Binary("or", seen, Const("u64", bit)))
+
+
+def _extent(writer: Writer, codec: Members, head: Expr, where: Where) -> tuple[Expr, Expr]:
+    """Where a member begins, and its size in bytes."""
+    code = writer.let("code", Binary("and", Binary("shr", head, index(CODE_SHIFT)), index(7)))
+    start, size = writer.var("start", writer.position), writer.var("size", index(8))
+    for short in (0, 1, 2):
+        writer.assign(size, Select(Compare("eq", code, index(short)), index(1 << short), size))
+    with writer.nested() as told:
+        word = writer.let("length", integer(writer.load("u32", where, codec.order)))
+        writer.assign(start, Select(Compare("eq", code, index(OWN_LENGTH)), writer.position, start))
+        unit: Expr = index(1)
+        for long, factor in UNITS.items():
+            unit = Select(Compare("eq", code, index(long)), index(factor), unit)
+        total = Binary("mul", word, writer.let("unit", unit))
+        writer.assign(size, Select(Compare("eq", code, index(OWN_LENGTH)), word, Binary("add", total, index(4))))
+    writer.emit(If(Compare("ge", code, index(OWN_LENGTH)), block(told)))
+    inside = Binary("and", Compare("ge", start, BEGIN), Compare("le", start, add(writer.position, 4)))
+    sane = Binary("and", Compare("ge", size, index(0)), Compare("le", size, index(1 << 40)))
+    writer.expect(Binary("and", inside, sane), "length", where, "no such length")  # true anyway; said for the proof
+    return start, size
+
+
+# --- writing -----------------------------------------------------------------------------------------------------------------
+
+
+def _write(codec: Members, member: Member, fields: Fields, writer: Writer, walk: Walk) -> None:
+    if not member.optional:
+        _write_member(codec, member, fields, writer, walk)
+        return
+    at = writer.cursor()
+    with writer.nested() as there:
+        writer.position = at
+        _write_member(codec, member, fields, writer, walk)
+        writer.settle()
+        writer.assign(at, writer.position)
+    writer.emit(If(fields.present(member.path), block(there)))
+    writer.position = at
+
+
+def _write_member(codec: Members, member: Member, fields: Fields, writer: Writer, walk: Walk) -> None:
+    where = fields.where.members(member.path)
+    leaves.align(writer, 4)
+    head = member.number | member.length_code << CODE_SHIFT | (MUST_UNDERSTAND if member.must_understand else 0)
+    writer.store(Const("u32", head), where, codec.order)
+    if member.length_code != OWN_LENGTH:
+        walk(member.value, fields, writer)
+        return
+    begin = writer.position
+    writer.require(4, where, "no room for the message")
+    writer.advance(4)
+    inside = writer.let("inside", writer.position)
+    walk(member.value, fields, writer)
+    store_size(writer, begin, inside, where, codec.order)
+
+
+def store_size(writer: Writer, begin: Expr, inside: Expr, where: Where, order: str) -> None:
+    """What was written since then, as the size that stands before it."""
+    if writer.direction == "encode":
+        size = writer.let("size", Binary("sub", writer.position, inside))
+        writer.expect(Compare("lt", size, index(leaves.LIMITS["u32"])), "range", where, "too long for the wire")
+        writer.emit(Store(begin, Convert("u32", size), ">" if order == ">" else "<"))
