@@ -67,7 +67,8 @@ def not_a_type(span: Span, text: str) -> Diagnostic:
 def not_a_type_name(span: Span, text: str, package: str, message: str) -> Diagnostic:
     """A word that no builtin type or message can have as its name."""
     notes = (f"a package's name is {package}", f"a message's name is {message}")
-    help_ = f"Did you mean `{MEANT[text]}`?" if text in MEANT else ""
+    near = MEANT.get(text) or (text.replace("/msg/", "/") if text.count("/") == 2 and "/msg/" in text else "")
+    help_ = f"Did you mean `{_short(near)}`?" if near else ""
     return _error("type", f"`{_short(text)}` is no name of a type", span, "malformed", help_, notes)
 
 
@@ -97,9 +98,9 @@ def not_a_constant_type(span: Span, text: str, scalars: Sequence[str]) -> Diagno
     return _error("constant-type", f"`{_short(text)}` has no constants", span, "not a type of constants", help_)
 
 
-def not_a_value(span: Span, type_: str) -> Diagnostic:
+def not_a_value(span: Span, type_: str, wanted: str) -> Diagnostic:
     """A constant or default that is misspelt, out of range or of another type."""
-    return _error("value", f"this is no value of `{_short(type_)}`", span, "does not fit")
+    return _error("value", f"this is no value of `{_short(type_)}`", span, f"expected {wanted}")
 
 
 def default_of_message(span: Span) -> Diagnostic:
@@ -138,10 +139,10 @@ def defined_twice(span: Span, name: str, first: Span) -> Diagnostic:
     return _error("defined-twice", f"`{_short(name)}` is defined in two ways", span, "differs from the first one", notes=notes)
 
 
-def unknown_message(span: Span, name: str, places: Sequence[str], scalars: Sequence[str]) -> Diagnostic:
+def unknown_message(span: Span, name: str, written: str, places: Sequence[str], scalars: Sequence[str]) -> Diagnostic:
     """A field of a message that is nowhere."""
-    word = name.rsplit("/", 1)[-1]
-    near = MEANT.get(word) or next(iter(get_close_matches(word[:SHOWN], scalars, 1)), "")
+    word = written.split("[", maxsplit=1)[0][:SHOWN]
+    near = MEANT.get(word) or next(iter(get_close_matches(word, scalars, 1)), "")
     help_ = f"Did you mean `{near}`?" if near else "Add its file's folder to the search path, or its definition to the text."
     notes = (f"looked for {', '.join(_short(place) for place in places)}",)
     return _error("unknown-message", f"no definition of `{_short(name)}` is found", span, "unknown", help_, notes)

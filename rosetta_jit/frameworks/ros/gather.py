@@ -62,7 +62,7 @@ class _Gathering:
         source = next((each for each in sources if each is not None and declared_in(each.name, self.dialect)[0] in ("", package)), None)
         if source is None:
             self.missing.add(type_.base)
-            self.problems.append(say.unknown_message(type_.span, type_.base, asked, tuple(self.dialect.scalars)))
+            self.problems.append(say.unknown_message(type_.span, type_.base, type_.written, asked, tuple(self.dialect.scalars)))
         elif len(self.found) >= MAX_MESSAGES:
             self.problems.append(say.too_many(type_.span, MAX_MESSAGES))
             self.waiting.clear()

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
-from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, Word
+from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Word
 from rosetta_jit.frameworks.ros.typenames import type_name
-from rosetta_jit.frameworks.ros.values import array_values, scalar_value
+from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted
 from rosetta_jit.model.types import String
 from rosetta_jit.source import Span
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.ros.dialect import Dialect, Rule, Scalar
     from rosetta_jit.frameworks.ros.sections import Section
-    from rosetta_jit.frameworks.ros.tree import TypeName, Values
+    from rosetta_jit.frameworks.ros.tree import Values
     from rosetta_jit.model.types import Constant as Value
 
 BLANKS = " \t\r"
@@ -42,6 +42,8 @@ class _Reader:
     dialect: Dialect
     problems: list[Diagnostic]
     optional: Span | None = None
+    doc: str = ""
+    comments: list[str] = field(default_factory=list[str])
     names: dict[str, Span] = field(default_factory=dict[str, Span])
     constants: list[Constant] = field(default_factory=list[Constant])
     fields: list[Field] = field(default_factory=list[Field])
@@ -57,10 +59,13 @@ class _Reader:
         if self.optional is not None:
             self.problems.append(say.optional_nothing(self.optional))
         name = self.dialect.message(section.package, section.short)
-        return Definition(name, section.package, section.source, section.named, section.text, tuple(self.constants), tuple(self.fields))
+        members = tuple(self.constants), tuple(self.fields)
+        return Definition(name, section.package, section.source, section.named, section.text, *members, self.doc)
 
     def _line(self, line: Word) -> None:
-        clean = self._part(line, 0, line.text.find("#") if "#" in line.text else None)
+        before, sign, comment = line.text.partition("#")
+        clean = self._part(line, 0, len(before))
+        self._comment(comment.strip("# \t\r"), goes_on=bool(sign or clean.text))
         if not clean.text:
             return
         if self.dialect.extended and clean.span.start > line.span.start:
@@ -72,6 +77,15 @@ class _Reader:
                 return
         self._declaration(clean, line)
         self.optional = None
+        self.comments.clear()
+
+    def _comment(self, text: str, *, goes_on: bool) -> None:
+        """Comments belong to the declaration on their line or right below them; those before the first blank line, to the message."""
+        if text:
+            self.comments.append(text)
+        elif not goes_on:
+            self.doc = self.doc or ("" if self.fields or self.constants else "\n".join(self.comments))
+            self.comments.clear()
 
     def _annotated(self, clean: Word) -> Word:
         """What stands behind an annotation."""
@@ -105,7 +119,7 @@ class _Reader:
         if value.text and not self.dialect.extended:
             self.problems.append(say.too_much(value.span))
         elif type_ is not None and named:
-            self.fields.append(Field(type_, name, self._default(type_, value), self.optional is not None))
+            self.fields.append(Field(type_, name, self._default(type_, value), self.optional is not None, self._documentation))
 
     def _default(self, type_: TypeName, value: Word) -> Value | Values | None:
         if not value.text:
@@ -117,7 +131,7 @@ class _Reader:
         element = self._bounded(type_)
         default = array_values(value.text, type_, element, self.dialect) if type_.array else scalar_value(value.text, element, self.dialect)
         if default is None:
-            self.problems.append(say.not_a_value(value.span, type_.written))
+            self.problems.append(say.not_a_value(value.span, type_.written, wanted(type_, element, self.dialect)))
         return default
 
     def _constant(self, first: Word, rest: Word, line: Word) -> None:
@@ -130,12 +144,17 @@ class _Reader:
         if scalar is None:
             self.problems.append(say.not_a_constant_type(first.span, first.text, tuple(self.dialect.scalars)))
             return
+        type_ = TypeName(first.text, first.text, first.span, builtin=True)
         number = scalar_value(value.text, scalar, self.dialect)
         if number is None:
-            self.problems.append(say.not_a_value(value.span if value.text else rest.span, first.text))
-        type_ = type_name(first, "", self.dialect, self.problems)
-        if type_ is not None and number is not None and named:
-            self.constants.append(Constant(type_, name, value, number))
+            place = value.span if value.text else rest.span
+            self.problems.append(say.not_a_value(place, first.text, wanted(type_, scalar, self.dialect)))
+        elif named:
+            self.constants.append(Constant(type_, name, value, number, self._documentation))
+
+    @property
+    def _documentation(self) -> str:
+        return "\n".join(self.comments)
 
     def _bounded(self, type_: TypeName) -> Scalar:
         """The scalar type, with the bound of a string."""

@@ -58,15 +58,15 @@ def _place(problem: Diagnostic) -> tuple[str, int]:
 
 def _struct(definition: tree.Definition, dialect: Dialect, options: Options) -> Struct:
     fields = tuple(_field(each, dialect) for each in definition.fields)
-    constants = tuple(NamedConstant(each.name.text, dialect.scalars[each.type.base], each.value) for each in definition.constants)
-    return Struct(definition.name, fields, span=definition.span, constants=constants, options=options)
+    constants = tuple(NamedConstant(each.name.text, dialect.scalars[each.type.base], each.value, each.doc) for each in definition.constants)
+    return Struct(definition.name, fields, definition.doc, span=definition.span, constants=constants, options=options)
 
 
 def _field(field: tree.Field, dialect: Dialect) -> Field:
     type_ = _type(field.type, dialect)
     default, options = _default(field.default, type_)
     wrapped = Optional(type_) if field.optional else type_
-    return Field(field.name.text, wrapped, default=default, options=options, span=field.name.span)
+    return Field(field.name.text, wrapped, default=default, options=options, doc=field.doc, span=field.name.span)
 
 
 def _default(default: Constant | tree.Values | None, type_: Type) -> tuple[Constant | None, Options]:

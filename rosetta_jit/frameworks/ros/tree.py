@@ -56,6 +56,7 @@ class Constant:
     name: Word
     text: Word
     value: Value
+    doc: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +67,7 @@ class Field:
     name: Word
     default: Value | Values | None = None
     optional: bool = False
+    doc: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,3 +81,4 @@ class Definition:
     text: str
     constants: tuple[Constant, ...] = ()
     fields: tuple[Field, ...] = ()
+    doc: str = ""

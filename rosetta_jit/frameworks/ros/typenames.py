@@ -22,11 +22,11 @@ MAX_LENGTH = (1 << 32) - 1
 def type_name(word: Word, package: str, dialect: Dialect, problems: list[Diagnostic]) -> TypeName | None:
     """What a word means as a type; None, and a problem, if nothing."""
     match = TYPE.fullmatch(word.text)
-    if match is None or (not dialect.extended and (match["bound"] or match["most"])):
+    if match is None or not _may_have_bounds(match, dialect):
         problems.append(say.not_a_type(word.span, word.text))
         return None
     base = _base(match["base"], word.text, package, dialect)
-    if base is None or (match["bound"] and match["base"] not in ("string", "wstring")):
+    if base is None:
         problems.append(say.not_a_type_name(word.span, match["base"], dialect.packages.words, dialect.messages.words))
         return None
     numbers = {part: _length(match[part]) for part in ("text", "length") if match[part]}
@@ -57,6 +57,11 @@ def _base(word: str, written: str, package: str, dialect: Dialect) -> str | None
     if len(parts) > 2 or not dialect.messages.allows(parts[-1]) or (len(parts) == 2 and not dialect.packages.allows(parts[0])):
         return None
     return dialect.message(parts[0] if len(parts) == 2 else package, parts[-1])
+
+
+def _may_have_bounds(match: re.Match[str], dialect: Dialect) -> bool:
+    """Whether it has bounds only where types have some."""
+    return dialect.extended and match["base"] in ("string", "wstring") if match["bound"] else dialect.extended or not match["most"]
 
 
 def _length(text: str) -> int | None:

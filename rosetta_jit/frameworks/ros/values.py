@@ -27,13 +27,34 @@ def scalar_value(text: str, type_: Scalar, dialect: Dialect) -> Value | None:
             return _truth(text, dialect)
         case Int(bits, signed):
             number = int(text, 0 if _prefixed(text) else 10) if len(text) <= MAX_DIGITS and dialect.integers.fullmatch(text) else None
-            low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
+            low, high = _range(bits, signed=signed)
             return number if number is not None and low <= number <= high else None
         case Float():
             return float(text) if FLOAT.fullmatch(text) else None
         case String(_, _, maximum):
             value = _unquoted(text) if dialect.extended else text
             return value if value is None or maximum is None or len(value) <= maximum else None
+
+
+def wanted(type_: TypeName, element: Scalar, dialect: Dialect) -> str:
+    """What a value of a type would be, in words."""
+    if type_.array:
+        number = type_.length if type_.maximum is None else f"at most {type_.maximum}"
+        return f"{'values' if number is None else f'{number} of them'} in brackets, each {_wanted(element, dialect)}"
+    return _wanted(element, dialect)
+
+
+def _wanted(type_: Scalar, dialect: Dialect) -> str:
+    match type_:
+        case Bool():
+            return "true or false" if dialect.extended else "True, False or a number"
+        case Int(bits, signed):
+            low, high = _range(bits, signed=signed)
+            return f"a whole number from {low} to {high}"
+        case Float():
+            return "a number"
+        case String(_, _, maximum):
+            return "text whose quotes match" if maximum is None else f"text of at most {maximum} characters"
 
 
 def array_values(text: str, type_: TypeName, element: Scalar, dialect: Dialect) -> Values | None:
@@ -47,6 +68,10 @@ def array_values(text: str, type_: TypeName, element: Scalar, dialect: Dialect) 
         return None
     values = [scalar_value(each, element, dialect) for each in texts]
     return tuple(each for each in values if each is not None) if None not in values else None
+
+
+def _range(bits: int, *, signed: bool) -> tuple[int, int]:
+    return (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
 
 
 def _truth(text: str, dialect: Dialect) -> bool | None:

@@ -1,0 +1,74 @@
+"""The front end of ROS 2's `.msg` files, and of the concatenated ones in an MCAP file, as rosidl_adapter reads them.
+
+https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rosetta_jit.frameworks.ros import Dialect, Rule, definitions_of, schema_of
+from rosetta_jit.model.types import Bool, Float, Int, String
+
+if TYPE_CHECKING:
+    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.model.types import Schema
+    from rosetta_jit.source import Source
+
+SCALARS = {
+    "bool": Bool("bool"),
+    "byte": Int(8, signed=False, spelling="byte"),
+    "char": Int(8, signed=False, spelling="char"),
+    "float32": Float(32, "float32"),
+    "float64": Float(64, "float64"),
+    "int8": Int(8, spelling="int8"),
+    "uint8": Int(8, signed=False, spelling="uint8"),
+    "int16": Int(16, spelling="int16"),
+    "uint16": Int(16, signed=False, spelling="uint16"),
+    "int32": Int(32, spelling="int32"),
+    "uint32": Int(32, signed=False, spelling="uint32"),
+    "int64": Int(64, spelling="int64"),
+    "uint64": Int(64, signed=False, spelling="uint64"),
+    "string": String("utf-8", "string"),
+    "wstring": String("utf-16", "wstring"),
+}
+
+LOWER = Rule(re.compile(r"[a-z](?:_?[a-z0-9])*"), "lower-case letters, digits and single underscores, a letter first")
+
+ROS2 = Dialect(
+    name="ros2",
+    qualified="{package}/msg/{name}",
+    scalars=SCALARS,
+    octets=frozenset({"uint8", "byte", "char"}),
+    packages=LOWER,
+    messages=Rule(
+        re.compile(r"(?:Sample_)?[A-Z][A-Za-z0-9]*(?:_(?:Request|Response|Goal|Result|Feedback))*"),
+        "letters and digits, an upper-case one first",
+    ),
+    fields=LOWER,
+    constants=Rule(re.compile(r"[A-Z](?:_?[A-Z0-9])*"), "upper-case letters, digits and single underscores, a letter first"),
+    integers=re.compile(r"[+-]?(?:[0-9]+|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+)"),
+    line_ends=re.compile(r"\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"),
+    extended=True,
+)
+
+
+def parse(source: Source, load: Load) -> Schema:
+    """A `.msg` file and the messages that it needs, from the text itself where it has their definitions, else from the search path.
+
+    The default of a field is `Field.default`; that of an array other than bytes is its option ``default``, a list in JSON.
+
+    Parameters
+    ----------
+    source
+        The text, named after the message: ``sensor_msgs/msg/Imu.msg``, ``sensor_msgs/Imu.msg``.
+    load
+        Finds the files of other messages.
+
+    Raises
+    ------
+    SchemaError
+        With everything that is wrong in any of the texts.
+    """
+    return schema_of(definitions_of(source, load, ROS2), ROS2)
