@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MAX_SHOWN = 60
 """Characters of a hostile word that a report repeats."""
 
-MAX_COMPARED = 500
+MAX_COMPARED = 100
 """Names among which the nearest is looked for; comparing is slow."""
 
 
@@ -120,6 +120,13 @@ def endless(field: str, span: Span | None, struct: str) -> Diagnostic:
 def too_deep(name: str, span: Span | None, limit: int) -> Diagnostic:
     """Structs in structs in structs."""
     return _error("too-deep", f"`{_cut(name)}` nests structs more than {limit} deep, or too many in each other", span, "met here")
+
+
+def recursion_in_elements(field: str, span: Span | None) -> Diagnostic:
+    """An array whose elements are not recursive structs, but contain them."""
+    help_ = "Make the elements of the array the recursive structs themselves, in one dimension."
+    message = f"the elements of `{_cut(field)}` contain recursive structs"
+    return _error("recursion", message, span, "this cannot be read or written", help_)
 
 
 # --- members ----------------------------------------------------------------------------------------------------------------

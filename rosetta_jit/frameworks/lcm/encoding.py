@@ -11,33 +11,32 @@ from rosetta_jit.frameworks.lcm.fingerprint import MAX_DEPTH, fingerprint
 from rosetta_jit.model import expr
 from rosetta_jit.model.layout import MAX_SLOTS, recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
-from rosetta_jit.wire.codec import Blob, Codec, Constant, Count, Encoding, Number, Path, Recursion, Repeat, Seq, Table
+from rosetta_jit.wire.codec import Blob, Codec, Constant, Count, Encoding, Number, Path, Recursion, Repeat, Seq, Table, recurses
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Choices
-    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.model.types import Field, Schema, Type
 
 STRING = Count("i32", ">")
 
 ANY = 1 << 32
 """More bytes than any message has."""
 
-STRICT = ((0, 0), (1, 1))
-"""What a boolean may be on the wire."""
-
-LENIENT = (*STRICT, *((number, 1) for number in range(-128, 128) if number not in {0, 1}))
-"""Every byte, as lcm-gen's readers take them."""
+BOOLEANS = ((0, 0), (1, 1))
+"""What a boolean may be on the wire. A plain number is true if it is not 0."""
 
 
 def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
     """The encoding of a message type.
+
+    It can be lenient about ``bool`` (any number but 0 is true) and ``trailing`` (bytes behind the message), as LCM's own readers are.
 
     Raises
     ------
     SchemaError
         If structs contain each other too deep or too often.
     """
-    writing = _Fields(schema, recursive_structs(Ref(struct.name), schema), LENIENT if "bool" in choices.lenient else STRICT)
+    writing = _Fields(schema, recursive_structs(Ref(struct.name), schema), strict="bool" not in choices.lenient)
     first = Constant((), fingerprint(struct, schema), "u64", ">")
     root = Seq((first, *writing.fields(struct, ())))
     nested = {each: Seq(writing.fields(_struct(schema, each), ())) for each in sorted(writing.recursive)}
@@ -50,14 +49,20 @@ class _Fields:
 
     schema: Schema
     recursive: frozenset[str]
-    booleans: tuple[tuple[int, int], ...]
+    strict: bool
     made: int = 0
 
     def fields(self, struct: Struct, around: Path) -> tuple[Codec, ...]:
         self.made += len(struct.fields)
         if self.made > MAX_SLOTS:
             raise SchemaError((say.too_deep(struct.name, struct.span, MAX_DEPTH),))
-        return tuple(self.value(each.type, (*around, each.name), around) for each in struct.fields)
+        return tuple(self.field(each, around) for each in struct.fields)
+
+    def field(self, field: Field, around: Path) -> Codec:
+        codec = self.value(field.type, (*around, field.name), around)
+        if isinstance(codec, Repeat) and recurses(codec.item) and not isinstance(codec.item, Recursion):
+            raise SchemaError((say.recursion_in_elements(field.name, field.span),))
+        return codec
 
     def value(self, type_: Type, path: Path, around: Path) -> Codec:
         """What is at a path; ``around`` is that of the struct whose fields tell sizes."""
@@ -67,7 +72,7 @@ class _Fields:
             case Float(bits):
                 return Number(path, f"f{bits}", ">")
             case Bool():
-                return Table(path, "i8", self.booleans, ">")
+                return Table(path, "i8", BOOLEANS) if self.strict else Number(path, "i8")
             case String():
                 return Blob(path, STRING, text=True, terminated=True)
             case Bytes(_, length):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import lcm as say
 from rosetta_jit.frameworks.lcm.reading import read
 from rosetta_jit.frameworks.lcm.scalars import PRIMITIVES
+from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.tree import Member, StructDeclaration, qualified
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ class Gathered:
         self.sources.append(file.source.name)
         for each in file.declarations:
             name = qualified(each.package, each.name.text)
+            if len(problems) >= MAX_PROBLEMS:
+                return
             if each.name.text in PRIMITIVES:
                 problems.append(say.primitive_declared(each.name))
             elif name in self.declarations:
@@ -61,7 +64,7 @@ def gather(source: Source, load: Load, problems: list[Diagnostic]) -> Gathered:
     found.add(root, problems)
     pending = list(_uses(root, ""))[::-1]
     unknown: set[str] = set()
-    while pending:
+    while pending and len(problems) < MAX_PROBLEMS:
         use = pending.pop()
         if use.name in found.declarations or use.name in unknown:
             continue

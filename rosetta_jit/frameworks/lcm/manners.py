@@ -7,6 +7,7 @@ cannot be decoded raises `rosetta_jit.errors.DecodeError`, a ValueError that say
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
@@ -80,17 +81,22 @@ class LcmMessage(Holder):
     @classmethod
     def get_hash(cls) -> int:
         """The fingerprint of the type."""
-        return fingerprint(cls.family_.struct, cls.family_.schema)
+        return _hash(cls.family_)
 
     @classmethod
     def _get_packed_fingerprint(cls) -> bytes:
         """The fingerprint, as messages begin with it."""
-        return fingerprint(cls.family_.struct, cls.family_.schema).to_bytes(8, "big")
+        return _hash(cls.family_).to_bytes(8, "big")
 
     def _programs(self) -> Programs:
         if self.programs_ is None:
             raise RosettaError(f"no decoder or encoder of {self.family_.struct.name} has been compiled")
         return self.programs_
+
+
+@cache
+def _hash(family: Family) -> int:
+    return fingerprint(family.struct, family.schema)
 
 
 def members(family: Family) -> dict[str, Any]:

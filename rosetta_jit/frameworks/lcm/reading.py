@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from rosetta_jit.catalogue import lcm as say
-from rosetta_jit.frameworks.lcm.tokens import Token, comment_before, tokens
+from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS, Token, comment_before, tokens
 from rosetta_jit.frameworks.lcm.tree import Constant, EnumDeclaration, File, Member, Name, StructDeclaration, Word
 from rosetta_jit.source import Span
 
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Source
 
 T = TypeVar("T")
-
-MAX_PROBLEMS = 100
-"""A file with more problems is not read to its end."""
 
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 DOTTED = re.compile(rf"{IDENTIFIER.pattern}(\.{IDENTIFIER.pattern})*")

@@ -9,6 +9,7 @@ from rosetta_jit.catalogue import lcm as say
 from rosetta_jit.frameworks.lcm.numbers import floating, integer
 from rosetta_jit.frameworks.lcm.scalars import BYTE, CONSTANTS, INTEGERS, PRIMITIVES
 from rosetta_jit.frameworks.lcm.shape import SIZES
+from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.tree import Constant, Member, StructDeclaration, qualified
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct
@@ -16,7 +17,7 @@ from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, Named
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.lcm.files import Gathered
-    from rosetta_jit.frameworks.lcm.tree import EnumDeclaration, Name
+    from rosetta_jit.frameworks.lcm.tree import EnumDeclaration, Name, Word
     from rosetta_jit.model.types import Type
 
 MAX_SIZE = (1 << 31) - 1
@@ -49,6 +50,8 @@ class _Struct:
     def struct(self, name: str) -> Struct:
         fields: list[Field] = []
         for item in self.declaration.items:
+            if len(self.problems) >= MAX_PROBLEMS:
+                break
             if item.name.text in self.names:
                 self.problems.append(say.repeated_name(item.name, self.names[item.name.text].span))
                 continue
@@ -160,24 +163,28 @@ def _enum(name: str, declaration: EnumDeclaration, problems: list[Diagnostic]) -
     """Open, as lcm-gen's are: words are added over time, and the fingerprint stays the same."""
     names: dict[str, Name] = {}
     words: dict[int, str] = {}
+    largest = 0
     for word in declaration.words:
-        number = max(0, *words, 0) + 1 if word.number is None else _enumerator(word.number, problems)
+        if len(problems) >= MAX_PROBLEMS:
+            break
+        number = _enumerator(word, largest + 1, problems)
         if word.name.text in names:
             problems.append(say.repeated_name(word.name, names[word.name.text].span))
         elif number in words:
             problems.append(say.repeated_number(word.name, words[number], number))
         elif number is not None:
             words[number] = word.name.text
+            largest = max(largest, number)
         names.setdefault(word.name.text, word.name)
     return Enum(name, tuple((word, number) for number, word in words.items()), closed=False, span=declaration.name.span)
 
 
-def _enumerator(number: Name, problems: list[Diagnostic]) -> int | None:
-    value = integer(number.text)
+def _enumerator(word: Word, following: int, problems: list[Diagnostic]) -> int | None:
+    value = following if word.number is None else integer(word.number.text)
     if value is None:
-        problems.append(say.no_integer(number))
+        problems.append(say.no_integer(word.number or word.name))
     elif not -MAX_SIZE - 1 <= value <= MAX_SIZE:
-        problems.append(say.constant_range(number, "int32_t"))
+        problems.append(say.constant_range(word.number or word.name, "int32_t"))
     else:
         return value
     return None

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Source
 
+MAX_PROBLEMS = 100
+"""Of a text with more, the rest is not explained."""
+
 _SPACE = r" \t\n\v\f\r"
 _ENDS = r"();\",:'\[\]!~<>=&|^%*+"
 
@@ -60,7 +63,7 @@ def _tokens(source: Source, problems: list[Diagnostic]) -> Iterator[Token]:
     for match in _WORDS.finditer(source.text):
         kind = match.lastgroup or ""
         start, end = match.span()
-        if before in _NOT_CUT and kind in {"name", "brace", "comment", "unclosed"}:
+        if before in _NOT_CUT and kind in {"name", "brace", "comment", "unclosed"} and len(problems) < MAX_PROBLEMS:
             problems.append(say.no_space(Span(source, start, min(end, start + 2 if kind == "comment" else end))))
         if kind == "unclosed":
             problems.append(say.unclosed_comment(Span(source, start, start + 2)))

@@ -44,8 +44,8 @@ def keyword_or_own(name):
 
 
 @st.composite
-def structs(draw, name, others):
-    """A struct that may contain those declared before, and itself in arrays that can be empty."""
+def structs(draw, name, flat, deep):
+    """A struct that may contain those declared before, and itself in lists that can be empty. ``deep`` ones are in no arrays."""
     taken = draw(st.lists(names, min_size=1, max_size=8, unique=True))
     constants, members, counts, text = [], [], [], []
     for each in taken:
@@ -56,7 +56,7 @@ def structs(draw, name, others):
             text.append(f"const {type_} {each} = {word};")
             continue
         sizes, written = draw(dimensions(counts, constants))
-        inner = [*others, name] if any(isinstance(size, str) for size in sizes) else others
+        inner = [*flat, *([] if sizes else deep), *([name] if len(sizes) == 1 and isinstance(sizes[0], str) else [])]
         type_ = draw(st.sampled_from([*PRIMITIVES, *inner, *INTEGERS]))
         members.append(Member(type_, each, tuple(sizes), tuple(written)))
         text.append(f"{type_} {each}{''.join(f'[{size}]' for size in written)};")
@@ -83,11 +83,65 @@ def dimensions(draw, counts, constants):
 @st.composite
 def files(draw, most=4):
     """Some structs of one package."""
-    found = []
+    found, flat, deep = [], [], []
     for number in range(draw(st.integers(1, most))):
-        found.append(draw(structs(f"t{number}_t", [each.name for each in found])))
+        name = f"t{number}_t"
+        found.append(draw(structs(name, flat, deep)))
+        (deep if any(each.type in {name, *deep} for each in found[-1].members) else flat).append(name)
     return found
 
 
 def text_of(found):
     return f"package {PACKAGE};\n" + "\n".join(each.text for each in found) + "\n"
+
+
+def random_value(name, types, rng, depth=0):
+    """Plain values of a struct: sizes agree with arrays, and recursion ends."""
+    declared = types[name]
+    values = {}
+    for member in declared.members:
+        if member.name in declared.counts:
+            values[member.name] = rng.randrange(0, 4 if depth == 0 else 2) if depth < 3 else 0
+        else:
+            sizes = [values[size] if isinstance(size, str) else size for size in member.sizes]
+            values[member.name] = array(member.type, sizes, types, rng, depth)
+    return values
+
+
+def array(type_, sizes, types, rng, depth):
+    if type_ == "byte" and len(sizes) == 1:
+        return rng.randbytes(sizes[0])
+    if sizes:
+        return [array(type_, sizes[1:], types, rng, depth) for _ in range(sizes[0])]
+    return random_value(type_, types, rng, depth + 1) if type_ in types else scalar(type_, rng)
+
+
+def scalar(type_, rng):
+    match type_:
+        case "boolean":
+            return rng.random() < 0.5
+        case "byte":
+            return rng.randrange(256)
+        case "string":
+            return "".join(rng.choice("aZ é€😀\0") for _ in range(rng.randrange(5)))
+        case "float":
+            return rng.choice((0.0, -0.0, 1.5, float("inf"), float("nan"), 3.4028234663852886e38, rng.randrange(-999, 999) / 64))
+        case "double":
+            return rng.choice((0.0, -0.0, 5e-324, float("-inf"), float("nan"), rng.random()))
+        case _:
+            limit = 1 << (INTEGERS[type_] - 1)
+            return rng.choice((-limit, limit - 1, 0, rng.randrange(-limit, limit)))
+
+
+def as_generated(value, name, types, classes):
+    """Plain values as an object of lcm-gen's class."""
+    made = classes[f"{PACKAGE}.{name}"]()
+    for member in types[name].members:
+        setattr(made, member.name, objects(value[member.name], member.type, types, classes))
+    return made
+
+
+def objects(value, type_, types, classes):
+    if isinstance(value, list):
+        return [objects(each, type_, types, classes) for each in value]
+    return as_generated(value, type_, types, classes) if type_ in types else value
