@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     Value = bool | int | float | str
 
 FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
+PYTHON_INTEGER, ZERO = re.compile(r"[+-]?(?:0+|[1-9][0-9]*)"), re.compile(r"[+-]?0+")
 MAX_DIGITS = 80
 """Of an integer, in whatever base it is written."""
 ELEMENT = re.compile(r""" *("(?:\\"|[^"])*"|'(?:\\'|[^'])*'|[^,"' ][^,]*) *(?:,|$)""")
@@ -80,7 +81,7 @@ def _truth(text: str, dialect: Dialect) -> bool | None:
         return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
     if text in ("True", "False"):
         return text == "True"
-    return any(digit in text for digit in "123456789") if dialect.integers.fullmatch(text) else None
+    return not ZERO.fullmatch(text) if PYTHON_INTEGER.fullmatch(text) else None
 
 
 def _prefixed(text: str) -> bool:

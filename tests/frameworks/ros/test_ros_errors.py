@@ -9,8 +9,17 @@ from tests.frameworks.ros.ros_files import GOLDEN, alone, debian
 from tests.golden import check_golden
 
 FILES = [path for dialect in ("ros1", "ros2") for path in sorted((GOLDEN / dialect).glob("*.msg"))]
-BEYOND = {"CycleOfTwo", "SectionTwice", "SectionUnnamed", "TooDeep", "UnknownMessage", "DuplicateConstant", "SectionName"}
-BEYOND |= {"LongName", "Time"}
+BEYOND = {
+    "CycleOfTwo",
+    "DuplicateConstant",
+    "LongName",
+    "SectionName",
+    "SectionTwice",
+    "SectionUnnamed",
+    "Time",
+    "TooDeep",
+    "UnknownMessage",
+}
 """What the peers' parsers of one file do not look at, but their generators or C++ compilers do."""
 
 
