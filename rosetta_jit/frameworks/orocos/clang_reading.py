@@ -1,6 +1,6 @@
 """What libclang sees in a header, as plain data. A program of its own: it reads a request from its input and answers on its output.
 
-    request = {"main": path, "files": {path: text}, "user": folder, "standard": folder}
+    request = {"main": path, "files": {path: text}, "user": folder, "standard": folder, "seconds": of processor time}
     answer  = {"missing": true} | {"failed": true} | {"errors": [[text, Place]]} | {"records": [...], "enums": [...], "aliases": [...]}
     Type    = ["bool"] | ["int", bits, signed, word] | ["float", bits, word] | ["string"] | ["vector", Type] | ["array", Type, length]
             | ["record", name] | ["enum", name] | ["no", reason, word]
@@ -22,7 +22,7 @@ from typing import Any
 NO_FILES = '{"version": 0, "fallthrough": "false", "roots": []}'
 """A file system in which there is nothing (llvm::vfs::RedirectingFileSystem): all that the compiler finds are the texts of the request."""
 
-MEMORY_BYTES, SECONDS = 2 << 30, 10
+MEMORY_BYTES = 1 << 30
 MAX_ERRORS, MAX_DEPTH, MAX_MEMBERS = 20, 32, 100_000
 INTEGERS = {
     "CHAR_S": (8, True),
@@ -144,10 +144,11 @@ class Reading:
         }
 
     def member(self, record: str, cursor: Any) -> dict[str, Any]:
-        if cursor.spelling:
-            self.name_unnamed(cursor.type, f"{record}::{cursor.spelling}")
+        name = "" if _is_unnamed(cursor) else cursor.spelling
+        if name:
+            self.name_unnamed(cursor.type, f"{record}::{name}")
         return {
-            "name": cursor.spelling,
+            "name": name,
             "type": self.type(cursor.type),
             "place": self.place(cursor),
             "doc": cursor.raw_comment or "",
@@ -260,7 +261,7 @@ class Reading:
         parts: list[str] = []
         outer = cursor.semantic_parent
         while outer is not None and outer.kind.name != "TRANSLATION_UNIT":
-            if _is_unnamed(outer) and outer.kind.name != "NAMESPACE":
+            if _is_unnamed(outer) and outer.kind.name in {"STRUCT_DECL", "CLASS_DECL"}:
                 parts.append(self.names.get(outer.get_usr(), ""))
                 break
             if outer.spelling and not _is_unnamed(outer):
@@ -294,7 +295,7 @@ def main() -> None:
         json.dump({"missing": True}, sys.stdout)
         return
     index = cindex.Index.create()
-    _confine()
+    _confine(request["seconds"])
     with TemporaryDirectory() as folder:
         no_files = Path(folder) / "none.yaml"
         no_files.write_text(NO_FILES, encoding="utf-8")
@@ -305,13 +306,13 @@ def main() -> None:
     json.dump(answer, sys.stdout)
 
 
-def _confine() -> None:
+def _confine(seconds: int) -> None:
     """From here on memory and time are short."""
     if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
-        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 

@@ -85,14 +85,15 @@ class Judging:
     def unique(self, record: str, members: list[Any]) -> None:
         seen: set[str] = set()
         for member in members:
-            if not member["name"]:
-                self.refuse(record, words.unnamed_member(self.span(member), record))
-            elif member["name"] in seen:
+            if member["name"] in seen - {""}:
                 self.refuse(record, words.repeated_member(self.span(member), record, member["name"]))
             seen.add(member["name"])
 
     def field(self, record: str, member: Any) -> Field:
         name, span = member["name"], self.span(member)
+        if not name:
+            self.refuse(record, words.unnamed_member(span, record))
+            return Field("", NUMBERS["int"], span=span)
         type_ = self.type(record, name, member["type"], span)
         if member["bits"]:
             self.refuse(record, words.bit_field(span, name))

@@ -69,7 +69,9 @@ def nesting_problems(types: Mapping[str, Declaration]) -> list[Diagnostic]:
     depths: dict[str, int] = {}
     for root in types:
         _measure(root, types, depths)
-    return [words.nested_too_deep(types[name].span, name, MAX_NESTING) for name in types if depths[name] > MAX_NESTING]
+    deep = [name for name in types if depths[name] > MAX_NESTING]
+    first = [name for name in deep if all(depths[each] <= MAX_NESTING for each, _, _ in references(types[name]))]
+    return [words.nested_too_deep(types[name].span, name, MAX_NESTING) for name in first or deep]
 
 
 def _endless(types: Mapping[str, Declaration]) -> list[str]:

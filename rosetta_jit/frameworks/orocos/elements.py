@@ -72,7 +72,8 @@ class _Reading:
         self.open.pop()
 
     def doctype(self, *_: object) -> None:
-        _refuse(words.document_type(self.here(9)))
+        start = max(0, self.source.text.find("<!DOCTYPE"))
+        _refuse(words.document_type(Span(self.source, start, start + 9)))
 
     def here(self, width: int) -> Span:
         """The next characters at the parser's position."""

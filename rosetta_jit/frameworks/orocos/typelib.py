@@ -116,15 +116,14 @@ class _Registry:
         return Enum(cxx_name(name), tuple(values), closed=False, span=element.span_of("name"))
 
     def compound(self, name: str, element: Element) -> Struct:
-        fields: dict[str, Field] = {}
+        fields: dict[str | None, Field | None] = {}
         for each in element.parts:
             member, type_name = self.attribute(each, "name"), self.attribute(each, "type")
             type_ = None if type_name is None else self.type(type_name, each, "type")
-            if member in fields:
+            if member in fields and member is not None:
                 self.problems.append(words.repeated_member(each.span_of("name"), name, member))
-            elif member is not None and type_ is not None:
-                fields[member] = Field(member, type_, span=each.span_of("name"))
-        return Struct(cxx_name(name), tuple(fields.values()), span=element.span_of("name"))
+            fields[member] = None if member is None or type_ is None else Field(member, type_, span=each.span_of("name"))
+        return Struct(cxx_name(name), tuple(each for each in fields.values() if each is not None), span=element.span_of("name"))
 
     def pin(self) -> None:
         """Offsets and sizes as the file has them; a struct before those that hold it."""
@@ -138,11 +137,10 @@ class _Registry:
                 self.problems.append(words.wrong_attribute(element.span_of("size"), element.attributes.get("size", ""), "a size in bytes"))
                 continue
             exact = pinned(struct, offsets, size, None, layouts)
-            strange = unaccounted(exact, Layouts(self.declared, dict(layouts.known)))
+            strange = unaccounted(exact, layouts)
             if strange is not None:
                 self.problems.append(words.strange_layout(strange.span, strange.name))
             self.declared[exact.name] = exact
-            layouts.known.pop(exact.name, None)
 
     def inner_first(self) -> Iterator[str]:
         """The names of all compounds, each after those that it holds."""
@@ -229,16 +227,14 @@ class _Registry:
     def container(self, name: str, element: Element, depth: int) -> Type | None:
         kind, size = self.attribute(element, "kind"), element.attributes.get("size", "0")
         inner = self.inner(element, "of", depth)
+        if kind not in {"/std/string", "/std/vector", None}:
+            return self.refuse(words.wrong_attribute(element.span_of("kind"), kind or "", "/std/vector or /std/string"))
         expected = STRING.size if kind == "/std/string" else VECTOR.size
         if size not in {"0", str(expected)} and _DIGITS.fullmatch(size):
             return self.refuse(words.foreign_container(element.span_of("size"), name, int(size), expected))
-        match kind:
-            case "/std/string":
-                return TEXT
-            case "/std/vector":
-                return None if inner is None else array(inner)
-            case other:
-                return self.refuse(words.wrong_attribute(element.span_of("kind"), other or "", "/std/vector or /std/string"))
+        if kind == "/std/string":
+            return TEXT
+        return None if inner is None else array(inner)
 
     def sized(self, element: Type | None, length: int | None, user: Element, attribute: str) -> Type | None:
         if element is None or length is None:

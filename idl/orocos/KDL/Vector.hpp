@@ -1,0 +1,9 @@
+#pragma once
+
+namespace KDL {
+
+struct Vector {
+    double data[3];
+};
+
+}  // namespace KDL

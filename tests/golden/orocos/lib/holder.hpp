@@ -1,0 +1,6 @@
+struct Unused {
+    void* anything;
+};
+struct Holder {
+    char* name;
+};

@@ -1,0 +1,5 @@
+#pragma once
+#include <Eigen/Core>
+struct A {
+    int x;
+};
