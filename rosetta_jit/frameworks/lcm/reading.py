@@ -76,9 +76,9 @@ class _Reader:
         self.index += 1
         return True
 
-    def need(self, text: str, help_: str = "") -> None:
+    def need(self, text: str) -> None:
         if not self.taken(text):
-            raise self.wrong(f"`{text}`", help_)
+            raise self.wrong(f"`{text}`")
 
     def name(self, what: str, pattern: re.Pattern[str] = IDENTIFIER) -> Name:
         if not pattern.fullmatch(self.text):
@@ -165,9 +165,9 @@ class _Reader:
             raise _Unreadable
         if self.taken("const"):
             type_ = self.name("the type of a constant")
-            return [*self.listed(lambda: self.constant(type_, doc))]
+            return list(self.listed(lambda: self.constant(type_, doc)))
         type_ = self.name("a type", DOTTED)
-        return [*self.listed(lambda: self.member(type_, doc))]
+        return list(self.listed(lambda: self.member(type_, doc)))
 
     def listed(self, read: Callable[[], T]) -> list[T]:
         """One or more of them, with commas between and a semicolon behind."""

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 MAX_SIZE = (1 << 31) - 1
 MAX_FLOAT = 3.4028234663852886e38
-MAX_DIMENSIONS = 32
+MAX_DIMENSIONS = 16
+"""Loops within loops take time to compile; no type of people has half as many."""
 
 
 def schema_of(gathered: Gathered, problems: list[Diagnostic]) -> Schema:
