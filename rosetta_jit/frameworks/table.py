@@ -9,6 +9,7 @@ _BOTTLES = f"{_HERE}.yarp.encoding:encode_type"
 _MESSAGES = f"{_HERE}.protobuf.encoding:encode_type"
 _CDR = f"{_HERE}.omg.cdr:encode_type"
 _OROCOS = f"{_HERE}.orocos.encoding:encode_type"
+_TRUE = "every byte but 0 is true"
 _IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (
@@ -28,13 +29,23 @@ FRAMEWORKS = (
         idl={".msg": f"{_HERE}.ros1.idl:parse"},
         encodings={"ros1": f"{_HERE}.ros1.encoding:encode_type"},
         manners=f"{_HERE}.ros1.manners:GENPY",
-        files=("*ros1/*.msg",),
+        files=("*ros1/*.msg", "*ros1-2012/*.msg"),
+        leniencies={"ros1": {"bool": f"{_TRUE} (genpy)", "text": "bytes that are no UTF-8 are kept (roscpp, genpy)"}},
     ),
     Framework(
         "corba",
         idl={".idl": _IDL},
         encodings={"cdr-giop": _CDR},
         manners=f"{_HERE}.corba.manners:OMNIORB",
+        leniencies={
+            "cdr-giop": {
+                "bool": f"{_TRUE} (omniORB)",
+                "text": "bytes that are no UTF-8 are kept (omniORB, whose char is ISO 8859-1)",
+                "enum": "numbers that the enum does not name are kept (TAO)",
+                "bounds": "more than a bound allows is read and written (TAO)",
+                "trailing": "up to three bytes may be left over",
+            }
+        },
         byte_orders=("cdr-giop",),
     ),
     Framework(
@@ -43,6 +54,16 @@ FRAMEWORKS = (
         encodings={"cdr": _CDR, "cdr2": _CDR},
         manners=f"{_HERE}.ros2.manners:RCLPY",
         files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
+        leniencies=dict.fromkeys(
+            ("cdr", "cdr2"),
+            {
+                "bool": f"{_TRUE} (Fast CDR)",
+                "text": "bytes that are no UTF-8 are kept (Fast CDR)",
+                "enum": "numbers that the enum does not name are kept (rosbags, Cyclone DDS in Python)",
+                "bounds": "more than a bound allows is read and written (rosbags)",
+                "trailing": "up to three bytes may be left over (payloads padded by Fast DDS)",
+            },
+        ),
         byte_orders=("cdr", "cdr2"),
     ),
     Framework(
@@ -55,5 +76,6 @@ FRAMEWORKS = (
         "orocos",
         idl={".hpp": f"{_HERE}.orocos.header:parse", ".h": f"{_HERE}.orocos.header:parse", ".tlb": f"{_HERE}.orocos.typelib:parse"},
         encodings={"rtt-mqueue": _OROCOS, "typelib": _OROCOS, "native": _OROCOS},
+        leniencies={each: {"bool": f"{_TRUE} (any C++ compiler)"} for each in ("rtt-mqueue", "typelib", "native")},
     ),
 )

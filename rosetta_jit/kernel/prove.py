@@ -17,6 +17,7 @@ from typing import assert_never
 
 from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
 
+FIRST = (6, 40)
 GLANCE, QUICK, THOROUGH = (0, 0), (32, 300), (96, 4000)
 """How many facts a proof may look at, and how many it may combine: for what shows, for a question, and for an obligation."""
 
@@ -327,8 +328,12 @@ class Facts:
 
     def _follows(self, goal: Linear, effort: tuple[int, int]) -> bool:
         """Whether the facts around a goal contradict its opposite."""
-        nearby = self._nearby(goal, effort[0])
-        return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], effort[1])
+        opposite = shifted(times(goal, -1), -1)
+        for most, budget in dict.fromkeys((min(FIRST, effort), effort)):
+            nearby = self._nearby(goal, most)
+            if nearby and contradict([*nearby, opposite], budget):
+                return True
+        return False
 
     def _nearby(self, goal: Linear, most: int) -> list[Linear]:
         """Facts that share atoms with a goal, and facts that share atoms with those."""

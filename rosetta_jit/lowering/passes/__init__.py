@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.verify import VerificationError, verify
 from rosetta_jit.lowering.passes.bulk import bulk
 from rosetta_jit.lowering.passes.drop import drop
@@ -34,6 +35,9 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     merge,
 )
 
+LARGE = 4_000
+"""Statements from which on each pass runs once: later rounds find little, and every proof takes seconds."""
+
 
 def run(kernel: Kernel) -> Kernel:
     """All passes, and the proof that what comes out is safe.
@@ -56,9 +60,10 @@ def run(kernel: Kernel) -> Kernel:
 
 def _all(kernel: Kernel) -> Kernel:
     results: dict[Callable[[Kernel], Kernel], Kernel] = {}
+    large = sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
     for transform in PASSES:
         # What a pass has made, and no pass has changed since, it would not change again.
-        if results.get(transform) is not kernel:
+        if results.get(transform) is not kernel and not (large and transform in results):
             kernel = results[transform] = transform(kernel)
     verify(kernel)
     return kernel
