@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     import re
     from collections.abc import Mapping
 
-    from rosetta_jit.model.types import Bool, Float, Int, String, Struct
+    from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
 
     Scalar = Bool | Int | Float | String
 
@@ -50,6 +50,8 @@ class Dialect:
         The words for true and false, in lower case if case does not matter.
     extended
         Defaults, bounds, `@optional` and quoted strings; a string constant of the other language goes to the end of its line.
+    empty
+        The fields of a message without any: rosidl gives it one, which is on the wire and can hold anything.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Dialect:
     extended: bool
     structs: Mapping[str, Struct] = field(default_factory=dict[str, "Struct"])
     aliases: Mapping[str, str] = field(default_factory=dict[str, str])
+    empty: tuple[Field, ...] = ()
 
     def message(self, package: str, name: str) -> str:
         """The qualified name of a message; a package that is not known is left out."""

@@ -57,7 +57,7 @@ def _place(problem: Diagnostic) -> tuple[str, int]:
 
 
 def _struct(definition: tree.Definition, dialect: Dialect, options: Options) -> Struct:
-    fields = tuple(_field(each, dialect) for each in definition.fields)
+    fields = tuple(_field(each, dialect) for each in definition.fields) or dialect.empty
     constants = tuple(NamedConstant(each.name.text, dialect.scalars[each.type.base], each.value, each.doc) for each in definition.constants)
     return Struct(definition.name, fields, definition.doc, span=definition.span, constants=constants, options=options)
 

@@ -9,7 +9,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import Dialect, Rule, definitions_of, schema_of
-from rosetta_jit.model.types import Bool, Float, Int, String
+from rosetta_jit.model.types import Bool, Field, Float, Int, String
 
 if TYPE_CHECKING:
     from rosetta_jit.frontend.idl import Load
@@ -34,6 +34,8 @@ SCALARS = {
     "wstring": String("utf-16", "wstring"),
 }
 
+DUMMY = "structure_needs_at_least_one_member"
+
 LOWER = Rule(re.compile(r"[a-z](?:_?[a-z0-9])*"), "lower-case letters, digits and single underscores, a letter first")
 
 ROS2 = Dialect(
@@ -51,6 +53,7 @@ ROS2 = Dialect(
     integers=re.compile(r"[+-]?(?:[0-9]+|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+)"),
     line_ends=re.compile(r"\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"),
     extended=True,
+    empty=(Field(DUMMY, SCALARS["uint8"]),),
 )
 
 

@@ -23,8 +23,6 @@ FLOATS = {32: 10, 64: 11}
 OCTETS = ("byte", "octet")
 ARRAY, BOUNDED_SEQUENCE, SEQUENCE = 48, 96, 144
 """What is added to the number of the element."""
-EMPTY = Field("structure_needs_at_least_one_member", Int(8, signed=False, spelling="uint8"))
-"""What rosidl puts into a message without fields."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +66,7 @@ def _needed(struct: Struct, schema: Schema) -> list[Struct]:
 
 def _described(struct: Struct, schema: Schema) -> dict[str, Any]:
     """A struct as ``IndividualTypeDescription`` says it in JSON; defaults are not hashed."""
-    return {"type_name": _name(struct), "fields": [_field(struct, each, schema) for each in struct.fields or (EMPTY,)]}
+    return {"type_name": _name(struct), "fields": [_field(struct, each, schema) for each in struct.fields]}
 
 
 def _field(struct: Struct, field: Field, schema: Schema) -> dict[str, Any]:
