@@ -1,0 +1,117 @@
+"""The conditions of `#if` and `#elif`: integers as C's preprocessor computes them (C 6.10.1)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import idl as say
+from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
+from rosetta_jit.frameworks.omg.expressions import CONDITIONS, Binary, Expr, Literal, Operators, ScopedName, Unary, expression
+from rosetta_jit.frameworks.omg.lexer import Token
+from rosetta_jit.frameworks.omg.literals import LiteralError, number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container, Iterable, Iterator
+
+
+def holds(tokens: list[Token], end: Token) -> bool:
+    """Whether a condition is true. Macros are expanded in it already; words that are left are 0.
+
+    Raises
+    ------
+    SyntaxProblem
+        It is no condition.
+    """
+    cursor = Cursor([*tokens, end])
+    tree = expression(cursor, Operators(("!", "-", "+", "~"), CONDITIONS, _operand))
+    if cursor.token.kind != "end":
+        cursor.fail("an operator")
+    return _value(tree) != 0
+
+
+def answer_defined(line: Iterable[Token], macros: Container[str]) -> Iterator[Token]:
+    """The same tokens with `defined X` and `defined(X)` answered, before macros are expanded."""
+    rest = iter(line)
+    for token in rest:
+        if token.kind != "word" or token.text != "defined":
+            yield token
+            continue
+        name = next(rest, None)
+        closed = name is not None and name.text == "("
+        if closed:
+            name = next(rest, None)
+        if name is None or name.kind != "word" or (closed and getattr(next(rest, None), "text", "") != ")"):
+            raise SyntaxProblem(say.unexpected(token.span, "defined", "`defined(NAME)`"))
+        yield Token("number", str(int(name.text in macros)), name.span)
+
+
+def _operand(cursor: Cursor) -> Expr:
+    token = cursor.token
+    if token.kind == "word":
+        cursor.take()
+        return ScopedName((token.text,), absolute=False, span=token.span)
+    if token.kind != "number":
+        cursor.fail("a number or a name")
+    cursor.take()
+    return Literal((token,), token.span)
+
+
+def _value(node: Expr) -> int:
+    match node:
+        case Literal(tokens, span):
+            try:
+                value = number(tokens[0].text.rstrip("uUlL"))
+            except LiteralError as error:
+                raise SyntaxProblem(say.wrong_literal(span, str(error))) from error
+            if not isinstance(value, int):
+                raise SyntaxProblem(say.wrong_literal(span, "no integer"))
+            return _wrapped(value)
+        case ScopedName():
+            return 0
+        case Unary(operator, operand):
+            value = _value(operand)
+            return {"!": int(not value), "-": _wrapped(-value), "+": value, "~": ~value}[operator]
+        case Binary("||" | "&&" as operator, left, right):
+            decided = (_value(left) != 0) == (operator == "||")
+            return int(operator == "||") if decided else int(_value(right) != 0)
+        case Binary():
+            return _wrapped(_applied(node, _value(node.left), _value(node.right)))
+        case _:
+            assert_never(node)
+
+
+def _applied(node: Binary, left: int, right: int) -> int:
+    match node.operator:
+        case "/" | "%" if right == 0:
+            raise SyntaxProblem(say.division_by_zero(node.right.span))
+        case "/":
+            return abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
+        case "%":
+            return abs(left) % abs(right) * (-1 if left < 0 else 1)
+        case "<<" | ">>" if not 0 <= right < 64:
+            raise SyntaxProblem(say.shift(node.right.span))
+        case _:
+            return int(_SIMPLE[node.operator](left, right))
+
+
+def _wrapped(value: int) -> int:
+    """Conditions are computed in 64 bits."""
+    return (value + (1 << 63)) % (1 << 64) - (1 << 63)
+
+
+_SIMPLE: dict[str, Callable[[int, int], int]] = {
+    "|": int.__or__,
+    "^": int.__xor__,
+    "&": int.__and__,
+    "==": int.__eq__,
+    "!=": int.__ne__,
+    "<": int.__lt__,
+    ">": int.__gt__,
+    "<=": int.__le__,
+    ">=": int.__ge__,
+    "<<": int.__lshift__,
+    ">>": int.__rshift__,
+    "+": int.__add__,
+    "-": int.__sub__,
+    "*": int.__mul__,
+}

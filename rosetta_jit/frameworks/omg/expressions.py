@@ -1,0 +1,126 @@
+"""Constant expressions: operators by precedence, over whatever the caller takes for an operand.
+
+    Expr = Literal(token) | Name(scoped name) | Unary(operator, Expr) | Binary(operator, Expr, Expr)
+
+The declarations of IDL and the conditions of its preprocessor share them (OMG IDL 4.2, 7.4.1.4.3; C 6.10.1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import idl as say
+from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.frameworks.omg.cursor import Cursor
+    from rosetta_jit.frameworks.omg.lexer import Token
+    from rosetta_jit.source import Span
+
+MAX_DEPTH = 100
+"""Operators below one another; a chain of n operators is n deep."""
+
+ARITHMETIC: Mapping[str, int] = {"|": 3, "^": 4, "&": 5, "<<": 8, ">>": 8, "+": 9, "-": 9, "*": 10, "/": 10, "%": 10}
+CONDITIONS: Mapping[str, int] = {**ARITHMETIC, "||": 1, "&&": 2, "==": 6, "!=": 6, "<": 7, ">": 7, "<=": 7, ">=": 7}
+"""Operators of two operands and how strongly they bind."""
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A literal as it was written; adjacent strings are several tokens."""
+
+    tokens: tuple[Token, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ScopedName:
+    """A name as it was written: its parts, and whether `::` stands before them."""
+
+    parts: tuple[str, ...]
+    absolute: bool
+    span: Span
+
+    def __str__(self) -> str:
+        return ("::" if self.absolute else "") + "::".join(self.parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """An operator before its operand."""
+
+    operator: str
+    operand: Expr
+    span: Span
+    depth: int
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An operator between its operands."""
+
+    operator: str
+    left: Expr
+    right: Expr
+    span: Span
+    depth: int
+
+
+Expr = Literal | ScopedName | Unary | Binary
+
+
+@dataclass(frozen=True, slots=True)
+class Operators:
+    """A language of expressions: operators before and between operands, and how an operand is read."""
+
+    unary: tuple[str, ...]
+    binary: Mapping[str, int]
+    operand: Callable[[Cursor], Expr]
+
+
+def expression(cursor: Cursor, language: Operators, weakest: int = 0, depth: int = 0) -> Expr:
+    """An expression whose operators bind more strongly than ``weakest``."""
+    first = cursor.token
+    left = _unary(cursor, language, depth + 1)
+    while True:
+        operator = _operator(cursor, language)
+        strength = language.binary.get(operator, 0)
+        if strength <= weakest:
+            return left
+        for _ in range(1 + (operator == ">>")):
+            cursor.take()
+        right = expression(cursor, language, strength, depth + 1)
+        below = max(_depth(left), _depth(right)) + 1
+        if below > MAX_DEPTH:
+            raise SyntaxProblem(say.nesting(first.span, MAX_DEPTH, "operators"))
+        left = Binary(operator, left, right, cursor.since(first), below)
+
+
+def _operator(cursor: Cursor, language: Operators) -> str:
+    token = cursor.token
+    if token.kind != "symbol":
+        return ""
+    double = token.text == ">" == cursor.following.text and token.span.end == cursor.following.span.start
+    return ">>" if double and ">>" in language.binary else token.text
+
+
+def _unary(cursor: Cursor, language: Operators, depth: int) -> Expr:
+    first = cursor.token
+    if depth > MAX_DEPTH:
+        raise SyntaxProblem(say.nesting(first.span, MAX_DEPTH, "operators"))
+    if cursor.sees(*language.unary):
+        cursor.take()
+        operand = _unary(cursor, language, depth + 1)
+        return Unary(first.text, operand, cursor.since(first), _depth(operand) + 1)
+    if cursor.accept("("):
+        inner = expression(cursor, language, 0, depth + 1)
+        cursor.expect(")")
+        return inner
+    return language.operand(cursor)
+
+
+def _depth(node: Expr) -> int:
+    return node.depth if isinstance(node, Unary | Binary) else 0
