@@ -52,7 +52,7 @@ FRAMEWORKS = (
         "ros2",
         idl={".msg": f"{_HERE}.ros2.idl:parse", ".idl": _IDL},
         encodings={"cdr": _CDR, "cdr2": _CDR},
-        manners=f"{_HERE}.ros2.manners:RCLPY",
+        manners="",
         files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
         leniencies=dict.fromkeys(
             ("cdr", "cdr2"),

@@ -128,6 +128,10 @@ class WireFields:
         del path, number
         raise MappingError((unmappable_place(None),))
 
+    def appear(self, path: Path) -> None:
+        del path
+        raise MappingError((unmappable_place(None),))
+
     def present(self, path: Path) -> Expr:
         del path
         raise MappingError((unmappable_place(None),))

@@ -91,6 +91,10 @@ class Fields(Protocol):
         """The union at a path has this case, 0 for none: decode says so, encode checks it."""
         ...
 
+    def appear(self, path: Path) -> None:
+        """Decode: an optional field is there, whatever is put into it."""
+        ...
+
     def present(self, path: Path) -> Expr:
         """Encode: whether an optional field is there."""
         ...
@@ -203,6 +207,9 @@ class HolderFields:
         else:
             agrees = Compare("eq", Get("i64", place), index(number))
             self.writer.expect(agrees, "union", self.where.members(path[:-1]), "another case is set than the discriminator says")
+
+    def appear(self, path: Path) -> None:
+        self.mark(path)
 
     def present(self, path: Path) -> Expr:
         owner = self.find(path[:-1])

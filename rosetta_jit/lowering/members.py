@@ -55,12 +55,15 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
         start, size = _extent(writer, codec, head, where)
         writer.require(size, where, at=start)
         behind = writer.let("behind", Binary("add", start, size))
-        writer.expect(Compare("le", behind, stop), "truncated", where, "a member goes beyond its struct")
+        inside = Binary("and", Compare("le", behind, stop), Compare("gt", behind, at))
+        writer.expect(inside, "truncated", where, "a member goes beyond its struct")
         cases: list[tuple[int, Block]] = []
         for number, member in enumerate(codec.members):
             with writer.nested() as one:
                 writer.position = start
                 _once(writer, seen[number // 64], 1 << number % 64, fields.where.members(member.path))
+                if member.optional:
+                    fields.appear(member.path)
                 walk(member.value, fields, writer)
                 fits = Compare("eq", writer.position, behind)
                 writer.expect(fits, "length", fields.where.members(member.path), "its content is not as long as it says")

@@ -279,6 +279,8 @@ def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Cod
     blocks: list[Block] = []
     for codec in (maybe.value, Seq(())):
         with writer.nested() as statements:
+            if writer.direction == "decode" and codec is maybe.value:
+                fields.appear(maybe.path)
             body(codec)
         blocks.append(block(statements))
     writer.emit(If(present, blocks[0], blocks[1]))

@@ -157,8 +157,8 @@ class _Rules:
                 return {1: 0, 2: 1, 4: 2, 8: 3}[WIDTH[scalar_of(scalar)]]
             case String() | Bytes(length=None):
                 return DUAL_USE[1]
-            case Array(element, length):
-                primitive = self.primitive(element)
+            case Array(_, length) as array:
+                primitive = self.primitive_element(array)
                 if primitive is None:
                     return DUAL_USE[1]
                 return 4 if length is not None else DUAL_USE.get(primitive, 4)
@@ -167,17 +167,19 @@ class _Rules:
             case _:
                 return 4
 
-    def primitive(self, type_: Type) -> int | None:
-        """The size of a primitive element, for which XCDR2 writes no DHEADER; that of an array's innermost."""
-        match type_:
-            case Bool() | Int() | Float():
-                return WIDTH[scalar_of(type_)]
-            case Array(element, int()):
-                return self.primitive(element)
-            case Bytes(length=int()):
+    def primitive_element(self, array: Array) -> int | None:
+        """The size of primitive elements, for which XCDR2 writes no DHEADER. All fixed dimensions are those of one array."""
+        match array.element:
+            case Array(length=int()) as inner if array.fixed is not None:
+                return self.primitive_element(inner)
+            case Bytes(length=int()) if array.fixed is not None:
                 return 1
-            case _:
-                return None
+            case element:
+                return self.primitive(element)
+
+    def primitive(self, type_: Type) -> int | None:
+        """The size of a primitive type; None for all others, enums among them."""
+        return WIDTH[scalar_of(type_)] if isinstance(type_, Bool | Int | Float) else None
 
     # --- values ------------------------------------------------------------------------------------------------------
 
@@ -237,7 +239,7 @@ class _Rules:
 
     def array(self, array: Array, path: Path, field: Field) -> Codec:
         plain = self.elements(array, path, field)
-        headed = self.second and self.primitive(array.element) is None
+        headed = self.second and self.primitive_element(array) is None
         return self.sized(plain, path) if headed else plain
 
     def elements(self, array: Array, path: Path, field: Field) -> Codec:
@@ -255,7 +257,6 @@ class _Rules:
 
     def recurses(self, type_: Type) -> bool:
         return isinstance(type_, Ref) and type_.name in self.recursive
-
 
 
 def _extensibility(struct: Struct) -> str:
