@@ -10,10 +10,10 @@ from hashlib import md5
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import idl as say
-from rosetta_jit.frameworks.omg.constants import Value, evaluate, fit
+from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
 from rosetta_jit.frameworks.omg.scopes import LookupProblem
-from rosetta_jit.model.types import Array, Bytes, Float
+from rosetta_jit.model.types import Array, Bytes, Float, String
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.omg.constants import Lookup
@@ -141,6 +141,8 @@ def _default(value: Value, type_: Type, span: Span) -> tuple[Constant | None, di
         return _listed(value.value, type_)
     if isinstance(type_, Float) and isinstance(value.value, int) and value.sort == "integer":
         value = Value("floating", float(value.value))
+    if isinstance(type_, String):
+        value = as_text(value, type_)
     return fit(value, type_, span), {}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import TYPE_CHECKING, assert_never
 from typing import Literal as OneOf
@@ -92,6 +92,12 @@ def fit(value: Value, type_: Type, span: Span) -> Constant:
             return text
         case _:
             raise LookupProblem(say.wrong_value(span, word_of(type_), _named(value)))
+
+
+def as_text(value: Value, type_: Type) -> Value:
+    """A narrow string as a wide one where the type is: rosidl writes all strings without `L`."""
+    wide = isinstance(type_, String) and type_.encoding == "utf-16" and value.sort == "string"
+    return replace(value, sort="wide string") if wide else value
 
 
 def word_of(type_: Type) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import idl as say
 from rosetta_jit.frameworks.omg import tree
 from rosetta_jit.frameworks.omg.annotations import Annotations
-from rosetta_jit.frameworks.omg.constants import Value, evaluate, fit
+from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
 from rosetta_jit.frameworks.omg.members import MemberMaker
 from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
@@ -128,6 +128,9 @@ class _Declarer:
         made = self.maker.declared(scope, type_, declarator)
         plain = isinstance(spec, ScopedName) and not declarator.dimensions and isinstance(made, Ref)
         target = scope.find(spec, free=True) if plain and isinstance(spec, ScopedName) else None
+        first = scope.entries.get(name.text.lower())
+        if name.free and first is not None and first.name == name.text and first.type == made:
+            return  # rosidl writes the typedefs of a message into each file that needs them
         scope.declare(name, Entry("typedef", name.text, scope.join(name), name.span, type=made, target=target))
 
     def on_the_spot(self, scope: Scope, definition: tree.Aggregate | tree.Enum) -> Type:
@@ -221,6 +224,7 @@ class _Declarer:
             return
         if enum is None and not isinstance(type_, Bool | Int | Float | String):
             raise LookupProblem(say.no_constant_type(name.span if not isinstance(spec, ScopedName) else spec.span))
+        value = as_text(value, type_) if name.free else value
         fitted = fit(value, type_, definition.value.span)
         full = scope.join(name)
         kept = value if value.sort in ("character", "wide character") else Value(value.sort, fitted, value.enum)

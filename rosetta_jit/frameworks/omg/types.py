@@ -168,7 +168,8 @@ def known(scope: Scope, word: str) -> bool:
     """Whether a word that may be a type of the language is declared around here."""
     around: Scope | None = scope
     while around is not None:
-        if word in around.entries:
+        entry = around.entries.get(word.lower())
+        if entry is not None and entry.name == word:
             return True
         around = around.outer
     return False
