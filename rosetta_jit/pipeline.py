@@ -214,7 +214,8 @@ def _mapped_types(build: Build) -> Types:
 
 
 def _both(checked: Checked) -> Schema:
-    return Schema({**checked.holder.schema.types, **checked.wire.schema.types})
+    holder, wire = checked.holder.schema, checked.wire.schema
+    return Schema({**holder.types, **wire.types}, constants={**holder.constants, **wire.constants})
 
 
 def _own_types(build: Build) -> Types:
@@ -255,6 +256,7 @@ def _imported(build: Build) -> Schema:
     asked = request.type or ""
     names = request.imports or tuple(build.files_given) or tuple(readers.guesses(asked))
     types: dict[str, Any] = {}
+    constants: dict[str, Any] = {}
     load = build.search.loader(build.reading)
     for name in names:
         source = load(name)
@@ -262,12 +264,14 @@ def _imported(build: Build) -> Schema:
             end = readers.find(source.name)
             if end is None:
                 raise SchemaError((words.unknown_suffix(name, readers.suffixes),))
-            types |= end(source, build.search.loader(build.reading, source)).types
+            found = end(source, build.search.loader(build.reading, source))
+            types |= found.types
+            constants |= found.constants
             if not request.imports and not request.files and any(same_name(each, asked) for each in types):
                 break
         elif request.imports:
             raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
-    return Schema(types)
+    return Schema(types, constants=constants)
 
 
 def _plain_site(site: Site) -> list[Any]:

@@ -71,6 +71,7 @@ FRAMEWORKS = (
         idl={".lcm": f"{_HERE}.lcm.idl:parse"},
         encodings={"lcm": f"{_HERE}.lcm.encoding:encode_type"},
         manners=f"{_HERE}.lcm.manners:LCM_GEN",
+        leniencies={"lcm": {"bool": f"{_TRUE} (lcm-gen)", "trailing": "bytes behind the message are left alone (lcm-gen)"}},
     ),
     Framework(
         "orocos",

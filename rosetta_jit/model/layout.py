@@ -35,6 +35,8 @@ from rosetta_jit.model.types import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.model.types import Field, Type
 
 SPAN_BYTES = 16
@@ -151,18 +153,45 @@ def recursive_structs(type_: Type, schema: Schema) -> frozenset[str]:
         if name not in reached:
             reached[name] = _references(schema.types[name], schema)
             pending += sorted(reached[name])
-    return frozenset(name for name in reached if name in _closure(reached[name], reached))
+    return frozenset(name for group in _cycles(reached) for name in group)
 
 
-def _closure(start: frozenset[str], edges: dict[str, frozenset[str]]) -> set[str]:
-    seen: set[str] = set()
-    pending = list(start)
-    while pending:
-        name = pending.pop()
-        if name not in seen:
-            seen.add(name)
-            pending += edges[name]
-    return seen
+def _cycles(edges: dict[str, frozenset[str]]) -> list[list[str]]:
+    """Groups of names that all reach each other, and single ones that reach themselves (Tarjan's strongly connected components)."""
+    order: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    stack: list[str] = []
+    groups: list[list[str]] = []
+    for start in sorted(edges):
+        path = [(start, iter(sorted(edges[start])))] if start not in order else []
+        while path:
+            name, targets = path[-1]
+            if name not in order:
+                order[name] = lowest[name] = len(order)
+                stack.append(name)
+            following = next(targets, None)
+            if following is None:
+                path.pop()
+                if path:
+                    lowest[path[-1][0]] = min(lowest[path[-1][0]], lowest[name])
+                if lowest[name] == order[name]:
+                    group = [*_popped(stack, name)]
+                    lowest |= dict.fromkeys(group, len(edges))  # a finished group is no way back
+                    groups += [group] if len(group) > 1 or name in edges[name] else []
+            elif following not in order:
+                path.append((following, iter(sorted(edges[following]))))
+            else:
+                lowest[name] = min(lowest[name], lowest[following])
+    return groups
+
+
+def _popped(stack: list[str], name: str) -> Iterator[str]:
+    """Take a stack down to a name."""
+    while True:
+        top = stack.pop()
+        yield top
+        if top == name:
+            return
 
 
 def _references(type_: Type, schema: Schema) -> frozenset[str]:
