@@ -18,6 +18,10 @@ def _short(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:40]}..."
 
 
+def _a(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
 # The preprocessor
 
 
@@ -102,6 +106,11 @@ def unfinished(span: Span, wanted: str) -> Diagnostic:
     return _error("syntax", "the file ends in the middle of a declaration", span, f"expected {wanted}")
 
 
+def end_of_line(span: Span, wanted: str) -> Diagnostic:
+    """The end of the line within a condition."""
+    return _error("syntax", "the line ends in the middle of a condition", span, f"expected {wanted}")
+
+
 def nesting(span: Span, limit: int, what: str) -> Diagnostic:
     """More than may stand within one another."""
     return _error("nesting", f"more than {limit} {what} stand within one another", span, "one too many")
@@ -130,7 +139,7 @@ def repeated_name(span: Span, full: str, kind: str, name: str, other: str, first
     """Two declarations in a scope with one name."""
     alike = "" if full.rpartition("::")[2] == name else "Names that differ in case alone are the same."
     return _error(
-        "repeated-name", f"`{full}` has two meanings", span, f"the second one, a {kind}", alike, f"the {other} `{name}` is at {first}"
+        "repeated-name", f"`{full}` has two meanings", span, f"the second one, {_a(kind)}", alike, f"the {other} `{name}` is at {first}"
     )
 
 
@@ -165,7 +174,7 @@ def other_case(span: Span, part: str, name: str, first: Span) -> Diagnostic:
 
 def wrong_kind(span: Span, full: str, kind: str, wanted: str) -> Diagnostic:
     """A name of something else than what is wanted."""
-    return _error("wrong-kind", f"`{full}` is no {wanted}", span, f"this is a {kind}")
+    return _error("wrong-kind", f"`{full}` is no {wanted}", span, f"this is {_a(kind)}")
 
 
 def incomplete(span: Span, full: str, state: str) -> Diagnostic:
@@ -223,7 +232,7 @@ def no_constant_type(span: Span) -> Diagnostic:
 
 def bound(span: Span, value: int) -> Diagnostic:
     """The bound or dimension of an array, string or sequence that is not positive, or too large."""
-    return _error("bound", f"{value} elements cannot be", span, "expected 1 to 4294967295")
+    return _error("bound", f"{value} is no number of elements", span, "expected 1 to 4294967295")
 
 
 def map_key(span: Span, word: str) -> Diagnostic:

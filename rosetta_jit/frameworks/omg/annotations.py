@@ -133,7 +133,7 @@ class Annotations:
 
 def hash_id(name: str) -> int:
     """28 bits of the MD5 of a name (DDS-XTypes 1.3, 7.3.1.2.1.1)."""
-    return int.from_bytes(md5(name.encode(), usedforsecurity=False).digest()[:4], "little") & MAX_ID
+    return int.from_bytes(md5(name.encode("utf-8", "surrogatepass"), usedforsecurity=False).digest()[:4], "little") & MAX_ID
 
 
 def _default(value: Value, type_: Type, span: Span) -> tuple[Constant | None, dict[str, Constant]]:

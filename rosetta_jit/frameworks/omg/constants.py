@@ -143,7 +143,7 @@ def _number(value: float, span: Span) -> Value:
             raise LookupProblem(say.out_of_range(span, "the value", "double"))
         return Value("floating", value)
     if not LOWEST <= value <= HIGHEST:
-        raise LookupProblem(say.out_of_range(span, "the value", "long long"))
+        raise LookupProblem(say.out_of_range(span, "the value", "long long" if value < 0 else "unsigned long long"))
     return Value("integer", value)
 
 

@@ -76,6 +76,8 @@ class Cursor:
 def problem_with(token: Token, wanted: str) -> Diagnostic:
     """Why a token cannot stand where something else is wanted."""
     match token.kind, token.text[:1]:
+        case "end", "\n":
+            return say.end_of_line(token.span, wanted)
         case "end", _:
             return say.unfinished(token.span, wanted)
         case "wrong", "/":

@@ -7,7 +7,7 @@ The declarations of IDL and the conditions of its preprocessor share them (OMG I
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import idl as say
@@ -74,11 +74,15 @@ Expr = Literal | ScopedName | Unary | Binary
 
 @dataclass(frozen=True, slots=True)
 class Operators:
-    """A language of expressions: operators before and between operands, and how an operand is read."""
+    """A language of expressions: operators before and between operands, and how an operand is read.
+
+    ``in_angles`` holds within angle brackets, two of which `>>` closes; parentheses in them make it an operator again.
+    """
 
     unary: tuple[str, ...]
     binary: Mapping[str, int]
     operand: Callable[[Cursor], Expr]
+    in_angles: bool = False
 
 
 def expression(cursor: Cursor, language: Operators, weakest: int = 0, depth: int = 0) -> Expr:
@@ -104,7 +108,7 @@ def _operator(cursor: Cursor, language: Operators) -> str:
     if token.kind != "symbol":
         return ""
     double = token.text == ">" == cursor.following.text and token.span.end == cursor.following.span.start
-    return ">>" if double and ">>" in language.binary else token.text
+    return ">>" if double and not language.in_angles else token.text
 
 
 def _unary(cursor: Cursor, language: Operators, depth: int) -> Expr:
@@ -116,7 +120,7 @@ def _unary(cursor: Cursor, language: Operators, depth: int) -> Expr:
         operand = _unary(cursor, language, depth + 1)
         return Unary(first.text, operand, cursor.since(first), _depth(operand) + 1)
     if cursor.accept("("):
-        inner = expression(cursor, language, 0, depth + 1)
+        inner = expression(cursor, replace(language, in_angles=False), 0, depth + 1)
         cursor.expect(")")
         return inner
     return language.operand(cursor)

@@ -19,8 +19,6 @@ MAX_NESTING = 32
 """Modules, structs and sequences within one another."""
 
 LITERALS = ("number", "string", "wstring", "char", "wchar")
-NO_SHIFT = {operator: strength for operator, strength in ARITHMETIC.items() if operator != ">>"}
-"""Within angle brackets: `>>` closes two of them."""
 
 Node = TypeVar("Node")
 
@@ -133,7 +131,7 @@ class TypeReader:
         return MapOf(key, value, bound, self.cursor.since(first))
 
     def bound(self) -> Expr:
-        bound = expression(self.cursor, Operators(("-", "+", "~"), NO_SHIFT, self.operand))
+        bound = expression(self.cursor, Operators(("-", "+", "~"), ARITHMETIC, self.operand, in_angles=True))
         self.close()
         return bound
 
@@ -156,7 +154,7 @@ class TypeReader:
     def unsupported(self) -> Unsupported:
         first = self.cursor.take()
         if first.text == "fixed" and self.cursor.accept("<"):
-            expression(self.cursor, Operators((), NO_SHIFT, self.operand))
+            expression(self.cursor, Operators((), ARITHMETIC, self.operand, in_angles=True))
             self.cursor.expect(",")
             self.bound()
         return Unsupported(first.text, self.cursor.since(first))

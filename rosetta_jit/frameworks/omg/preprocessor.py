@@ -155,7 +155,7 @@ class _Preprocessor:
                 return _name(rest).text not in self.macros
             case _:
                 known = list(answer_defined(rest[:-1], self.macros))
-                return holds(list(self.expand(known)), Token("end", "", rest[-1].span))
+                return holds(list(self.expand(known)), Token("end", "\n", rest[-1].span))
 
     def include(self, word: Token, rest: list[Token], file: _File) -> None:
         path, span = _path(word, rest if rest[0].kind == "string" or rest[0].text == "<" else [*self.expand(rest[:-1]), rest[-1]])

@@ -54,7 +54,7 @@ def test_as_the_msg_file(name):
 
 @pytest.mark.parametrize("name", [name for name in NAMES if "Everything" not in name])
 def test_as_rosbags(name):
-    """rosbags reads neither `#include` before a module, nor wide strings."""
+    """The parser of rosbags reads neither `#include` before a module, nor wide strings."""
     from rosbags.interfaces import Nodetype
     from rosbags.typesys import get_types_from_idl
 
