@@ -129,8 +129,9 @@ class Build:
 
     @cached_property
     def text(self) -> str:
-        """All that the code depends on besides this process."""
-        return "\n".join([self.backend, self.entry, *(to_text(kernel) for kernel in self.kernels)])
+        """All that the code and its `header` depend on besides this process."""
+        kernels = [to_text(kernel) for kernel in self.kernels]
+        return "\n".join([self.backend, self.entry, self.manners, json.dumps(self.header["type"], sort_keys=True), *kernels])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:

@@ -20,10 +20,6 @@ class Source:
         line_start = self.text.rfind("\n", 0, offset) + 1
         return self.text.count("\n", 0, offset) + 1, offset - line_start + 1
 
-    def line_starts(self) -> list[int]:
-        """Offset of the first character of each line."""
-        return [0, *(i + 1 for i, char in enumerate(self.text) if char == "\n")]
-
 
 @dataclass(frozen=True, slots=True)
 class Span:
