@@ -14,6 +14,7 @@ from rosetta_jit.frameworks.omg.members import MemberMaker
 from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
 from rosetta_jit.frameworks.omg.types import TypeMaker, enum_entry, value_of
 from rosetta_jit.model.types import Bool, Declaration, Enum, Field, Float, Int, NamedConstant, Ref, String, Struct, Type
+from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,10 +40,21 @@ class Declarations:
 def declare(definitions: tuple[tree.Definition, ...], problems: list[Diagnostic]) -> Declarations:
     """Everything that some definitions declare; what is wrong with them are problems."""
     declarer = _Declarer(problems)
-    scope = Scope()
+    scope = _outermost()
     declarer.definitions(scope, definitions, hashed=False)
     problems += [say.never_defined(entry.span, entry.full) for entry in declarer.ahead.values() if entry.state == "named"]
     return declarer.out
+
+
+def _outermost() -> Scope:
+    """The scope around everything: what CORBA declares without a file, the type of type codes, can be named and not represented."""
+    scope = Scope()
+    inner = Scope("CORBA", "CORBA", scope)
+    nowhere = Span(Source("CORBA", ""), 0, 0)
+    for word in ("TypeCode", "Principal"):
+        inner.entries[word.lower()] = Entry("native", word, f"CORBA::{word}", nowhere)
+    scope.entries["corba"] = Entry("module", "CORBA", "CORBA", nowhere, scope=inner)
+    return scope
 
 
 @dataclass(slots=True)

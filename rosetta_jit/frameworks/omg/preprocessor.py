@@ -29,6 +29,9 @@ MAX_FILES = 4096
 MAX_EXPANDED = 100_000
 """Tokens and macros that all macros of a file may become; a few lines could ask for any number."""
 
+PREDEFINED = "__OMNIIDL__"
+"""Files for several CORBA compilers tell omniidl by this macro; we read what it reads."""
+
 IGNORED = frozenset(("pragma", "ident", "line", "warning"))
 
 
@@ -57,6 +60,7 @@ class _File:
 def preprocess(source: Source, load: Load, problems: list[Diagnostic]) -> tuple[list[Token], tuple[str, ...]]:
     """The tokens of a file and of all that it includes, and the names of these files."""
     reader = _Preprocessor(load, problems)
+    reader.macros[PREDEFINED] = (Token("number", "1", Span(source, 0, 0)),)
     reader.open(source.name, source)
     reader.run()
     end = Span(source, len(source.text), len(source.text))

@@ -186,6 +186,14 @@ def test_includes():
     assert found.types["C"].span.source.name == "openrtm/c.idl"
 
 
+def test_what_corba_declares_by_itself():
+    text = """#ifndef __OMNIIDL__
+        #error
+        #endif
+        module CORBA { typedef sequence<TypeCode> Codes; struct A { long x; }; }; struct S { CORBA::A y; }; struct T { CORBA::Codes y; };"""
+    assert set(schema(text).types) == {"CORBA::A", "S"}
+
+
 def test_spans():
     found = schema("#define NAME x\nstruct S {\n  long NAME;\n};").types["S"]
     assert (str(found.span), str(found.fields[0].span)) == ("a.idl:2:8", "a.idl:3:8")
