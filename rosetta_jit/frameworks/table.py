@@ -36,7 +36,7 @@ FRAMEWORKS = (
         "corba",
         idl={".idl": _IDL},
         encodings={"cdr-giop": _CDR},
-        manners=f"{_HERE}.corba.manners:OMNIORB",
+        manners="",
         leniencies={
             "cdr-giop": {
                 "bool": f"{_TRUE} (omniORB)",

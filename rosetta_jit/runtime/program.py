@@ -145,7 +145,7 @@ class DecoderBase(Program):
     def _batch(self, count: int) -> Batch:
         from rosetta_jit.runtime.batch import Batch
 
-        batch = Batch.new(self._loaded.holder_type, max(count, 1))
+        batch = Batch.room(self._loaded.holder_type, max(count, 1))
         return self._reused(batch, count)
 
     def _reused(self, batch: Batch, count: int) -> Batch:
@@ -289,6 +289,8 @@ class EncoderBase(Program):
 
     def call_slowly(self, *arguments: object, **named: object) -> object:
         """Whatever the entry does not do: wrong arguments, holders that must be put in order, a scratch lane that is too small, errors."""
+        if len(arguments) == 2:
+            arguments = (*arguments, 0)
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
         holder = self._usable(arguments[0])
