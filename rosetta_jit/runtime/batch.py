@@ -40,8 +40,15 @@ class Batch:
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
         """So many empty messages of a type."""
+        batch = cls.room(holder_class, count)
+        batch.lanes.bear(batch.lanes.plan.births, 0, count)
+        return batch
+
+    @classmethod
+    def room(cls, holder_class: type[Holder], count: int) -> Batch:
+        """Room for so many messages of a type that are going to be decoded."""
         family = holder_class.family_
-        return cls(family, Lanes(plan(family.layout, count), family.array_type))
+        return cls(family, Lanes(plan(family.layout, count, family.tree.births), family.array_type))
 
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""

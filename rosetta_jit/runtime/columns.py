@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import String
+from rosetta_jit.runtime.holder import coerce
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.holder.values import decoded
 from rosetta_jit.runtime.lanes import dtype_of
 
 if TYPE_CHECKING:
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.holder.record import Node, Presence
     from rosetta_jit.runtime.lanes import Lanes
+
+
+_OCTETS, _CODE_UNITS = String("octets"), String("utf-16")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +37,7 @@ class Ragged:
     starts, counts : ndarray of int64, shape (n,)
         Where the elements of each row begin, and how many they are.
     kind : str
-        ``"array"``, ``"text"`` (values are UTF-8 bytes) or ``"bytes"``.
+        ``"array"``, ``"text"`` (values are UTF-8 bytes, or UTF-16 code units) or ``"bytes"``.
     source : memoryview or None
         What borrowed rows, whose counts are negative (``~count``), refer to.
     """
@@ -55,7 +59,7 @@ class Ragged:
             data = _part(self.values, start, count)
         match self.kind:
             case "text":
-                return decoded(memoryview(data), octets=True)
+                return coerce.decoded(_OCTETS if self.values.dtype == np.uint8 else _CODE_UNITS, memoryview(data).cast("B"))
             case "bytes":
                 return bytes(data)
             case _:
@@ -164,9 +168,9 @@ def column(node: Node, lanes: Lanes, rows: int, path: list[str]) -> Any:
             borrowed = lanes.source[0]
             source = None if borrowed is None else memoryview(borrowed).cast("B")
             return Ragged(_elements(lanes, lane), starts, counts, kind, source)
-        case Numbers(span, lane, _, _):
+        case Numbers(span, lane):
             return Ragged(_elements(lanes, lane), *_spans(lanes, span, rows))
-        case Items(span, lane, element, _):
+        case Items(span, lane, element):
             return Ragged(column(element, lanes, lanes.used(lane), path), *_spans(lanes, span, rows))
         case Pairs(span, lane, _, key, value):
             used = lanes.used(lane)
@@ -191,7 +195,7 @@ def presence_mask(presence: Presence | None, lanes: Lanes, rows: int) -> NDArray
             return np.ones(rows, np.bool_)
         case Bit(cell, mask):
             return cells(lanes, cell, "u64", rows) & np.uint64(mask) != 0
-        case Case(cell, number, _, _):
+        case Case(cell, number):
             return cells(lanes, cell, "i64", rows) == number
         case _:
             assert_never(presence)

@@ -6,19 +6,21 @@ small. A lane that grows moves to memory of its own; whoever still has a view ke
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
 from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, STRIDE, USED, VALID, lane_word, state_words
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, LANE_WORDS, STRIDE, USED, VALID, lane_word, state_words
 from rosetta_jit.model.layout import Number
+from rosetta_jit.runtime.births import FirstCase, FixedArray
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.model.layout import Layout
+    from rosetta_jit.runtime.births import Birth
 
 Array = np.ndarray[Any, Any]
 
@@ -101,7 +103,8 @@ class Arrays(dict[int, Array]):
 class Plan:
     """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
 
-    ``template`` is the state with addresses counted from the arena's start, ``addressed`` has a 1 at each address.
+    ``template`` is the state with addresses counted from the arena's start, ``addressed`` has a 1 at each address. ``image`` is what lies
+    behind the state when the messages are born with ``births``, as far as it is not zero.
     """
 
     layout: Layout
@@ -113,10 +116,14 @@ class Plan:
     size_bytes: int
     template: NDArray[np.int64]
     addressed: NDArray[np.int64]
+    births: tuple[Birth, ...] = ()
+    image: NDArray[np.uint8] | None = None
 
 
-def plan(layout: Layout, rows: int = 1) -> Plan:
-    """A plan with room for so many messages, which are in use (and zero) from the start."""
+def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = ()) -> Plan:
+    """A plan with room for so many messages, which are in use from the start, and zero; and for what one of them is born with."""
+    needed: dict[int, int] = {}
+    _count(births, 1, needed)
     strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
     words = state_words(len(strides))
     template, addressed = np.zeros(words, np.int64), np.zeros(words, np.int64)
@@ -125,14 +132,33 @@ def plan(layout: Layout, rows: int = 1) -> Plan:
     offsets: list[int] = []
     sizes: list[int] = []
     for lane, stride in enumerate(strides):
-        capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride)
+        capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride, needed.get(lane, 0))
         offsets.append(behind)
         sizes.append(_aligned(capacity * stride, 8))
         template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = behind, capacity, rows if lane == 0 else 0, stride
         addressed[lane_word(lane, ADDRESS)] = 1
         behind = _aligned(behind + sizes[-1])
     dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else _BYTES for lane in layout.lanes), _BYTES)
-    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addressed)
+    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addressed, births)
+
+
+def born(plan: Plan) -> Plan:
+    """The plan of one message, which is born from the start."""
+    if not plan.births:
+        return plan
+    prototype = Lanes(plan)
+    prototype.bear(plan.births, 0, 1)
+    template, image = plan.template.copy(), prototype.arena[plan.template.nbytes :]
+    template[lane_word(0, USED) :: LANE_WORDS] = prototype.state[lane_word(0, USED) :: LANE_WORDS]
+    return replace(plan, template=template, image=image[: int(np.flatnonzero(image)[-1]) + 1].copy())
+
+
+def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:
+    """Add up how many rows of each lane so many rows are born with."""
+    for each in births:
+        if isinstance(each, FixedArray):
+            born[each.lane] = born.get(each.lane, 0) + rows * each.length
+            _count(each.within, rows * each.length, born)
 
 
 def _aligned(size: int, alignment: int = ALIGNMENT) -> int:
@@ -173,6 +199,8 @@ class Lanes:
         self.state: NDArray[np.int64] = self.arena[: plan.template.nbytes].view(np.int64)
         np.multiply(plan.addressed, address + shift, out=self.state)
         self.state += plan.template
+        if plan.image is not None:
+            self.arena[plan.template.nbytes :][: plan.image.size] = plan.image
         self.words = memoryview(cast("Any", self.state))
         self.buffers = [self.arena[start : start + size] for start, size in zip(plan.offsets, plan.sizes, strict=True)]
         self.cells = Cells(self.buffers)
@@ -235,6 +263,26 @@ class Lanes:
         self.words[lane_word(lane, USED)] = start + rows
         return start
 
+    def bear(self, births: tuple[Birth, ...], start: int, rows: int) -> None:
+        """Give rows, which are zero, what they are born with."""
+        for birth in births:
+            match birth:
+                case FixedArray(row, word, lane, length, within):
+                    first = self.take(lane, rows * length)
+                    words = self.row_words(row, start, rows)
+                    words[:, word] = np.arange(first, first + rows * length, length)
+                    words[:, word + 1] = length
+                    self.bear(within, first, rows * length)
+                case FirstCase(row, word, number):
+                    self.row_words(row, start, rows)[:, word] = number
+                case _:
+                    assert_never(birth)
+
+    def row_words(self, lane: int, start: int, rows: int) -> NDArray[np.int64]:
+        """The words of so many rows of a lane, a row each: shape (rows, words)."""
+        stride = self.plan.strides[lane]
+        return self.buffers[lane][start * stride : (start + rows) * stride].view(np.int64).reshape(rows, stride // 8)
+
     def give_back(self, lane: int, start: int) -> None:
         """Rows from ``start`` on are not in use any more."""
         self.words[lane_word(lane, USED)] = start
@@ -247,6 +295,7 @@ class Lanes:
             self.give_back(lane, 0)
         self.rows = rows
         self.take(0, rows)
+        self.bear(self.plan.births, 0, rows)
         self.source[0] = None
         self.wasted = 0
         self.moves += 1

@@ -38,7 +38,7 @@ def test_dicts_go_in_and_come_out():
     nested = FULL | {"child": FULL | {"children": [FULL | {"children": []}]}, "children": [FULL | {"children": []}] * 2}
     assert flat().from_dict(FULL).to_dict() == FULL
     assert whole().from_dict(nested).to_dict() == nested
-    assert flat()().to_dict()["fixed"] == []
+    assert flat()().to_dict()["fixed"] == [0, 0, 0]
     assert "maybe" not in flat()().to_dict()
 
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.holder import arena, values
+from rosetta_jit.runtime.births import MAX_BORN_BYTES
+from rosetta_jit.runtime.holder import arena, coerce, grid, values
 from rosetta_jit.runtime.holder.message import Message, View, bind, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
@@ -83,6 +84,8 @@ def getter(entry: Entry, family: Family, *, first_row: bool = False) -> Getter:
             return _or_default(_blob(node), entry) if guarded else _blob(node)
         case Numbers():
             return _numbers(entry, node, family, first_row=first_row)
+        case Items() if node.shape:
+            return _grid(node)
         case Items():
             return lambda message: family.sequence(message, entry)
         case Pairs():
@@ -124,12 +127,12 @@ def _scalar(node: Scalar, *, first_row: bool = False) -> Getter:
 
 
 def _text(node: Text) -> Getter:
-    span, lane, octets = node.span, node.lane, node.type.encoding == "octets"
+    span, lane, type_ = node.span, node.lane, node.type
 
     def get(message: Message) -> str:
         lanes = message.lanes_
         if lanes.words[VALID]:
-            return values.decoded(arena.content(lanes, span, lane, message.row_), octets=octets)
+            return coerce.decoded(type_, arena.content(lanes, span, lane, message.row_))
         raise lanes.invalid()
 
     return get
@@ -137,11 +140,12 @@ def _text(node: Text) -> Getter:
 
 def _blob(node: Blob) -> Getter:
     span, lane = node.span, node.lane
+    absent = bytes(node.length) if node.length and node.length <= MAX_BORN_BYTES else b""
 
     def get(message: Message) -> bytes:
         lanes = message.lanes_
         if lanes.words[VALID]:
-            return bytes(arena.content(lanes, span, lane, message.row_))
+            return bytes(arena.content(lanes, span, lane, message.row_)) or absent
         raise lanes.invalid()
 
     return get
@@ -150,21 +154,22 @@ def _blob(node: Blob) -> Getter:
 def _numbers(entry: Entry, node: Numbers, family: Family, *, first_row: bool) -> Getter:
     lane, key, index = node.lane, node.span.key, node.span.index
     behind = index + 1
+    absent = grid.zeros(node.type, (node.length,)).view(family.array_type) if node.length else None
 
     def get(message: Message) -> Any:
         lanes = message.lanes_
         if not lanes.words[VALID]:
             raise lanes.invalid()
         start, count = arena.span_of(lanes, node.span, message.row_)
-        return lanes.arrays[lane][start : start + count]
+        return lanes.arrays[lane][start : start + count] if count or absent is None else absent
 
     def get_first(message: Message) -> Any:
         lanes = message.lanes_
         if not lanes.words[VALID]:
             raise lanes.invalid()
         words = lanes.cells[key]
-        start = words[index]
-        return lanes.arrays[lane][start : start + words[behind]]
+        start, count = words[index], words[behind]
+        return lanes.arrays[lane][start : start + count] if count or absent is None else absent
 
     def get_owned(message: Message) -> Any:
         array = get(message)
@@ -184,6 +189,16 @@ def _numbers(entry: Entry, node: Numbers, family: Family, *, first_row: bool) ->
     if family.array_type is np.ndarray:
         return get_first if first_row else get
     return get_first_owned if first_row else get_owned
+
+
+def _grid(node: Items) -> Getter:
+    def get(message: Message) -> Any:
+        lanes = message.lanes_
+        if lanes.words[VALID]:
+            return grid.view(node, lanes, message.row_)
+        raise lanes.invalid()
+
+    return get
 
 
 def _message(entry: Entry, node: Record | Child, family: Family) -> Getter:
@@ -206,6 +221,8 @@ def setter(entry: Entry, family: Family) -> Setter:
             return _leaf_setter(entry, node)
         case Numbers():
             return _leaf_setter(entry, node) if family.assigns_whole else _refuse("map, or repeated", entry)
+        case Items() if node.shape and family.assigns_whole:
+            return _leaf_setter(entry, node)
         case Items() | Pairs():
             return _whole_setter(entry) if family.assigns_whole else _refuse("map, or repeated", entry)
         case Record() | Child():
@@ -214,7 +231,7 @@ def setter(entry: Entry, family: Family) -> Setter:
             assert_never(node)
 
 
-def _leaf_setter(entry: Entry, node: Scalar | Text | Blob | Numbers) -> Setter:
+def _leaf_setter(entry: Entry, node: values.Leaf) -> Setter:
     presence = entry.presence
 
     def set_(message: Message, value: Any) -> None:

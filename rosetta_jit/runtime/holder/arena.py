@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.runtime.births import FixedArray
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text, extent
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.record import Cell, Entry, Node, Presence
+    from rosetta_jit.runtime.holder.record import Cell, Choice, Entry, Node, Presence, Spanned
     from rosetta_jit.runtime.lanes import Lanes
 
 
@@ -29,11 +30,13 @@ def content(lanes: Lanes, span: Cell, lane: int, row: int) -> memoryview:
     start, count = span_of(lanes, span, row)
     if count < 0:
         return lanes.borrowed(start, ~count)
-    return lanes.cells[lane << 4 | 2][start : start + count]
+    stride = lanes.plan.strides[lane]
+    return lanes.cells[lane << 4 | 2][start * stride : (start + count) * stride]
 
 
-def resize(lanes: Lanes, span: Cell, lane: int, row: int, count: int) -> int:
-    """Give a span so many elements, of which it keeps those that it had; the others are zero. Its start."""
+def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
+    """Give a span so many elements, of which it keeps those that it had; the others are as they are born. Its start."""
+    span, lane = node.span, node.lane
     start, old = span_of(lanes, span, row)
     old = max(old, 0)
     at_end = start + old == lanes.used(lane)
@@ -49,6 +52,8 @@ def resize(lanes: Lanes, span: Cell, lane: int, row: int, count: int) -> int:
     words = lanes.cells[span.key]  # looked up again: of a recursive lane, this may be the one that has grown
     at = row * span.step + span.index
     words[at], words[at + 1] = start, count
+    if node.births and count > old:
+        lanes.bear(node.births, start + old, count - old)
     return start
 
 
@@ -67,21 +72,21 @@ def _abandon(lanes: Lanes, lane: int, rows: int) -> None:
     lanes.waste(lane, rows)
 
 
-def replace(lanes: Lanes, span: Cell, lane: int, row: int, data: memoryview | bytes) -> None:
+def replace(lanes: Lanes, node: Text | Blob, row: int, data: memoryview | bytes) -> None:
     """Make bytes the content of a string or blob."""
-    source = np.frombuffer(data, np.uint8)
-    start = resize(lanes, span, lane, row, source.size)
-    lanes.buffers[lane][start : start + source.size] = source
+    source, stride = np.frombuffer(data, np.uint8), lanes.plan.strides[node.lane]
+    start = resize(lanes, node, row, source.size // stride) * stride
+    lanes.buffers[node.lane][start : start + source.size] = source
 
 
-def rearrange(lanes: Lanes, span: Cell, lane: int, row: int, order: list[int]) -> None:
+def rearrange(lanes: Lanes, node: Spanned, row: int, order: list[int]) -> None:
     """Keep the elements of a span that the order names, in that order. Nothing but rows moves: what they refer to stays."""
-    start, count = span_of(lanes, span, row)
-    stride = lanes.plan.strides[lane]
-    rows = lanes.buffers[lane][start * stride : (start + count) * stride].reshape(count, stride)
+    start, count = span_of(lanes, node.span, row)
+    stride = lanes.plan.strides[node.lane]
+    rows = lanes.buffers[node.lane][start * stride : (start + count) * stride].reshape(count, stride)
     rows[: len(order)] = rows[order]
     lanes.moves += 1
-    resize(lanes, span, lane, row, len(order))
+    resize(lanes, node, row, len(order))
 
 
 def present(lanes: Lanes, presence: Presence | None, row: int) -> bool:
@@ -98,38 +103,81 @@ def present(lanes: Lanes, presence: Presence | None, row: int) -> bool:
 
 
 def mark(lanes: Lanes, presence: Presence | None, row: int) -> None:
-    """Make a field present; where it is a case of a union, the others are not any more."""
+    """Make a field present; where it is a case of a union, the others are not any more, and the discriminator says so."""
     match presence:
         case None:
             pass
-        case Bit(cell, mask):
-            lanes.cells[cell.key][row * cell.step + cell.index] |= mask
-        case Case(cell, number, start, end):
+        case Bit(cell, mask, births):
             words, at = lanes.cells[cell.key], row * cell.step + cell.index
-            if words[at] != number:
-                _zero(lanes, cell.lane, row, start, end)
-                words[at] = number
+            if not words[at] & mask:
+                words[at] |= mask
+                lanes.bear(births, row, 1)
+        case Case(cell, number, choice=choice):
+            if lanes.cells[cell.key][row * cell.step + cell.index] != number:
+                _enter(lanes, presence, row)
+                if choice is not None and choice.selected(_tag(lanes, choice, row)) != number:
+                    lanes.cells[choice.tag.key][row * choice.tag.step + choice.tag.index] = presence.label
         case _:
             assert_never(presence)
 
 
+def choose(lanes: Lanes, choice: Choice, row: int) -> None:
+    """Make the case of a union present that its discriminator selects, with zero value if it was not."""
+    number = choice.selected(_tag(lanes, choice, row))
+    cell = choice.cases[0].cell
+    at = row * cell.step + cell.index
+    if lanes.cells[cell.key][at] == number:
+        return
+    if number:
+        _enter(lanes, choice.cases[number - 1], row)
+    else:
+        _leave(lanes, choice.cases[0], row)
+
+
+def _tag(lanes: Lanes, choice: Choice, row: int) -> int:
+    return int(lanes.cells[choice.tag.key][row * choice.tag.step + choice.tag.index])
+
+
+def _enter(lanes: Lanes, case: Case, row: int) -> None:
+    _leave(lanes, case, row)
+    lanes.cells[case.cell.key][row * case.cell.step + case.cell.index] = case.number
+    lanes.bear(case.births, row, 1)
+
+
+def _leave(lanes: Lanes, case: Case, row: int) -> None:
+    """Make all cases of a union absent."""
+    words, at = lanes.cells[case.cell.key], row * case.cell.step + case.cell.index
+    left = words[at]
+    words[at] = 0
+    _zero(lanes, case.cell.lane, row, case.start, case.end)
+    if left and case.choice is not None:
+        former: Case = case.choice.cases[left - 1]
+        for birth in former.births:
+            if isinstance(birth, FixedArray):
+                lanes.waste(birth.lane, birth.length)
+
+
 def clear(lanes: Lanes, entry: Entry, row: int) -> None:
-    """Make a field absent, or empty where it cannot be absent."""
-    match entry.presence:
+    """Make a field absent, or as it is born where it cannot be absent, which the case that a discriminator selects cannot either."""
+    presence, node = entry.presence, entry.node
+    if presence is not None and not present(lanes, presence, row):
+        return
+    _release(lanes, node, row)
+    _zero(lanes, *_at(node, row))
+    lanes.moves += 1
+    match presence:
+        case None:
+            lanes.bear(entry.births, row, 1)
+            if isinstance(node, Scalar) and node.choice is not None:
+                choose(lanes, node.choice, row)
         case Bit(cell, mask):
             lanes.cells[cell.key][row * cell.step + cell.index] &= ~mask
-        case Case(cell, number, _, _):
-            words, at = lanes.cells[cell.key], row * cell.step + cell.index
-            if words[at] != number:
-                return
-            words[at] = 0
-        case None:
-            pass
+        case Case(cell, choice=choice):
+            lanes.cells[cell.key][row * cell.step + cell.index] = 0
+            if choice is not None:
+                choose(lanes, choice, row)
         case _:
-            assert_never(entry.presence)
-    _release(lanes, entry.node, row)
-    _zero(lanes, *_at(entry.node, row))
-    lanes.moves += 1
+            assert_never(presence)
 
 
 def clear_record(lanes: Lanes, record: Record, row: int) -> None:
@@ -143,9 +191,9 @@ def _release(lanes: Lanes, node: Node, row: int) -> None:
     match node:
         case Scalar():
             pass
-        case Text(span, lane) | Blob(span, lane) | Numbers(span, lane) | Items(span, lane) | Pairs(span, lane) | Child(span, lane):
+        case Text(span) | Blob(span) | Numbers(span) | Items(span) | Pairs(span) | Child(span):
             if span_of(lanes, span, row)[1] > 0:
-                resize(lanes, span, lane, row, 0)
+                resize(lanes, node, row, 0)
         case Record():
             for entry in node.entries.values():
                 _release(lanes, entry.node, row)

@@ -8,10 +8,10 @@ import numpy as np
 
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.callable import bind_state, holder_base
-from rosetta_jit.runtime.holder import arena, values
+from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, Message, View, place
-from rosetta_jit.runtime.holder.record import Blob, Numbers, Text
+from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
 from rosetta_jit.runtime.lanes import CLEAN, Lanes
 
 if TYPE_CHECKING:
@@ -51,7 +51,8 @@ class Holder(Message, Base):
         Returns
         -------
         ndarray
-            Of uint8 for strings and bytes. Read-only where it shows the message that the field was borrowed from.
+            Of uint8 for strings and bytes, of uint16 for strings of UTF-16. Read-only where it shows the message that the field was
+            borrowed from.
 
         Raises
         ------
@@ -63,11 +64,13 @@ class Holder(Message, Base):
         lanes, row = place(self)
         node = self.access_.record.entries[name].node
         match node:
-            case Numbers(span, lane, _, _):
+            case Numbers(span, lane):
                 start, count = arena.span_of(lanes, span, row)
                 return lanes.arrays[lane][start : start + count].view(np.ndarray)
-            case Text(span, lane, _) | Blob(span, lane):
-                return np.frombuffer(arena.content(lanes, span, lane, row), np.uint8)
+            case Items() if node.shape:
+                return grid.view(node, lanes, row)
+            case Text(span, lane) | Blob(span, lane):
+                return np.frombuffer(arena.content(lanes, span, lane, row), lanes.plan.dtypes[lane])
             case _:
                 raise TypeError(f"`{name}` is no array of numbers, and no bytes")
 

@@ -6,6 +6,7 @@ a float or a boolean, and never out of range.
 
 from __future__ import annotations
 
+import sys
 from operator import index
 from typing import TYPE_CHECKING, Any, SupportsFloat, SupportsIndex, assert_never, cast
 
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.types import String
     from rosetta_jit.runtime.holder.record import ScalarType
+
+UTF_16 = "utf-16-le" if sys.byteorder == "little" else "utf-16-be"
+"""How the code units of strings lie in lanes. Surrogates without a partner are code units too."""
 
 
 def scalar(type_: ScalarType, value: object) -> bool | int | float:
@@ -79,14 +83,46 @@ def _enumerator(type_: Enum, value: object) -> int:
 def text(type_: String, value: object) -> bytes:
     """The bytes of a string; those of a string of octets are kept as they are."""
     match value:
+        case str() if type_.encoding == "utf-16":
+            data = value.encode(UTF_16, "surrogatepass")
         case str():
-            return value.encode("utf-8", "surrogateescape" if type_.encoding == "octets" else "strict")
-        case bytes():
+            data = value.encode("utf-8", "surrogateescape" if type_.encoding == "octets" else "strict")
+        case bytes() if type_.encoding != "utf-16":
             if type_.encoding == "utf-8":
                 value.decode("utf-8")
-            return value
+            data = value
         case _:
             raise TypeError(f"expected str, {type(value).__name__} found")
+    if type_.encoding == "utf-16":
+        counted(len(data) // 2, None, type_.maximum, "code units")
+    else:
+        counted(len(data), None, type_.maximum, "bytes")
+    return data
+
+
+def decoded(type_: String, data: memoryview) -> str:
+    """The text of a string's bytes. Octets that are no UTF-8 become lone surrogates, from which they can be written again."""
+    match type_.encoding:
+        case "utf-16":
+            return str(data, UTF_16, "surrogatepass")
+        case "octets":
+            return str(data, "utf-8", "surrogateescape")
+        case "utf-8":
+            return str(data, "utf-8")
+
+
+def counted(count: int, length: int | None, maximum: int | None, what: str = "elements") -> None:
+    """Check a number of elements.
+
+    Raises
+    ------
+    ValueError
+        If it is not the length that the type fixes, or more than it allows.
+    """
+    if length is not None and count != length:
+        raise ValueError(f"{count} {what} where the type has {length}")
+    if maximum is not None and count > maximum:
+        raise ValueError(f"{count} {what} where the type allows {maximum}")
 
 
 def blob(value: object) -> memoryview:

@@ -18,7 +18,7 @@ from rosetta_jit.runtime.holder.classes import Holder
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, stale_getter, view_setter
 from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
-from rosetta_jit.runtime.lanes import Lanes, plan
+from rosetta_jit.runtime.lanes import Lanes, born, plan
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -74,7 +74,7 @@ class Family:
         self.type, self.schema = from_plain(json.loads(text))
         self.layout = layout(self.type, self.schema)
         self.tree = Tree(self.type, self.schema, self.layout)
-        self.plan = plan(self.layout)
+        self.plan = born(plan(self.layout, births=self.tree.births))
         self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
@@ -115,10 +115,14 @@ class Family:
 
     @cached_property
     def _empty(self) -> Lanes:
-        return Lanes(self.plan, self.array_type)
+        lanes = Lanes(self.plan, self.array_type)
+        for lane in self.tree.recursive:
+            if not lanes.used(lane):
+                lanes.bear(self.tree.births_of(lane), lanes.take(lane, 1), 1)
+        return lanes
 
     def empty_lanes(self) -> Lanes:
-        """Lanes in which everything is absent; they are never written."""
+        """Lanes in which everything is absent or as it is born, with a row of each recursive struct; they are never written."""
         return self._empty
 
     def row(self, lanes: Lanes, row: int) -> View:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.runtime.holder import arena, values
+from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, writable
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
-    """Set what raw values name: leaves replace, arrays are appended, maps take over pairs, messages merge.
+    """Set what raw values name: leaves and arrays of fixed length replace, other arrays are appended, maps take over pairs, messages merge.
 
     Of fields that cannot be absent, zero changes nothing: as in protobuf, it is not regarded as a value that was set.
     """
@@ -42,6 +42,9 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
     match node:
         case Scalar() | Text() | Blob():
             message.access_.setters[entry.name](message, value)
+        case Numbers() | Items() if node.length is not None:
+            lanes, row = writable(message)
+            values.write_entry(entry, lanes, row, value)
         case Numbers():
             append_numbers(message, node, value)
         case Items():
@@ -60,17 +63,19 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
 
 def append_numbers(message: Message, node: Numbers, elements: Iterable[Any]) -> None:
     """Add elements to an array of numbers: all, or none if one is wrong."""
-    prepared = values.prepare(node, elements)
+    prepared = coerce.numbers(node.type, elements)
     lanes, row = writable(message)
     count = arena.span_of(lanes, node.span, row)[1]
-    start = arena.resize(lanes, node.span, node.lane, row, count + prepared.size) + count
+    coerce.counted(count + prepared.size, node.length, node.maximum)
+    start = arena.resize(lanes, node, row, count + prepared.size) + count
     lanes.arrays[node.lane][start : start + prepared.size] = prepared
 
 
 def _append(message: Message, node: Items, elements: list[Any]) -> None:
     lanes, row = writable(message)
     count = arena.span_of(lanes, node.span, row)[1]
-    start = arena.resize(lanes, node.span, node.lane, row, count + len(elements)) + count
+    coerce.counted(count + len(elements), node.length, node.maximum)
+    start = arena.resize(lanes, node, row, count + len(elements)) + count
     for index, each in enumerate(elements):
         store_row(node.element, lanes, start + index, each)
 
@@ -104,7 +109,7 @@ def _fill_field(message: Message, entry: Entry, value: Any) -> None:
             inner = message.access_.getters[entry.name](message)
             writable(inner)
             _fill_message(inner, value)
-        case Items(_, _, Record(), _):
+        case Items(_, _, Record()):
             shown: Any = message.access_.getters[entry.name](message)
             for each in _iterable(value):
                 _fill_message(shown.add(), each)

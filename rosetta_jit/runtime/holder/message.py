@@ -146,7 +146,7 @@ def _make_present(view: View) -> None:
             node = view.entry_.node
             assert isinstance(node, Child)
             arena.mark(home, view.entry_.presence, parent.row_)
-            arena.resize(home, node.span, node.lane, parent.row_, 1)
+            arena.resize(home, node, parent.row_, 1)
             home.moves += 1
             _find(view, parent)
     for presence in view.access_.record.touch:

@@ -13,15 +13,17 @@ Nodes are never changed, and not frozen only because every process pays for the 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, assert_never, cast
+from typing import TYPE_CHECKING, ClassVar, assert_never, cast
 
 from rosetta_jit.model import layout as slots
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.runtime.births import Births, selected, selecting
 from rosetta_jit.runtime.lanes import SCALARS, cell_key
 
 if TYPE_CHECKING:
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.model.types import Constant, Schema
+    from rosetta_jit.runtime.births import Birth
 
 ScalarType = Bool | Int | Float | Enum
 _SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))
@@ -43,20 +45,41 @@ class Cell:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Bit:
-    """Present when a bit of the record's presence words is set."""
+    """Present when a bit of the record's presence words is set. The field is born with ``births`` then."""
 
     cell: Cell
     mask: int
+    births: tuple[Birth, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Case:
-    """Present when the union's case is this one. Bytes ``start`` to ``end`` of the row are shared by no other field than the cases."""
+    """Present when the union's case is this one. Bytes ``start`` to ``end`` of the row are shared by no other field than the cases.
+
+    Where a discriminator tells the case, ``choice`` knows it, and ``label`` is the value that selects this one.
+    """
 
     cell: Cell
     number: int
     start: int
     end: int
+    births: tuple[Birth, ...] = ()
+    choice: Choice | None = None
+    label: int = 0
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Choice:
+    """A union whose case a discriminator tells: the cell and the type of that, and the cases of the union."""
+
+    tag: Cell
+    type: Type
+    union: Union
+    cases: list[Case] = field(default_factory=list[Case])
+
+    def selected(self, value: int) -> int:
+        """The number of the case that a value selects, 0 for none."""
+        return selected(self.union, value)
 
 
 Presence = Bit | Case
@@ -64,16 +87,18 @@ Presence = Bit | Case
 
 @dataclass(slots=True, eq=False, repr=False)
 class Scalar:
-    """A number, a boolean, or an enum's number."""
+    """A number, a boolean, or an enum's number; where it is the discriminator of a union, with its ``choice``."""
 
     cell: Cell
     type: ScalarType
+    choice: Choice | None = None
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Text:
-    """A string in a lane of bytes."""
+    """A string in a lane of bytes, or of UTF-16's code units."""
 
+    births: ClassVar[tuple[Birth, ...]] = ()
     span: Cell
     lane: int
     type: String
@@ -81,30 +106,41 @@ class Text:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Blob:
-    """Bytes in a lane, or borrowed from the message."""
+    """Bytes in a lane, or borrowed from the message. ``length`` where the type fixes it, ``maximum`` where it bounds it."""
 
+    births: ClassVar[tuple[Birth, ...]] = ()
     span: Cell
     lane: int
+    length: int | None = None
+    maximum: int | None = None
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Numbers:
-    """An array of scalars: a numpy array. Where the type fixes its ``length`` it is empty until it is set."""
+    """An array of scalars: a numpy array. ``length`` where the type fixes it, ``maximum`` where it bounds it."""
 
+    births: ClassVar[tuple[Birth, ...]] = ()
     span: Cell
     lane: int
     type: ScalarType
     length: int | None
+    maximum: int | None = None
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Items:
-    """An array of anything else; ``element`` is what lies in each row of the lane."""
+    """An array of anything else; ``element`` is what lies in each row of the lane, born with ``births``.
+
+    ``shape`` is that of an array of several dimensions, all fixed, of numbers; it is empty for all others.
+    """
 
     span: Cell
     lane: int
     element: Node
     length: int | None
+    maximum: int | None = None
+    births: tuple[Birth, ...] = ()
+    shape: tuple[int, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -116,6 +152,7 @@ class Pairs:
     record: Record
     key: Scalar | Text
     value: Entry
+    births: tuple[Birth, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -125,6 +162,7 @@ class Child:
     span: Cell
     lane: int
     record: Record
+    births: tuple[Birth, ...] = ()
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -138,7 +176,7 @@ class Record:
     entries : dict
         Its fields and the cases of its unions by name, in the order of the IDL.
     unions : dict
-        Names of the cases of each union.
+        Names of the cases of each union; one with a discriminator is named as its field.
     touch : tuple of Presence
         What must be set when something in it is written: its own presence, and that of the records around it in the same row.
     """
@@ -152,22 +190,28 @@ class Record:
     unions: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
 
-Node = Scalar | Text | Blob | Numbers | Items | Pairs | Record | Child
+Spanned = Text | Blob | Numbers | Items | Pairs | Child
+"""Nodes of variable length, or of a length that the type fixes: start and count of elements in a lane."""
+Node = Scalar | Spanned | Record
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Entry:
-    """A field of a record, or a case of one of its unions. ``default`` is what reading gives while it is absent."""
+    """A field of a record, or a case of one of its unions.
+
+    ``default`` is what reading gives while it is absent, ``births`` what a field that cannot be absent has besides zeros.
+    """
 
     name: str
     node: Node
     presence: Presence | None
     field: Field
     default: Constant | None = None
+    births: tuple[Birth, ...] = ()
 
 
 class Tree:
-    """The nodes of a layout. ``root`` is the message; ``recursive`` has the record of each recursive lane.
+    """The nodes of a layout. ``root`` is the message, born with ``births``; ``recursive`` has the record of each recursive lane.
 
     Raises
     ------
@@ -179,6 +223,8 @@ class Tree:
         self.schema = schema
         self.layout = layout
         self.recursive: dict[int, Record] = {}
+        self._births = Births(schema, layout)
+        self.births = self._births.of_elements(type_, 0)
         root = self._element(type_, 0)
         if not isinstance(root, Record):
             raise ValueError("a message is a struct")  # noqa: TRY004  the type is the user's data, not a mistaken call
@@ -198,20 +244,25 @@ class Tree:
             return self._record(resolved, slot, lane, (), recursive=self.layout.lanes[lane].links is not None)
         return self._node(resolved, slot, lane, ())
 
+    def births_of(self, lane: int) -> tuple[Birth, ...]:
+        """What each row of the lane of a recursive struct is born with."""
+        return self._births.of_elements(Ref(self.recursive[lane].struct), lane)
+
     def _node(self, type_: Type, slot: Slot, lane: int, touch: tuple[Presence, ...]) -> Node:
         match type_, slot:
             case Bool() | Int() | Float() | Enum(), slots.Number(offset, scalar):
                 return Scalar(self._cell(lane, offset, scalar), type_)
             case String(), slots.Span(offset, target):
                 return Text(self._cell(lane, offset, "i64"), target, type_)
-            case Bytes(), slots.Span(offset, target):
-                return Blob(self._cell(lane, offset, "i64"), target)
-            case Array(element), slots.Span(offset, target):
-                return self._array(self.schema.resolve(element), element, self._cell(lane, offset, "i64"), target, type_.fixed)
+            case Bytes(_, length, maximum), slots.Span(offset, target):
+                return Blob(self._cell(lane, offset, "i64"), target, length if isinstance(length, int) else None, maximum)
+            case Array(), slots.Span(offset, target):
+                return self._array(type_, self._cell(lane, offset, "i64"), target)
             case Map(key, value), slots.Span(offset, target):
                 return self._pairs(key, value, self._cell(lane, offset, "i64"), target)
             case Ref(), slots.Span(offset, target):
-                return Child(self._cell(lane, offset, "i64"), target, cast("Record", self._element(type_, target)))
+                record = cast("Record", self._element(type_, target))
+                return Child(self._cell(lane, offset, "i64"), target, record, self._births.of_elements(type_, target))
             case ((Ref() | Optional()), _):
                 value = type_.value if isinstance(type_, Optional) else self.schema.types[type_.name]
                 return self._node(value, slot, lane, touch)
@@ -220,42 +271,86 @@ class Tree:
             case _:
                 raise ValueError(f"{type(type_).__name__} cannot be held there")
 
-    def _array(self, resolved: Type, element: Type, span: Cell, target: int, length: int | None) -> Node:
+    def _array(self, type_: Array, span: Cell, target: int) -> Node:
+        resolved = self.schema.resolve(type_.element)
         if isinstance(resolved, Bool | Int | Float | Enum):
-            return Numbers(span, target, resolved, length)
-        return Items(span, target, self._element(element, target), length)
+            return Numbers(span, target, resolved, type_.fixed, type_.maximum)
+        element, births = self._element(type_.element, target), self._births.of_elements(type_.element, target)
+        return Items(span, target, element, type_.fixed, type_.maximum, births, _shape(type_.fixed, element))
 
     def _pairs(self, key: Type, value: Type, span: Cell, target: int) -> Pairs:
-        entry = self._element(slots.map_entry(key, value), target)
-        assert isinstance(entry, Record)
-        return Pairs(span, target, entry, cast("Scalar | Text", entry.entries["key"].node), entry.entries["value"])
+        pair = slots.map_entry(key, value)
+        record = self._element(pair, target)
+        assert isinstance(record, Record)
+        births = self._births.of_elements(pair, target)
+        return Pairs(span, target, record, cast("Scalar | Text", record.entries["key"].node), record.entries["value"], births)
 
     def _record(self, struct: Struct, slot: Slot, lane: int, touch: tuple[Presence, ...], *, recursive: bool) -> Record:
         assert isinstance(slot, slots.Row)
         record = Record(struct.name, lane, slot.offset, _end(slot), touch)
         if recursive:
             self.recursive[lane] = record
+        choices = self._choices(struct, slot, lane)
         for each, member in zip(struct.fields, slot.members, strict=True):
             if isinstance(each.type, Union) and isinstance(member.slot, slots.Variant):
-                self._cases(record, each.type, member.slot, touch)
+                self._cases(record, each, member.slot, touch, choices.get(each.type.discriminator))
                 continue
+            births = self._births.of(each.type, member.slot, lane)
             presence = None
             if member.presence is not None:
                 word, bit = divmod(member.presence, 64)
-                presence = Bit(self._cell(lane, slot.offset + 8 * word, "u64"), 1 << bit)
-            self._entry(record, each, member.slot, touch, presence)
+                presence = Bit(self._cell(lane, slot.offset + 8 * word, "u64"), 1 << bit, births)
+            node = self._entry(record, each, member.slot, touch, presence, births)
+            if isinstance(node, Scalar):
+                node.choice = choices.get(each.name)
         return record
 
-    def _cases(self, record: Record, union: Union, slot: slots.Variant, touch: tuple[Presence, ...]) -> None:
-        cell = self._cell(record.lane, slot.offset, "i64")
-        record.unions[union.name.rpartition(".")[2]] = tuple(case.name for case in union.cases)
-        for number, (case, member) in enumerate(zip(union.cases, slot.members, strict=True), 1):
-            self._entry(record, case, member.slot, touch, Case(cell, number, slot.offset + 8, _end(slot)))
+    def _choices(self, struct: Struct, slot: slots.Row, lane: int) -> dict[str, Choice]:
+        """The choices of a struct by the names of their discriminators."""
+        unions = {each.type.discriminator: each.type for each in struct.fields if isinstance(each.type, Union)}
+        return {
+            each.name: Choice(self._cell(lane, member.slot.offset, member.slot.scalar), self.schema.resolve(each.type), unions[each.name])
+            for each, member in zip(struct.fields, slot.members, strict=True)
+            if each.name in unions and isinstance(member.slot, slots.Number)
+        }
 
-    def _entry(self, record: Record, each: Field, slot: Slot, touch: tuple[Presence, ...], presence: Presence | None) -> None:
+    def _cases(self, record: Record, union: Field, slot: slots.Variant, touch: tuple[Presence, ...], choice: Choice | None) -> None:
+        assert isinstance(union.type, Union)
+        cell, cases = self._cell(record.lane, slot.offset, "i64"), union.type.cases
+        name = union.type.name.rpartition(".")[2] if choice is None else union.name
+        record.unions[name] = tuple(case.name for case in cases)
+        for number, (case, member) in enumerate(zip(cases, slot.members, strict=True), 1):
+            births = self._births.of(case.type, member.slot, record.lane)
+            presence = Case(cell, number, slot.offset + 8, _end(slot), births, choice)
+            if choice is not None:
+                presence.label = selecting(union.type, choice.type, number)
+                choice.cases.append(presence)
+            self._entry(record, case, member.slot, touch, presence)
+
+    def _entry(
+        self,
+        record: Record,
+        each: Field,
+        slot: Slot,
+        touch: tuple[Presence, ...],
+        presence: Presence | None,
+        births: tuple[Birth, ...] = (),
+    ) -> Node:
         inner = touch if presence is None else (*touch, presence)
         node = self._node(each.type, slot, record.lane, inner)
-        record.entries[each.name] = Entry(each.name, node, presence, each, _default(each, node))
+        record.entries[each.name] = Entry(each.name, node, presence, each, _default(each, node), births if presence is None else ())
+        return node
+
+
+def _shape(length: int | None, element: Node) -> tuple[int, ...]:
+    """The shape of an array of arrays of numbers, if every length is fixed."""
+    match element:
+        case Numbers(_, _, _, int(inner)) if length is not None:
+            return (length, inner)
+        case Items() if length is not None and element.shape:
+            return (length, *element.shape)
+        case _:
+            return ()
 
 
 def _default(each: Field, node: Node) -> Constant | None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMappin
 from copy import copy
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.runtime.holder import arena, values
+from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
@@ -84,19 +84,23 @@ class Sequence(MutableSequence[Any]):
     def __delitem__(self, index: Any) -> None:
         count = len(self)
         gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
+        self._allow(count - len(gone))
         self._order([each for each in range(count) if each not in gone])
 
     def insert(self, index: int, value: Any) -> None:
         count = len(self)
+        self._allow(count + 1)
         at = range(count)[:index].stop if count else 0
         self._append([raw(value)])
         self._order([*range(at), count, *range(at, count)])
 
     def append(self, value: Any) -> None:
-        self._append([raw(value)])
+        self.extend([value])
 
     def extend(self, values: Iterable[Any]) -> None:
-        self._append([raw(each) for each in values])
+        plain = [raw(each) for each in values]
+        self._allow(len(self) + len(plain))
+        self._append(plain)
 
     def pop(self, index: int = -1) -> Any:
         """Remove an element and return it; a message as one of its own."""
@@ -106,6 +110,7 @@ class Sequence(MutableSequence[Any]):
         return popped
 
     def clear(self) -> None:
+        self._allow(0)
         self._order([])
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:
@@ -116,20 +121,25 @@ class Sequence(MutableSequence[Any]):
     def reverse(self) -> None:
         self._order(list(range(len(self)))[::-1])
 
+    def _allow(self, count: int) -> None:
+        """Refuse a number of elements that the type does not have: ValueError."""
+        coerce.counted(count, self.node.length, self.node.maximum)
+
     def _append(self, plain: list[Any]) -> None:
         """Add elements at the end: all of them, or none where one is wrong."""
         node = self.node
         lanes, row = writable(self.message)
         _, count = arena.span_of(lanes, node.span, row)
-        start = arena.resize(lanes, node.span, node.lane, row, count + len(plain))
+        start = arena.resize(lanes, node, row, count + len(plain))
         try:
             for index, each in enumerate(plain, count):
                 store_row(node.element, lanes, start + index, each)
         except BaseException:
-            arena.resize(lanes, node.span, node.lane, row, count)
+            arena.resize(lanes, node, row, count)
             raise
 
     def _replace(self, elements: list[Any]) -> None:
+        self._allow(len(elements))
         plain = [raw(each) for each in elements]
         count = len(self)
         self._append(plain)
@@ -137,7 +147,7 @@ class Sequence(MutableSequence[Any]):
 
     def _order(self, order: list[int]) -> None:
         lanes, row = writable(self.message)
-        arena.rearrange(lanes, self.node.span, self.node.lane, row, order)
+        arena.rearrange(lanes, self.node, row, order)
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, str | bytes) or not isinstance(other, Iterable):
@@ -218,8 +228,9 @@ class Dictionary(MutableMapping[Any, Any]):
         TypeError, ValueError
             If the map can have no such key.
         """
-        prepared = values.prepare(self.node.key, key)
-        return prepared.decode("utf-8", "surrogateescape") if isinstance(prepared, bytes) else prepared
+        node = self.node.key
+        prepared = values.prepare(node, key)
+        return coerce.decoded(node.type, memoryview(prepared)) if isinstance(node, Text) else prepared
 
     def __setitem__(self, key: Any, value: Any) -> None:
         plain = raw(value)
@@ -232,12 +243,12 @@ class Dictionary(MutableMapping[Any, Any]):
             store_row(node.value.node, lanes, start + index, plain)
             return
         _, count = arena.span_of(lanes, node.span, row)
-        start = arena.resize(lanes, node.span, node.lane, row, count + 1)
+        start = arena.resize(lanes, node, row, count + 1)
         try:
             values.store(node.key, lanes, start + count, key)
             store_row(node.value.node, lanes, start + count, plain)
         except BaseException:
-            arena.resize(lanes, node.span, node.lane, row, count)
+            arena.resize(lanes, node, row, count)
             raise
 
     def __delitem__(self, key: Any) -> None:
@@ -247,7 +258,7 @@ class Dictionary(MutableMapping[Any, Any]):
         lanes, row = writable(self.message)
         start, count = arena.span_of(lanes, self.node.span, row)
         keys = [values.read(self.node.key, lanes, start + each, values.Form.RAW) for each in range(count)]
-        arena.rearrange(lanes, self.node.span, self.node.lane, row, [each for each in range(count) if keys[each] != wanted])
+        arena.rearrange(lanes, self.node, row, [each for each in range(count) if keys[each] != wanted])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mapping):

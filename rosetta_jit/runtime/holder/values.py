@@ -6,20 +6,21 @@ between holders they stay numbers and numpy arrays (`Form.RAW`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sized
 from enum import Enum as Enumeration
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.types import Enum
-from rosetta_jit.runtime.holder import arena, coerce
+from rosetta_jit.runtime.holder import arena, coerce, grid
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
 
-Leaf = Scalar | Text | Blob | Numbers
+Leaf = Scalar | Text | Blob | Numbers | Items
+"""What is written at once. Of `Items`, those that have a shape."""
 
 MAX_DEPTH = 100
 """How deep messages may contain each other, as in protobuf."""
@@ -45,25 +46,27 @@ def read(node: Node, lanes: Lanes, row: int, form: Form, depth: int = 0) -> Any:
             value = lanes.cells[cell.key][row * cell.step + cell.index]
             return _named(type_, value) if form is Form.PLAIN else value
         case Text(span, lane, type_):
-            return decoded(arena.content(lanes, span, lane, row), octets=type_.encoding == "octets")
+            return coerce.decoded(type_, arena.content(lanes, span, lane, row))
         case Blob(span, lane):
             return bytes(arena.content(lanes, span, lane, row))
-        case Numbers(span, lane, type_, _):
+        case Numbers(span, lane, type_):
             start, count = arena.span_of(lanes, span, row)
             array = lanes.arrays[lane][start : start + count]
             if form is Form.RAW:
                 return array.copy()
             return [_named(type_, value) for value in array.tolist()] if isinstance(type_, Enum) else array.tolist()
-        case Items(span, lane, element, _):
+        case Items() if node.shape and form is Form.RAW:
+            return grid.view(node, lanes, row).copy()
+        case Items(span, _, element):
             start, count = arena.span_of(lanes, span, row)
             return [read(element, lanes, each, form, depth + 1) for each in range(start, start + count)]
-        case Pairs(span, lane, _, key, value):
+        case Pairs(span, _, _, key, value):
             start, count = arena.span_of(lanes, span, row)
             rows = range(start, start + count)
             return {read(key, lanes, each, form): read(value.node, lanes, each, form, depth + 1) for each in rows}
         case Record():
             return read_record(node, lanes, row, form, depth)
-        case Child(span, lane, record):
+        case Child(span, _, record):
             start, count = arena.span_of(lanes, span, row)
             return read_record(record, lanes, start, form, depth) if count else {}
         case _:
@@ -81,11 +84,6 @@ def read_record(record: Record, lanes: Lanes, row: int, form: Form, depth: int =
     }
 
 
-def decoded(data: memoryview, *, octets: bool) -> str:
-    """The text of a string's bytes. Octets that are no UTF-8 become lone surrogates, from which they can be written again."""
-    return str(data, "utf-8", "surrogateescape" if octets else "strict")
-
-
 def _named(type_: ScalarType, value: Any) -> Any:
     """The name of an enum's number, where it has one."""
     if not isinstance(type_, Enum):
@@ -94,7 +92,7 @@ def _named(type_: ScalarType, value: Any) -> Any:
 
 
 def write(node: Node, lanes: Lanes, row: int, value: Any, path: str = "", *, depth: int = 0) -> None:
-    """Make a value that of a node, which is empty. Records merge.
+    """Make a value that of a node, which is empty. Records merge, and where an array of fixed length is given none it stays as it was born.
 
     Raises
     ------
@@ -102,28 +100,31 @@ def write(node: Node, lanes: Lanes, row: int, value: Any, path: str = "", *, dep
         If the node's type cannot take the value.
     """
     match node:
-        case Scalar() | Text() | Blob() | Numbers():
-            try:
-                store(node, lanes, row, value)
-            except (TypeError, ValueError, OverflowError) as problem:
-                raise ValuesError(path, str(problem)) from None
-        case Items(span, lane, element, length):
+        case Scalar() | Text():
+            _store(node, lanes, row, value, path)
+        case Blob() | Numbers() | Items() if node.length and isinstance(value, Sized) and not len(value):
+            pass
+        case Blob() | Numbers():
+            _store(node, lanes, row, value, path)
+        case Items() if node.shape:
+            _store(node, lanes, row, value, path)
+        case Items():
             values = _sequence(value, path)
-            _check_length(len(values), length, path)
-            start = arena.resize(lanes, span, lane, row, len(values))
+            _check_length(len(values), node, path)
+            start = arena.resize(lanes, node, row, len(values))
             for index, each in enumerate(values):
-                write(element, lanes, start + index, each, f"{path}[{index}]", depth=depth + 1)
-        case Pairs(span, lane, _, key, entry):
+                write(node.element, lanes, start + index, each, f"{path}[{index}]", depth=depth + 1)
+        case Pairs(_, _, _, key, entry):
             values = _mapping(value, path)
-            start = arena.resize(lanes, span, lane, row, len(values))
+            start = arena.resize(lanes, node, row, len(values))
             for index, (each, of_key) in enumerate(values.items()):
                 write(key, lanes, start + index, each, f"{path}[{each!r:.40}]")
                 write(entry.node, lanes, start + index, of_key, f"{path}[{each!r:.40}]", depth=depth + 1)
         case Record():
             write_record(node, lanes, row, value, path, depth=depth)
-        case Child(span, lane, record):
+        case Child(span, _, record):
             start, count = arena.span_of(lanes, span, row)
-            write_record(record, lanes, start if count else arena.resize(lanes, span, lane, row, 1), value, path, depth=depth)
+            write_record(record, lanes, start if count else arena.resize(lanes, node, row, 1), value, path, depth=depth)
         case _:
             assert_never(node)
 
@@ -145,6 +146,13 @@ def write_entry(entry: Entry, lanes: Lanes, row: int, value: Any, path: str = ""
     write(entry.node, lanes, row, value, f"{path}.{entry.name}", depth=depth + 1)
 
 
+def _store(node: Leaf, lanes: Lanes, row: int, value: Any, path: str) -> None:
+    try:
+        store(node, lanes, row, value)
+    except (TypeError, ValueError, OverflowError) as problem:
+        raise ValuesError(path, str(problem)) from None
+
+
 def store(node: Leaf, lanes: Lanes, row: int, value: Any) -> None:
     """Make a value that of a leaf.
 
@@ -163,13 +171,16 @@ def prepare(node: Leaf, value: Any) -> Any:
             return coerce.scalar(type_, value)
         case Text(_, _, type_):
             return coerce.text(type_, value)
-        case Blob():
-            return coerce.blob(value)
-        case Numbers(_, _, type_, length):
+        case Blob(_, _, length, maximum):
+            data = coerce.blob(value)
+            coerce.counted(len(data), length, maximum, "bytes")
+            return data
+        case Numbers(_, _, type_, length, maximum):
             array = coerce.numbers(type_, value)
-            if length is not None and array.size not in {0, length}:
-                raise ValueError(f"{array.size} elements where the type has {length}")
+            coerce.counted(array.size, length, maximum)
             return array
+        case Items():
+            return grid.prepare(node, value)
         case _:
             assert_never(node)
 
@@ -179,11 +190,15 @@ def put(node: Leaf, lanes: Lanes, row: int, prepared: Any) -> None:
     match node:
         case Scalar(cell, _):
             lanes.cells[cell.key][row * cell.step + cell.index] = prepared
-        case Text(span, lane, _) | Blob(span, lane):
-            arena.replace(lanes, span, lane, row, prepared)
-        case Numbers(span, lane, _, _):
-            start = arena.resize(lanes, span, lane, row, prepared.size)
+            if node.choice is not None:
+                arena.choose(lanes, node.choice, row)
+        case Text() | Blob():
+            arena.replace(lanes, node, row, prepared)
+        case Numbers(_, lane):
+            start = arena.resize(lanes, node, row, prepared.size)
             lanes.arrays[lane][start : start + prepared.size] = prepared
+        case Items():
+            grid.put(node, lanes, row, prepared)
         case _:
             assert_never(node)
 
@@ -197,9 +212,11 @@ def settle(record: Record, lanes: Lanes) -> None:
     lanes.adopt(fresh)
 
 
-def _check_length(count: int, length: int | None, path: str) -> None:
-    if length is not None and count not in {0, length}:
-        raise ValuesError(path, f"{count} elements where the type has {length}")
+def _check_length(count: int, node: Items, path: str) -> None:
+    try:
+        coerce.counted(count, node.length, node.maximum)
+    except ValueError as problem:
+        raise ValuesError(path, str(problem)) from None
 
 
 def _sequence(value: Any, path: str) -> list[Any]:
