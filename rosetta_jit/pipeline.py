@@ -229,7 +229,8 @@ def _own_types(build: Build) -> Types:
     schema = _imported(build)
     found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
     if not found:
-        raise SchemaError((words.unknown_type(request.type or "", tuple(schema.types)),))
+        why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
+        raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", tuple(schema.types)),))
     return Types(found[0], found[0], schema, None)
 
 
@@ -258,6 +259,7 @@ def _imported(build: Build) -> Schema:
     names = request.imports or tuple(build.files_given) or tuple(readers.guesses(asked))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
+    left_out: dict[str, Any] = {}
     load = build.search.loader(build.reading)
     for name in names:
         source = load(name)
@@ -268,11 +270,12 @@ def _imported(build: Build) -> Schema:
             found = end(source, build.search.loader(build.reading, source))
             types |= found.types
             constants |= found.constants
+            left_out |= found.left_out
             if not request.imports and not request.files and any(same_name(each, asked) for each in types):
                 break
         elif request.imports:
             raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
-    return Schema(types, constants=constants)
+    return Schema(types, constants=constants, left_out=left_out)
 
 
 def _plain_site(site: Site) -> list[Any]:

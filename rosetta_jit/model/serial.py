@@ -95,8 +95,8 @@ class _Writing:
                 return ["string", encoding, spelling, maximum]
             case Bytes(spelling, length, maximum):
                 return ["bytes", spelling, _plain_length(length), maximum]
-            case Enum(name, values, closed):
-                return ["enum", name, [list(pair) for pair in values], closed]
+            case Enum(name, values, closed, _, bits):
+                return ["enum", name, [list(pair) for pair in values], closed, bits]
             case Array(element, length, maximum):
                 return ["array", self.type(element, depth + 1), _plain_length(length), maximum]
             case Struct(name, fields):
@@ -107,8 +107,8 @@ class _Writing:
                 return ["union", name, fields, discriminator, [list(each) for each in labels], default]
             case Optional(value):
                 return ["optional", self.type(value, depth + 1)]
-            case Map(key, value):
-                return ["map", self.type(key, depth + 1), self.type(value, depth + 1)]
+            case Map(key, value, maximum):
+                return ["map", self.type(key, depth + 1), self.type(value, depth + 1), maximum]
             case Ref(name):
                 self.pending.append(name)
                 return ["ref", name]
@@ -155,8 +155,8 @@ def _type(plain: list[Any], depth: int) -> Type:
             return String(encoding, spelling, maximum)
         case ["bytes", spelling, length, maximum]:
             return Bytes(spelling, _length(length), maximum)
-        case ["enum", name, values, closed]:
-            return Enum(name, tuple((each, number) for each, number in values), closed)
+        case ["enum", name, values, closed, bits]:
+            return Enum(name, tuple((each, number) for each, number in values), closed, bits=bits)
         case ["array", element, length, maximum]:
             return Array(_type(element, depth + 1), _length(length), maximum)
         case ["struct", name, fields, constants, options]:
@@ -167,8 +167,8 @@ def _type(plain: list[Any], depth: int) -> Type:
             return Union(name, fields, None, discriminator, tuple(tuple(each) for each in labels), default)
         case ["optional", value]:
             return Optional(_type(value, depth + 1))
-        case ["map", key, value]:
-            return Map(_type(key, depth + 1), _type(value, depth + 1))
+        case ["map", key, value, maximum]:
+            return Map(_type(key, depth + 1), _type(value, depth + 1), maximum)
         case ["ref", name]:
             return Ref(name)
         case _:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.source import Span
 
@@ -72,12 +73,13 @@ class Bytes:
 
 @dataclass(frozen=True, slots=True)
 class Enum:
-    """Named integers. A closed one (proto2) holds no other number than those."""
+    """Named integers. A closed one (proto2) holds no other number than those. ``bits`` is the width that the IDL gives it."""
 
     name: str
     values: tuple[tuple[str, int], ...]
     closed: bool = True
     span: Span | None = field(default=None, compare=False, repr=False)
+    bits: Literal[8, 16, 32] = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,10 +113,11 @@ class Optional:
 
 @dataclass(frozen=True, slots=True)
 class Map:
-    """Pairs of key and value; the last of equal keys counts."""
+    """Pairs of key and value; the last of equal keys counts. ``maximum`` bounds how many there are."""
 
     key: Type
     value: Type
+    maximum: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,12 +234,15 @@ Declaration = Struct | Enum
 class Schema:
     """Declared types and constants by qualified name, and the sources that they were read from.
 
+    ``left_out`` says why declarations that the meta-model cannot represent are missing.
+
     A `Ref` names a key of ``types``; the front end has made all names absolute.
     """
 
     types: Mapping[str, Declaration]
     sources: tuple[str, ...] = ()
     constants: Mapping[str, NamedConstant] = field(default_factory=dict[str, "NamedConstant"])
+    left_out: Mapping[str, Diagnostic] = field(default_factory=dict[str, "Diagnostic"])
 
     def resolve(self, type_: Type) -> Type:
         """The declared type behind a reference; every other type is itself."""

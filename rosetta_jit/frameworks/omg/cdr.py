@@ -154,7 +154,8 @@ class _Rules:
         """How the length of a member is told: by the code, by a word of its own, or by its first word."""
         match self.schema.resolve(type_):
             case Bool() | Int() | Float() | Enum() as scalar:
-                return {1: 0, 2: 1, 4: 2, 8: 3}[WIDTH[scalar_of(scalar)]]
+                size = scalar.bits // 8 if isinstance(scalar, Enum) else WIDTH[scalar_of(scalar)]
+                return {1: 0, 2: 1, 4: 2, 8: 3}[size]
             case String() | Bytes(length=None):
                 return DUAL_USE[1]
             case Array(_, length) as array:
@@ -200,9 +201,9 @@ class _Rules:
                 return Blob(path, Count(None, value=length)) if length is not None else self.counted(Blob(path, self.count(maximum)))
             case Array():
                 return self.array(type_, path, field)
-            case Map(key, value):
+            case Map(key, value, maximum):
                 entry = Seq(tuple(self.field(each, (), Struct("", ())) for each in map_entry(key, value).fields))
-                repeat = self.counted(Repeat(path, self.count(None), entry, align=leading(entry)))
+                repeat = self.counted(Repeat(path, self.count(maximum), entry, align=leading(entry)))
                 plain = self.primitive(key) is not None and self.primitive(value) is not None
                 return self.sized(repeat, path) if self.second and not plain else repeat
             case Ref(name) if name in self.recursive:
@@ -218,10 +219,11 @@ class _Rules:
                 assert_never(type_)
 
     def enumerator(self, enum: Enum, path: Path) -> Codec:
+        scalar, size = f"i{enum.bits}", enum.bits // 8
         if "enum" in self.lenient:
-            return self.aligned(Number(path, "i32", self.order), 4)
+            return self.aligned(Number(path, scalar, self.order), size)
         numbers = tuple((number, number) for number in sorted({number for _, number in enum.values}))
-        return self.aligned(Table(path, "i32", numbers, self.order), 4)
+        return self.aligned(Table(path, scalar, numbers, self.order), size)
 
     def string(self, string: String, path: Path, field: Field) -> Codec:
         if string.encoding == "utf-16":

@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 MAX_INHERITED = 100_000
 """Members that all structs of a file inherit together."""
 
-DUMMY = "structure_needs_at_least_one_member"
-"""The member that rosidl gives a message without members."""
-
 
 @dataclass(slots=True)
 class Declarations:
@@ -177,9 +174,7 @@ class _Declarer:
         finally:
             entry.state = "whole"
         if definition.kind != "exception":
-            empty = len(fields) == 1 and fields[0].name == DUMMY and fields[0].type == Int(8, signed=False, spelling="uint8")
-            shown = () if empty else fields
-            self.out.types[full] = Struct(full, shown, doc=notes.doc, span=name.span, options=notes.of_struct())
+            self.out.types[full] = Struct(full, fields, doc=notes.doc, span=name.span, options=notes.of_struct())
         return Ref(full, name.span)
 
     def base(self, scope: Scope, definition: tree.Aggregate) -> tuple[Field, ...]:
@@ -219,9 +214,9 @@ class _Declarer:
             values[given] = enumerator.name.text
             if own.flag("default_literal"):
                 entry.value = value
-        if width is None or width > 16:
-            pairs = tuple((word, number) for number, word in values.items())
-            self.out.types[full] = Enum(full, pairs, closed=True, span=name.span)
+        pairs = tuple((word, number) for number, word in values.items())
+        bits = 32 if width is None or width > 16 else 16 if width > 8 else 8  # DDS-XTypes 1.3, table 21
+        self.out.types[full] = Enum(full, pairs, closed=True, span=name.span, bits=bits)
         return Ref(full, name.span)
 
     # Constants

@@ -5,7 +5,6 @@ text ─ lexer ─▶ tokens ─ preprocessor ─▶ tokens of all files ─ gra
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
@@ -16,8 +15,6 @@ from rosetta_jit.frameworks.omg.usable import attach_constants, usable
 from rosetta_jit.model.types import Schema
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.source import Source
@@ -26,18 +23,11 @@ MAX_REPORTED = 100
 """Problems that one report lists."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """A schema, and why each declaration that the model cannot represent is left out of it."""
-
-    schema: Schema
-    left_out: Mapping[str, Diagnostic]
-
-
 def parse(source: Source, load: Load) -> Schema:
     """All structs, unions and enums of a `.idl` file and of what it includes, keyed by qualified names (``RTC::TimedDouble``).
 
-    A declaration that the model has nothing for (``any``, ``long double``, references to objects) is left out, and so is what needs it.
+    A declaration that the model has nothing for (``any``, ``long double``, references to objects) is left out, and so is what needs it;
+    `Schema.left_out` says why.
 
     Parameters
     ----------
@@ -45,20 +35,6 @@ def parse(source: Source, load: Load) -> Schema:
         The text, and the name that it has on the search path.
     load
         Finds the files that it includes.
-
-    Raises
-    ------
-    SchemaError
-        With everything that is wrong; or, where all declarations had to be left out, with what they need.
-    """
-    reading = read(source, load)
-    if reading.left_out and not reading.schema.types:
-        _refuse(list(reading.left_out.values()))
-    return reading.schema
-
-
-def read(source: Source, load: Load) -> Reading:
-    """The same, with what was left out.
 
     Raises
     ------
@@ -74,7 +50,7 @@ def read(source: Source, load: Load) -> Reading:
     _refuse(problems)
     types, left_out = usable(declared.types)
     types, constants = attach_constants(types, declared.constants)
-    return Reading(Schema(types, files, constants), left_out)
+    return Schema(types, files, constants, left_out)
 
 
 def _refuse(problems: list[Diagnostic]) -> None:

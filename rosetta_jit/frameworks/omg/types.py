@@ -79,8 +79,8 @@ class TypeMaker:
                 inner = self.type(scope, element, free=free, in_sequence=True)
                 return shallow(sequence(inner, self.bound(scope, bound, free=free)), span)
             case MapOf(key, value, bound, span):
-                self.bound(scope, bound, free=free)
-                made = Map(self.key(scope, key, free=free), self.type(scope, value, free=free, in_sequence=True))
+                inner = self.type(scope, value, free=free, in_sequence=True)
+                made = Map(self.key(scope, key, free=free), inner, self.bound(scope, bound, free=free))
                 return shallow(made, span)
             case Unsupported(word, span):
                 return Ref(word, span)

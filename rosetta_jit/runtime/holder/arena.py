@@ -147,14 +147,12 @@ def _enter(lanes: Lanes, case: Case, row: int) -> None:
 def _leave(lanes: Lanes, case: Case, row: int) -> None:
     """Make all cases of a union absent."""
     words, at = lanes.cells[case.cell.key], row * case.cell.step + case.cell.index
-    left = words[at]
+    left = int(words[at])
     words[at] = 0
     _zero(lanes, case.cell.lane, row, case.start, case.end)
-    if left and case.choice is not None:
-        former: Case = case.choice.cases[left - 1]
-        for birth in former.births:
-            if isinstance(birth, FixedArray):
-                lanes.waste(birth.lane, birth.length)
+    for birth in case.siblings[left - 1].births if left and case.siblings else ():
+        if isinstance(birth, FixedArray):
+            lanes.waste(birth.lane, birth.length)
 
 
 def clear(lanes: Lanes, entry: Entry, row: int) -> None:

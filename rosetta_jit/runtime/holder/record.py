@@ -67,6 +67,11 @@ class Case:
     choice: Choice | None = None
     label: int = 0
 
+    @property
+    def siblings(self) -> list[Case]:
+        """All cases of the union, where a discriminator tells them."""
+        return self.choice.cases if self.choice is not None else []
+
 
 @dataclass(slots=True, eq=False, repr=False)
 class Choice:
@@ -75,7 +80,7 @@ class Choice:
     tag: Cell
     type: Type
     union: Union
-    cases: list[Case] = field(default_factory=list[Case])
+    cases: list[Case] = field(default_factory=list["Case"])
 
     def selected(self, value: int) -> int:
         """The number of the case that a value selects, 0 for none."""

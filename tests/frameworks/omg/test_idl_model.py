@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+import rosetta_jit as rj
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.omg.idl import parse, read
+from rosetta_jit.frameworks.omg.idl import parse
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, NamedConstant, Optional, Ref, String, Union
 from rosetta_jit.source import Source
 from tests.frameworks.omg.idl_files import load_from
@@ -45,7 +46,7 @@ def one(text):
         ("double x[3][4];", Array(Array(Float(64, "double"), 4), 3)),
         ("sequence<sequence<long, 2>> x;", Array(Array(Int(32, spelling="long"), maximum=2))),
         ("sequence<long, (8 >> 1)> x;", Array(Int(32, spelling="long"), maximum=4)),
-        ("map<string, long, 5> x;", Map(String("utf-8", "string"), Int(32, spelling="long"))),
+        ("map<string, long, 5> x;", Map(String("utf-8", "string"), Int(32, spelling="long"), 5)),
         ("@optional long x;", Optional(Int(32, spelling="long"))),
         ("@optional(FALSE) long x;", Int(32, spelling="long")),
         ("sequence<S> x;", Array(Ref("S"))),
@@ -142,7 +143,6 @@ def test_interfaces_are_scopes_of_types():
         "sequence<I> x;",
         "Cookie x;",
         "map<long, T> x;",
-        "Small x;",
         "sequence<Q, 2> x[3];",
         "@optional V x;",
         "Flags x;",
@@ -150,16 +150,22 @@ def test_interfaces_are_scopes_of_types():
 )
 def test_what_has_no_model_is_left_out(text):
     before = """interface I { }; native Cookie; typedef any T; struct Q { T y; }; union V switch (long) { case 1: Q z; };
-        bitmask Flags { A, B }; @bit_bound(8) enum Small { X, Y }; const fixed F = 1.5d; struct Fine { long x; };"""
-    reading = read(Source("a.idl", f"{before} struct S {{ {text} }}; struct U {{ sequence<S> s1; }};"), load_from())
-    assert set(reading.schema.types) == {"Fine"}
-    assert {"S", "U", "Q", "V"} <= reading.left_out.keys()
-    assert all(each.code == "unsupported" and each.span for each in reading.left_out.values())
+        bitmask Flags { A, B }; const fixed F = 1.5d; struct Fine { long x; };"""
+    found = parse(Source("a.idl", f"{before} struct S {{ {text} }}; struct U {{ sequence<S> s1; }};"), load_from())
+    assert set(found.types) == {"Fine"}
+    assert {"S", "U", "Q", "V"} <= found.left_out.keys()
+    assert all(each.code == "unsupported" and each.span for each in found.left_out.values())
 
 
-def test_nothing_left_is_an_error():
+def test_asking_for_what_is_left_out_says_why():
     with pytest.raises(SchemaError, match="cannot be represented: it needs `any`"):
-        schema("struct S { any x; };")
+        rj.Decoder.of("S", encoding="cdr", schema={"a.idl": "struct S { any x; };"})
+
+
+def test_bounds_of_enums_and_maps():
+    found = schema("@bit_bound(8) enum Small { X, Y }; struct S { map<long, string, 4> m; };").types
+    assert found["Small"].bits == 8
+    assert found["S"].fields[0].type.maximum == 4
 
 
 def test_names_in_modules_of_rosidl_are_free():
@@ -170,8 +176,10 @@ def test_names_in_modules_of_rosidl_are_free():
     assert [field.name for field in schema(text).types["p::msg::String"].fields] == ["map", "point", "default"]
 
 
-def test_the_dummy_member_of_rosidl_is_dropped():
-    assert schema("struct S { uint8 structure_needs_at_least_one_member; };").types["S"].fields == ()
+def test_the_dummy_member_of_rosidl_stays():
+    """Its byte is on the wire."""
+    (field,) = schema("struct S { uint8 structure_needs_at_least_one_member; };").types["S"].fields
+    assert field.type == Int(8, signed=False, spelling="uint8")
 
 
 def test_includes():
