@@ -21,6 +21,7 @@ from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import lower
 from rosetta_jit.model.layout import Layout, layout
+from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
 from rosetta_jit.wire.codec import Tagged
@@ -227,6 +228,8 @@ def _own_types(build: Build) -> Types:
         assert isinstance(struct, Struct)
         return Types(struct, struct, schema, None)
     schema = _imported(build)
+    if "text" in request.lenient:
+        schema = without_text(schema)
     found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
     if not found:
         why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]

@@ -87,6 +87,13 @@ def unmappable_wire(span: Span | None, name: str) -> Diagnostic:
     return Diagnostic("error", "unmappable-wire", f"`{name}` cannot be the wire of a mapping", span, why, help=help_)
 
 
+def unmappable_field(path: Sequence[str]) -> Diagnostic:
+    """A field of the wire that the walk over a message cannot bind for rules."""
+    name = "." + ".".join(path).replace(".[]", "[]")
+    help_ = "decode it into its own holder, or make it the data holder and the other type the wire"
+    return Diagnostic("error", "unmappable-place", f"rules cannot read or write `{name}` on this wire", help=help_)
+
+
 def unmappable_place(span: Span | None) -> Diagnostic:
     """A field that rules cannot reach, though the types have it."""
     label = "its elements are not all of one size, or it is a whole message"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.catalogue.pipeline import unmappable_field
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
@@ -68,10 +68,14 @@ class WireFields:
     path: Path = ()
     where: Where = MESSAGE
     element: bool = False
+    passing: dict[Path, Expr] = field(default_factory=dict[Path, Expr])
+    outer: WireFields | None = None
 
     def put(self, path: Path, value: Expr) -> None:
         key = self.path + path
-        if not self.element:
+        if self.element:
+            self.passing[path] = self.writer.let(_stem(key, "value"), value)  # what comes later in the element may depend on it
+        else:
             self.found.numbers[key] = self.bind(key, "value", value)
 
     def get(self, path: Path) -> Expr | None:
@@ -79,9 +83,8 @@ class WireFields:
         if key in self.found.numbers:
             return self.found.numbers[key]
         if self.element:
-            return None
-        assert self.supply is not None
-        self.found.numbers[key] = self.bind(key, "value", self.supply.number(key))
+            return self.passing.get(path)
+        self.found.numbers[key] = self.bind(key, "value", self.supplied(key).number(key))
         return self.found.numbers[key]
 
     def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
@@ -91,8 +94,7 @@ class WireFields:
     def size_of(self, path: Path) -> Expr:
         key = self.path + path
         if key not in self.found.counts:
-            assert self.supply is not None
-            self.found.counts[key] = self.bind(key, "count", self.supply.size(key))
+            self.found.counts[key] = self.bind(key, "count", self.supplied(key).size(key))
         return self.found.counts[key]
 
     def stored(self, path: Path, fixed: int | None = None) -> Stored:
@@ -102,8 +104,7 @@ class WireFields:
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
         key = self.path + path
-        assert self.supply is not None
-        source = self.supply.bytes_at(key)
+        source = self.supplied(key).bytes_at(key)
         if source is None:
             self.bind_bytes(key, self.writer.position, stored.size)
         else:
@@ -124,21 +125,26 @@ class WireFields:
             for _, codec in choice.alternatives:
                 self.declare(codec, ())
 
+    def supplied(self, key: Path) -> Supply:
+        """Where an encoding walk gets its values; a decoding one has bound what it could."""
+        if self.supply is None:
+            raise MappingError((unmappable_field(key),))
+        return self.supply
+
     def choose(self, path: Path, number: int) -> None:
-        del path, number
-        raise MappingError((unmappable_place(None),))
+        del number
+        raise MappingError((unmappable_field(path),))
 
     def appear(self, path: Path) -> None:
-        del path
-        raise MappingError((unmappable_place(None),))
+        raise MappingError((unmappable_field(path),))
 
     def present(self, path: Path) -> Expr:
-        del path
-        raise MappingError((unmappable_place(None),))
+        raise MappingError((unmappable_field(path),))
 
     @property
     def scope(self) -> WireFields:
-        return self
+        """An element of which nothing has come is no struct, but an array in an array: its length is told further out."""
+        return self if self.passing or self.outer is None else self.outer.scope
 
     # --- binding -----------------------------------------------------------------------------------------------------
 
@@ -202,7 +208,7 @@ class WireElements:
         return self
 
     def at(self, number: Expr) -> WireFields:
-        return replace(self.parent, path=(*self.key, EACH), where=self.where.element(number), element=True)
+        return replace(self.parent, path=(*self.key, EACH), where=self.where.element(number), element=True, passing={}, outer=self.parent)
 
 
 @dataclass(frozen=True, slots=True)

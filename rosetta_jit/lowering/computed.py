@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.pipeline import unmappable_field
+from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Expr, index
 from rosetta_jit.lowering.arithmetic import align, binary
 from rosetta_jit.lowering.writer import integer
@@ -22,7 +24,8 @@ def evaluate(value: expr.Expr, fields: Fields, writer: Writer, where: Where) -> 
         case expr.Path(_, steps):
             path = tuple(step.name for step in steps if isinstance(step, expr.Member))
             found = fields.get(path)
-            assert found is not None, path
+            if found is None:
+                raise MappingError((unmappable_field(path),))
             return integer(found)
         case expr.Len(path):
             return fields.stored(tuple(step.name for step in path.steps if isinstance(step, expr.Member))).size

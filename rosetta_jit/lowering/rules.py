@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never, cast
 
-from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.catalogue.pipeline import unmappable_field, unmappable_place
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, Wire, add, index
 from rosetta_jit.lowering import typed
@@ -152,7 +152,10 @@ class Supplies:
 
     def rule(self, path: Path) -> typed.Rule:
         """The rule that sets a field, or its length."""
-        return next(rule for rule in self.rules if isinstance(rule, typed.Assign | typed.SetLength) and wire_key(rule.place) == (path, []))
+        for rule in self.rules:
+            if isinstance(rule, typed.Assign | typed.SetLength) and wire_key(rule.place) == (path, []):
+                return rule
+        raise MappingError((unmappable_field(path),))
 
     def here(self, rule: typed.Rule) -> Values:
         return replace(self.values, where=Where(_shown(rule))).at_rule(rule.span)

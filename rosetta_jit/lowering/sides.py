@@ -164,7 +164,8 @@ class WireSide:
         key, indices = wire_key(place)
         if not indices:
             found = self.root.get(key)
-            assert found is not None, key
+            if found is None:
+                raise MappingError((unmappable_place(place.span),))
             return found
         region, at = self.element(key, indices, values, place.span)
         return Load(region.scalar, at, ">" if region.order == ">" else "<")

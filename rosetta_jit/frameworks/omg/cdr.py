@@ -230,8 +230,7 @@ class _Rules:
             if self.encoding != "cdr-giop":
                 raise SchemaError((words.no_wide_strings(field.span, field.name),))
             return self.counted(Utf16(path, replace(self.count(string.maximum), unit=2)))
-        text = string.encoding == "utf-8" and "text" not in self.lenient
-        return self.counted(Blob(path, self.count(string.maximum), text=text, terminated=True))
+        return self.counted(Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True))
 
     def counted(self, codec: Codec) -> Codec:
         return self.aligned(codec, 4)

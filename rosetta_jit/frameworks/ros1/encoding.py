@@ -41,8 +41,8 @@ class _Messages:
                 return Repeat(path, _count(resolved), self.value(element, ()))
             case Bytes():
                 return Blob(path, _count(resolved))
-            case String(_, _, maximum):
-                return Blob(path, Count("u32", maximum=maximum), text="text" not in self.lenient)
+            case String(encoding, _, maximum):
+                return Blob(path, Count("u32", maximum=maximum), text=encoding == "utf-8")
             case Bool():
                 return Number(path, "bool") if "bool" in self.lenient else Table(path, "u8", BOOLEANS)
             case Int(bits, signed):
