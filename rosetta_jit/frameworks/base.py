@@ -13,6 +13,7 @@ from rosetta_jit.model.types import name_parts
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosetta_jit.frameworks.features import Probes
     from rosetta_jit.frontend.idl import FrontEnd
     from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.runtime.holder import Manners
@@ -66,6 +67,8 @@ class Framework:
         For each encoding, what it can be asked to forgive: a name, and the peer that needs it.
     byte_orders
         Encodings whose byte order can be chosen.
+    features
+        Probes of what its IDLs can describe: see `rosetta_jit.frameworks.features`.
     """
 
     name: str
@@ -75,6 +78,11 @@ class Framework:
     files: tuple[str, ...] = ()
     leniencies: Mapping[str, Mapping[str, str]] = field(default_factory=dict[str, "Mapping[str, str]"])
     byte_orders: tuple[str, ...] = ()
+    features: str = ""
+
+    def probes(self) -> Probes:
+        """The probes of its features, none where it offers none."""
+        return cast("Probes", _found(self.features)) if self.features else {}
 
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""

@@ -10,30 +10,41 @@ _MESSAGES = f"{_HERE}.protobuf.encoding:encode_type"
 _CDR = f"{_HERE}.omg.cdr:encode_type"
 _OROCOS = f"{_HERE}.orocos.encoding:encode_type"
 _TRUE = "every byte but 0 is true"
+_DDS = {
+    "bool": f"{_TRUE} (Fast CDR)",
+    "text": "bytes that are no UTF-8 are kept (Fast CDR)",
+    "enum": "numbers that the enum does not name are kept (rosbags, Cyclone DDS in Python)",
+    "bounds": "more than a bound allows is read and written (rosbags)",
+    "trailing": "up to three bytes may be left over (payloads padded by Fast DDS)",
+}
 _IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (
     Framework(
         "yarp",
-        idl={".bottle-schema": f"{_HERE}.yarp.schema:parse", ".thrift": f"{_HERE}.yarp.thrift:parse"},
+        features=f"{_HERE}.yarp.features:PROBES",
+        idl={".bottle-schema": f"{_HERE}.yarp.schema:parse"},
         encodings={"yarp": _BOTTLES, "yarp3": _BOTTLES, "yarp4": _BOTTLES, "yarp2012": _BOTTLES},
     ),
     Framework(
         "protobuf",
+        features=f"{_HERE}.protobuf.features:PROBES",
         idl={".proto": f"{_HERE}.protobuf.idl:parse"},
         encodings={"protobuf": _MESSAGES, "protobuf-partial": _MESSAGES},
         manners=f"{_HERE}.protobuf.manners:PROTOBUF",
     ),
     Framework(
         "ros1",
+        features=f"{_HERE}.ros1.features:PROBES",
         idl={".msg": f"{_HERE}.ros1.idl:parse"},
         encodings={"ros1": f"{_HERE}.ros1.encoding:encode_type"},
-        manners=f"{_HERE}.ros1.manners:GENPY",
+        manners="",
         files=("*ros1/*.msg", "*ros1-2012/*.msg"),
         leniencies={"ros1": {"bool": f"{_TRUE} (genpy)", "text": "bytes that are no UTF-8 are kept (roscpp, genpy)"}},
     ),
     Framework(
         "corba",
+        features=f"{_HERE}.corba.features:PROBES",
         idl={".idl": _IDL},
         encodings={"cdr-giop": _CDR},
         manners="",
@@ -50,24 +61,17 @@ FRAMEWORKS = (
     ),
     Framework(
         "ros2",
+        features=f"{_HERE}.ros2.features:PROBES",
         idl={".msg": f"{_HERE}.ros2.idl:parse", ".idl": _IDL},
         encodings={"cdr": _CDR, "cdr2": _CDR},
         manners="",
         files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
-        leniencies=dict.fromkeys(
-            ("cdr", "cdr2"),
-            {
-                "bool": f"{_TRUE} (Fast CDR)",
-                "text": "bytes that are no UTF-8 are kept (Fast CDR)",
-                "enum": "numbers that the enum does not name are kept (rosbags, Cyclone DDS in Python)",
-                "bounds": "more than a bound allows is read and written (rosbags)",
-                "trailing": "up to three bytes may be left over (payloads padded by Fast DDS)",
-            },
-        ),
+        leniencies={"cdr": _DDS, "cdr2": _DDS},
         byte_orders=("cdr", "cdr2"),
     ),
     Framework(
         "lcm",
+        features=f"{_HERE}.lcm.features:PROBES",
         idl={".lcm": f"{_HERE}.lcm.idl:parse"},
         encodings={"lcm": f"{_HERE}.lcm.encoding:encode_type"},
         manners=f"{_HERE}.lcm.manners:LCM_GEN",
@@ -75,6 +79,7 @@ FRAMEWORKS = (
     ),
     Framework(
         "orocos",
+        features=f"{_HERE}.orocos.features:PROBES",
         idl={".hpp": f"{_HERE}.orocos.header:parse", ".h": f"{_HERE}.orocos.header:parse", ".tlb": f"{_HERE}.orocos.typelib:parse"},
         encodings={"rtt-mqueue": _OROCOS, "typelib": _OROCOS, "native": _OROCOS},
         leniencies={each: {"bool": f"{_TRUE} (any C++ compiler)"} for each in ("rtt-mqueue", "typelib", "native")},

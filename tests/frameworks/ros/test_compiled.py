@@ -17,8 +17,6 @@ from rosetta_jit.wire.codec import Blob, Number, Seq, Table
 from tests.frameworks.ros.random_messages import Definitions
 from tests.frameworks.ros.ros_files import alone, ros1_vectors
 
-pytest.importorskip("rosetta_jit.frameworks.ros1.manners")  # without which there are no holders
-
 BACKENDS = ["numba", "python", "interpreter"]
 TYPES = sorted({record["type"] for record in ros1_vectors()["records"]})
 LENIENT = next(each for each in FRAMEWORKS if each.name == "ros1").leniencies.get("ros1", {})

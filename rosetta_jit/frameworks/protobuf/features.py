@@ -1,0 +1,41 @@
+"""What `.proto` files can say."""
+
+from __future__ import annotations
+
+from rosetta_jit.frameworks.features import Probe
+
+
+def message(fields: str, *, syntax: str = "proto3", more: str = "") -> str:
+    """A message of some fields."""
+    return f'syntax = "{syntax}"; package probe; {more} message Probe {{ {fields} }}'
+
+
+PROBES = {
+    ".proto": {
+        "boolean": message("bool x = 1;"),
+        "int32": message("int32 x = 1;"),
+        "int64": message("int64 x = 1;"),
+        "uint32": message("uint32 x = 1;"),
+        "uint64": message("uint64 x = 1;"),
+        "float32": message("float x = 1;"),
+        "float64": message("double x = 1;"),
+        "string, UTF-8": message("string x = 1;"),
+        "blob": message("bytes x = 1;"),
+        "array, variable": message("repeated double x = 1;"),
+        "struct": message("Point x = 1;", more="message Point { double x = 1; }"),
+        "oneof": message("oneof x { double d = 1; int32 i = 2; }"),
+        "enum": message("Color x = 1;", more="enum Color { RED = 0; }"),
+        "optional": message("optional int32 x = 1;"),
+        "required": message("required int32 x = 1;", syntax="proto2"),
+        "default": message("optional int32 x = 1 [default = 7];", syntax="proto2"),
+        "map": message("map<int32, double> x = 1;"),
+        "recursion": message("repeated Probe x = 1;"),
+        "namespace": message("int32 x = 1;"),
+        "import": Probe(
+            'syntax = "proto3"; package probe; import "point.proto"; message Probe { Point x = 1; }',
+            {"point.proto": 'syntax = "proto3"; package probe; message Point { double x = 1; }'},
+        ),
+        "extension": message("optional int32 x = 1; extensions 100 to 200;", syntax="proto2").replace("} }", "}", 1)
+        + " extend Probe { optional int32 y = 100; }",
+    }
+}
