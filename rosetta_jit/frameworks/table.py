@@ -38,7 +38,7 @@ FRAMEWORKS = (
         features=f"{_HERE}.ros1.features:PROBES",
         idl={".msg": f"{_HERE}.ros1.idl:parse"},
         encodings={"ros1": f"{_HERE}.ros1.encoding:encode_type"},
-        manners="",
+        manners=f"{_HERE}.ros1.manners:GENPY",
         files=("*ros1/*.msg", "*ros1-2012/*.msg"),
         leniencies={"ros1": {"bool": f"{_TRUE} (genpy)", "text": "bytes that are no UTF-8 are kept (roscpp, genpy)"}},
     ),
@@ -47,7 +47,7 @@ FRAMEWORKS = (
         features=f"{_HERE}.corba.features:PROBES",
         idl={".idl": _IDL},
         encodings={"cdr-giop": _CDR},
-        manners="",
+        manners=f"{_HERE}.corba.manners:OMNIORB",
         leniencies={
             "cdr-giop": {
                 "bool": f"{_TRUE} (omniORB)",
@@ -64,7 +64,7 @@ FRAMEWORKS = (
         features=f"{_HERE}.ros2.features:PROBES",
         idl={".msg": f"{_HERE}.ros2.idl:parse", ".idl": _IDL},
         encodings={"cdr": _CDR, "cdr2": _CDR},
-        manners="",
+        manners=f"{_HERE}.ros2.manners:RCLPY",
         files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
         leniencies={"cdr": _DDS, "cdr2": _DDS},
         byte_orders=("cdr", "cdr2"),

@@ -282,7 +282,7 @@ class Encoding:
 
     ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
-    ``origin`` is where alignment counts from, in bytes behind the begin of the message. So many bytes may be left over at its end: ``spare``.
+    ``origin`` is where alignment counts from, in bytes behind the begin of the message; ``spare`` bytes may be left over at its end.
     """
 
     name: str

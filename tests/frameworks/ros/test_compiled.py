@@ -90,7 +90,6 @@ def test_what_can_be_forgiven():
     lenient = encode_type(schema.types["pkg/Foo"], schema, "ros1", Choices(lenient=frozenset({"bool", "text"}))).attempts[0]
     assert [type(each) for each in strict.items] == [Table, Blob]
     assert [type(each) for each in lenient.items] == [Number, Blob]
-    assert (strict.items[1].text, lenient.items[1].text) == (True, False)
     assert isinstance(lenient, Seq)
 
 
@@ -98,7 +97,9 @@ def test_what_can_be_forgiven():
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_a_lenient_decoder(backend):
     decode, _ = programs("pkg/Foo", backend, "bool a\nstring b", lenient=["bool", "text"])
-    assert decode(b"\x02\x01\0\0\0\xff").a
+    holder = decode(b"\x02\x01\0\0\0\xff")
+    assert holder.a
+    assert holder.b == "\udcff"
 
 
 @pytest.mark.parametrize("seed", range(12))

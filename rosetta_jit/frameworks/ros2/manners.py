@@ -1,0 +1,141 @@
+"""Holders that behave as the Python classes that rosidl_generator_py writes do, so that code written against those keeps working.
+
+What differs, and why: sequences of numbers are numpy arrays, not ``array.array``; values of a wrong kind raise TypeError, those out of
+range or beyond a bound ValueError, also where Python runs with ``-O`` and rosidl's assertions are off; and what cannot be decoded raises
+`rosetta_jit.errors.DecodeError`, which says where.
+"""
+
+from __future__ import annotations
+
+import json
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
+
+import numpy as np
+
+from rosetta_jit.errors import RosettaError
+from rosetta_jit.frameworks.ros2.idl import DUMMY
+from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, name_parts
+from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
+from rosetta_jit.runtime.holder.message import View
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.runtime.holder import Family
+
+SPELLED = {"float32": "float", "float64": "double", "bool": "boolean", "byte": "octet", "char": "uint8"}
+"""Words of `.msg` files that IDL has other words for."""
+
+
+class Programs(Protocol):
+    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
+
+    def encode(self, holder: Any) -> bytes:
+        """The bytes of a holder."""
+        ...
+
+    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
+        """Fill a holder from bytes, or add to what it has."""
+        ...
+
+
+class Ros2Message(Holder):
+    """A message of ROS 2. Its constants are attributes of the class; a new one has the defaults of its definition.
+
+    Parameters
+    ----------
+    **fields
+        Values by name.
+    """
+
+    __slots__ = ()
+
+    programs_: ClassVar[Programs | None] = None
+    defaults_: ClassVar[dict[str, Any]] = {}
+    fields_: ClassVar[dict[str, str]] = {}
+
+    def __init__(self, **fields: Any) -> None:
+        super().__init__()
+        unknown = fields.keys() - self.fields_.keys()
+        if unknown:
+            raise TypeError(f"Invalid arguments passed to constructor: {', '.join(sorted(unknown))}")
+        for name, value in {**self.defaults_, **fields}.items():
+            setattr(self, name, value)
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """The types of all fields, as IDL has them, by name."""
+        return dict(cls.fields_)
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.fields_)
+        return f"{type(self).__module__}.{type(self).__name__}({values})"
+
+
+def serialize_message(message: Any) -> bytes:
+    """A message's bytes, as `rclpy.serialization` makes them.
+
+    Raises
+    ------
+    EncodeError
+        If the message cannot be written.
+    """
+    return _programs(message).encode(deepcopy(message) if isinstance(message, View) else message)
+
+
+def deserialize_message(data: Any, message_type: type[Ros2Message]) -> Any:
+    """The message of some bytes.
+
+    Raises
+    ------
+    DecodeError
+        If they are no message of the type.
+    """
+    message = cast("Any", message_type)()
+    _programs(message).decode_into(data, message, merge=False)
+    return message
+
+
+def _programs(message: Any) -> Programs:
+    if message.programs_ is None:
+        raise RosettaError(f"no decoder or encoder of {message.family_.struct.name} has been compiled")
+    return message.programs_
+
+
+def members(family: Family) -> dict[str, Any]:
+    """What a class has besides its fields: constants, the types of the fields, their defaults."""
+    struct = family.struct
+    fields = [each for each in struct.fields if each.name != DUMMY]
+    return {
+        **{each.name: each.value for each in struct.constants if not hasattr(Ros2Message, each.name)},
+        "fields_": {each.name: spelled(each.type) for each in fields},
+        "defaults_": {each.name: _default(each) for each in fields if _default(each) is not None},
+    }
+
+
+def _default(field: Field) -> Any:
+    several = field.option("default")
+    return json.loads(several) if isinstance(several, str) else field.default
+
+
+def spelled(type_: Type) -> str:
+    """A type as rosidl names it."""
+    match type_:
+        case Ref(name):
+            return "/".join(name_parts(name))
+        case String(encoding, _, maximum):
+            return ("wstring" if encoding == "utf-16" else "string") + (f"<{maximum}>" if maximum is not None else "")
+        case Array(element, length, maximum) | Bytes(element, length, maximum):
+            inner = SPELLED.get(element, element) if isinstance(element, str) else spelled(element)
+            if length is not None:
+                return f"{inner}[{length}]"
+            return f"sequence<{inner}>" if maximum is None else f"sequence<{inner}, {maximum}>"
+        case Optional(value):
+            return spelled(value)
+        case _:
+            word = getattr(type_, "spelling", "")
+            return SPELLED.get(word, word)
+
+
+RCLPY = Manners(Ros2Message, np.ndarray, PLAIN.sequence, PLAIN.mapping, assigns_whole=True, members=members, serialising=("ros2", "cdr"))
+"""The manners of rosidl's classes."""
