@@ -146,7 +146,7 @@ FEATURES: Mapping[str, Asked] = {
     "required": lambda struct, _: any(each.required for each in struct.fields),
     "default": lambda struct, _: any(each.default is not None for each in struct.fields),
     "map": _mentions(lambda each: isinstance(each, Map)),
-    "set": _never,
+    "set": lambda struct, _: any(each.option("set") for each in struct.fields),
     "constant": lambda struct, schema: bool(struct.constants or schema.constants or any(each.constant for each in struct.fields)),
     "recursion": lambda struct, schema: bool(recursive_structs(Ref(struct.name), schema)),
     "inheritance": lambda struct, _: len(struct.fields) > 1,

@@ -23,7 +23,7 @@ FRAMEWORKS = (
     Framework(
         "yarp",
         features=f"{_HERE}.yarp.features:PROBES",
-        idl={".bottle-schema": f"{_HERE}.yarp.schema:parse"},
+        idl={".bottle-schema": f"{_HERE}.yarp.schema:parse", ".thrift": f"{_HERE}.yarp.thrift:parse"},
         encodings={"yarp": _BOTTLES, "yarp3": _BOTTLES, "yarp4": _BOTTLES, "yarp2012": _BOTTLES},
     ),
     Framework(

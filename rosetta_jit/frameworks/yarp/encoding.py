@@ -13,10 +13,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.catalogue.thrift import endless
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, DICT, LIST, YARP3, YARP4, YARP2012, Dialect
+from rosetta_jit.frameworks.yarp.thrift_encoding import Thrift
 from rosetta_jit.model import expr
-from rosetta_jit.model.layout import map_entry
+from rosetta_jit.model.layout import map_entry, recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Constant, Count, Encoding, Number, Padding, Path, Repeat, Seq, Table
 
@@ -48,7 +50,7 @@ def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) 
         If the dialect has no tag for a type of the schema.
     """
     if dialect != "yarp":
-        return Encoding(dialect, _forms(struct, schema, DIALECTS[dialect]), _Bottles(schema, DIALECTS[dialect]).message(struct))
+        return Encoding(dialect, _forms(struct, schema, DIALECTS[dialect]), _message(struct, schema, DIALECTS[dialect]))
     usable = [each for each in (YARP2012, YARP3, YARP4) if not _missing(struct, schema, each)]
     if not usable:
         return encode_type(struct, schema, "yarp4", choices)
@@ -61,14 +63,24 @@ def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) 
 
 def _forms(struct: Struct, schema: Schema, dialect: Dialect) -> tuple[Codec, ...]:
     """The form that YARP writes, then whatever it reads."""
+    if struct.option("thrift"):
+        return (_message(struct, schema, dialect),)
     expected = _Bottles(schema, dialect, exact=True).message(struct)
     general = _Bottles(schema, dialect).message(struct)
     return (expected, general) if expected != general else (general,)
 
 
+def _message(struct: Struct, schema: Schema, dialect: Dialect) -> Codec:
+    if not struct.option("thrift"):
+        return _Bottles(schema, dialect).message(struct)
+    for name in sorted(recursive_structs(Ref(struct.name), schema)):
+        raise SchemaError((endless(schema.types[name].span, name),))
+    return Thrift(schema, dialect).message(struct)
+
+
 def _missing(struct: Struct, schema: Schema, dialect: Dialect) -> bool:
     try:
-        _Bottles(schema, dialect).message(struct)
+        _message(struct, schema, dialect)
     except SchemaError:
         return True
     return False

@@ -1,0 +1,2 @@
+/* never closed
+struct S { 1: i32 x }

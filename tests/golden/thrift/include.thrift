@@ -1,0 +1,2 @@
+include "missing.thrift"
+struct S { 1: i32 x }
