@@ -33,7 +33,7 @@ from rosetta_jit.kernel.ir import (
     type_of,
 )
 from rosetta_jit.lowering.writer import MAX_SIZE, MESSAGE, Where, Writer
-from rosetta_jit.model.layout import Layout, Member, Number, Row, Slot, Span, Variant
+from rosetta_jit.model.layout import UNKNOWN, Layout, Member, Number, Row, Slot, Span, Variant
 
 if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Choice, Codec, Path
@@ -298,6 +298,8 @@ def root_fields(writer: Writer, layout: Layout, *, borrow: bool = False) -> Hold
 def member_of(slot: Slot, name: str) -> Member:
     """A field of a row, or a case of a union."""
     match slot:
+        case Row(unknown=Span() as unknown) if name == UNKNOWN:
+            return Member(UNKNOWN, unknown)
         case Row(members=members) | Variant(members=members):
             return next(member for member in members if member.name == name)
         case _:

@@ -44,10 +44,10 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.unknown import skip_unknown
-from rosetta_jit.lowering.varint import from_varint, read_varint
+from rosetta_jit.lowering.varint import from_varint, read_varint, varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
-from rosetta_jit.model.layout import Row, Slot, Span, Variant
 from rosetta_jit.wire.codec import Blob, Entry, Number, Path, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:
@@ -105,17 +105,18 @@ def _presence_words(writer: Writer, fields: HolderFields, *, fresh: bool) -> tup
 
 def _array_starts(writer: Writer, fields: HolderFields, tagged: Tagged, *, fresh: bool) -> dict[Path, Local]:
     starts: dict[Path, Local] = {}
-    for entry in tagged.entries:
-        if entry.label != "single":
-            span = span_of(fields.find(entry.path))
+    kept = [(UNKNOWN,)] if _row(fields).unknown is not None else []
+    for path in (*kept, *(entry.path for entry in tagged.entries if entry.label != "single")):
+        if path not in starts:
+            span = span_of(fields.find(path))
             used = Used(span.lane)
             start: Expr = used
             if not fresh:
                 known = writer.let("start", Get("i64", fields.cell.place(span.offset)))
                 sane = Binary("and", Compare("ge", known, index(0)), Compare("le", known, used))
-                writer.expect(sane, "length", fields.where.members(entry.path), "the holder is damaged")
+                writer.expect(sane, "length", fields.where.members(path), "the holder is damaged")
                 start = Select(Compare("eq", Get("i64", fields.cell.place(span.offset + 8)), index(0)), used, known)
-            starts[entry.path] = writer.let("first", start)
+            starts[path] = writer.let("first", start)
     return starts
 
 
@@ -137,19 +138,21 @@ def _finish(message: Message) -> None:
 
 def _read_field(message: Message, ended: Local | None) -> None:
     writer, where = message.writer, message.fields.where
+    begin = writer.position
     tag = writer.let("tag", Convert("i64", read_varint(writer, where)))
     after = writer.var("next", writer.position)
     cases: list[tuple[int, tuple[Stmt, ...]]] = []
     for entry in message.tagged.entries:
         for wire in _wires(entry):
             with writer.nested() as body:
-                _read_entry(message, entry, packed=wire == 2 and entry.wire != 2)
+                _read_entry(message, entry, begin, packed=wire == 2 and entry.wire != 2)
                 writer.assign(after, writer.position)
             cases.append((entry.number << 3 | wire, block(body)))
     if ended is not None and message.tagged.group is not None:
         cases.append((message.tagged.group << 3 | END_GROUP, (Assign(ended.name, Const("bool", value=True)),)))
     with writer.nested() as unknown:
         skip_unknown(writer, message.fields, tag, message.stop)
+        _keep(message, begin)
         writer.assign(after, writer.position)
     writer.emit(Switch(tag, tuple(cases), block(unknown)))
     writer.position = after
@@ -160,19 +163,33 @@ def _wires(entry: Entry) -> tuple[int, ...]:
     return (entry.wire, 2) if entry.label != "single" and entry.wire in (0, 1, 5) else (entry.wire,)
 
 
-def _read_entry(message: Message, entry: Entry, *, packed: bool) -> None:
+def _read_entry(message: Message, entry: Entry, begin: Expr, *, packed: bool) -> None:
     if packed:
         _read_packed(message, entry)
     elif entry.label == "single":
-        _read_single(message, entry)
+        _read_single(message, entry, begin)
     else:
-        _read_element(message, entry)
+        _read_element(message, entry, begin)
+
+
+def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
+    """Append what was read since then to the unknown fields of the message, behind a tag if it had none of its own."""
+    unknown = _row(message.fields).unknown
+    if unknown is None:
+        return
+    writer = message.writer
+    size = writer.let("size_of_field", Binary("sub", writer.position, begin))
+    writer.expect(Compare("ge", size, index(0)), "length", message.fields.where, "a field goes beyond its message")  # said for the proof
+    start = message.fields.reserve(unknown.lane, add(size, len(tag)))
+    for number, byte in enumerate(tag):
+        writer.emit(SetField(Place(unknown.lane, add(start, number)), Const("u8", byte)))
+    writer.emit(Copy(Place(unknown.lane, add(start, len(tag))), Wire(begin), size))
 
 
 # --- one value ---------------------------------------------------------------------------------------------------------------
 
 
-def _read_single(message: Message, entry: Entry) -> None:
+def _read_single(message: Message, entry: Entry, begin: Expr) -> None:
     writer, fields, where = message.writer, message.fields, message.fields.where.members(entry.path)
     match entry.value:
         case Number(_, scalar, order):
@@ -184,7 +201,7 @@ def _read_single(message: Message, entry: Entry) -> None:
             with writer.nested() as known:
                 _mark(message, entry.path)
                 _set(fields, entry.path, value)
-            _if_allowed(writer, entry, value, known)
+            _if_allowed(message, entry, value, known, begin)
         case Blob(_, _, text, _):
             start, size = _read_bytes(message, fields, span_of(fields.find(entry.path)), where, text=text)
             _mark(message, entry.path)
@@ -210,8 +227,9 @@ def _varint_value(message: Message, varint: Varint, slot: Slot, where: Where) ->
     return message.writer.let("value", value if scalar == "bool" else converted(value, scalar))
 
 
-def _if_allowed(writer: Writer, entry: Entry, value: Local, known: list[Stmt]) -> None:
+def _if_allowed(message: Message, entry: Entry, value: Local, known: list[Stmt], begin: Expr, tag: bytes = b"") -> None:
     """A number that a closed enum does not name counts as an unknown field."""
+    writer = message.writer
     if not entry.allowed:
         writer.emit(*known)
         return
@@ -223,7 +241,9 @@ def _if_allowed(writer: Writer, entry: Entry, value: Local, known: list[Stmt]) -
         allowed = Compare("eq", number, index(low))
         for each in entry.allowed[1:]:
             allowed = Binary("or", allowed, Compare("eq", number, index(each)))
-    writer.emit(If(allowed, block(known)))
+    with writer.nested() as unknown:
+        _keep(message, begin, tag)
+    writer.emit(If(allowed, block(known), block(unknown)))
 
 
 def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where, *, text: bool) -> tuple[Expr, Expr]:
@@ -290,8 +310,8 @@ def slot_end(slot: Slot) -> int:
             return offset + WIDTH[scalar]
         case Span(offset, _):
             return offset + 16
-        case Row(offset, _, words, members):
-            return max([offset + 8 * words, *(slot_end(member.slot) for member in members)])
+        case Row(offset, _, _, members):
+            return max([offset + slot.head_bytes, *(slot_end(member.slot) for member in members)])
         case Variant(offset, members):
             return max([offset + 8, *(slot_end(member.slot) for member in members)])
 
@@ -305,7 +325,7 @@ def _set(fields: HolderFields, path: Path, value: Local) -> None:
 # --- arrays ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_element(message: Message, entry: Entry) -> None:
+def _read_element(message: Message, entry: Entry, begin: Expr) -> None:
     """One more element at the end of its lane."""
     writer, fields = message.writer, message.fields
     lane = _lane(fields, entry.path)
@@ -318,7 +338,7 @@ def _read_element(message: Message, entry: Entry) -> None:
             value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
             with writer.nested() as known:
                 _append(message, lane, value)
-            _if_allowed(writer, entry, value, known)
+            _if_allowed(message, entry, value, known, begin)
         case Blob(_, _, text, _):
             span = fields.layout.lanes[lane].element
             assert isinstance(span, Span)
@@ -390,7 +410,7 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
         value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
         with writer.nested() as known:
             _append(message, lane, value)
-        _if_allowed(writer, entry, value, known)
+        _if_allowed(message, entry, value, known, at, varint_bytes(entry.number << 3))
         writer.expect(Compare("le", writer.position, stop), "truncated", where, "the last number goes beyond the array")
         writer.assign(at, writer.position)
     start = message.starts[entry.path]

@@ -38,8 +38,8 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.varint import to_varint, varint_bytes, write_varint
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block
+from rosetta_jit.model.layout import UNKNOWN, Row, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
-from rosetta_jit.model.layout import Row, Span, Variant
 from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:
@@ -74,6 +74,20 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
         writer.emit(If(there, block(body)))
         writer.position = after
         _settle(writer, fields, lengths)
+    _write_unknown(writer, fields)
+
+
+def _write_unknown(writer: Writer, fields: HolderFields) -> None:
+    """The fields that reading did not know, as they came."""
+    row = fields.cell.slot
+    if not isinstance(row, Row) or row.unknown is None:
+        return
+    where = fields.where.member(UNKNOWN)
+    start, size = fields.read_span(fields.find((UNKNOWN,)), where)
+    writer.require(size, where, "no room for the message")
+    if writer.direction == "encode":
+        writer.emit(Copy(Wire(writer.position), Place(row.unknown.lane, start), size))
+    writer.advance(size)
 
 
 def _settle(writer: Writer, fields: HolderFields, lengths: Lengths) -> None:
@@ -153,10 +167,31 @@ def _write_value(writer: Writer, fields: HolderFields, entry: Entry, cell: Cell,
         case Tagged() as tagged:
             inner = HolderFields(writer, fields.layout, cell, where)
             _delimited(writer, where, lengths, lambda: write_message(writer, inner, tagged, lengths))
+        case Recursion() as recursion if isinstance(cell.slot, Span) and present(fields, entry) is None:
+            _write_perhaps(writer, fields, cell, recursion, where, lengths)
         case Recursion() as recursion:
             lengths.write_child(writer, fields, _child(fields, cell, where), recursion, where)
         case _:
             raise AssertionError(entry)
+
+
+def _write_perhaps(writer: Writer, fields: HolderFields, cell: Cell, recursion: Recursion, where: Where, lengths: Lengths) -> None:
+    """The message that a map's entry always has, though it may not have come: then it is empty."""
+    start, count = fields.read_span(cell, where)
+    lane, after = span_of(cell).lane, writer.var("next", writer.position)
+    with writer.nested() as there:
+        writer.expect(Compare("eq", count, index(1)), "length", where, "the holder is damaged")
+        lengths.write_child(writer, fields, Cell(lane, start, fields.layout.lanes[lane].element), recursion, where)
+        writer.assign(after, writer.position)
+    with writer.nested() as empty:
+        if recursion.group is None:
+            write_varint(writer, Const("u64", 0), where)
+        else:
+            write_tag(writer, recursion.group, 4, where)
+        writer.assign(after, writer.position)
+    writer.emit(If(Compare("gt", count, index(0)), block(there), block(empty)))
+    writer.position = after
+    _settle(writer, fields, lengths)
 
 
 def _child(fields: HolderFields, cell: Cell, where: Where) -> Cell:

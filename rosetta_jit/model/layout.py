@@ -3,7 +3,7 @@
     Layout = Lane+                          lane 0 has one row a message
     Lane   = name, stride, Slot             an array of elements
     Slot   = Number | Span | Row | Variant  at an offset in its row
-    Row    = presence words, Member*        a struct, in place; Member = name, Slot, presence bit
+    Row    = presence words, Span?, Member* a struct, in place; Member = name, Slot, presence bit
     Variant = case, Member*                 a union: 0 for none, else 1 + the index of the case
 
 Everything of variable length (string, bytes, array, map) is a `Span`: the start and the count, two int64, of its elements in a lane of
@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 SPAN_BYTES = 16
 LINK_WORDS = 6
+UNKNOWN = "(unknown)"
+"""The name of the lane of unknown fields; no IDL can give it to a field."""
 MAX_ROW_BYTES, MAX_SLOTS = 1 << 20, 1 << 16
 """Larger rows, and types that unfold to more fields, are refused: no schema of people comes near, hostile ones double at each level."""
 
@@ -72,12 +74,21 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A struct. Its presence words (64 bits each) lie at its start. Offsets of members count from the start of the lane's row."""
+    """A struct. Its presence words (64 bits each) lie at its start. Offsets of members count from the start of the lane's row.
+
+    ``unknown`` are the bytes of fields that the schema does not know, where the struct keeps them (its option ``unknown``).
+    """
 
     offset: int
     struct: str
     presence_words: int
     members: tuple[Member, ...]
+    unknown: Span | None = None
+
+    @property
+    def head_bytes(self) -> int:
+        """Bytes before the members."""
+        return 8 * self.presence_words + (SPAN_BYTES if self.unknown is not None else 0)
 
     def member(self, name: str) -> Member:
         """The member of that name."""
@@ -293,6 +304,10 @@ class _Building:
         words = (bits + 63) // 64
         start = _align(offset, 8) if struct.fields else offset
         behind = start + 8 * words
+        unknown = None
+        if struct.option("unknown"):
+            unknown, behind = self.span(Int(8, signed=False), _align(behind, 8), _join(name, UNKNOWN), _join(key, UNKNOWN))
+            start = unknown.offset - 8 * words
         members: list[Member] = []
         presence = 0
         start_of_key = struct.name if struct.name in self.recursive else key
@@ -300,7 +315,7 @@ class _Building:
             slot, behind = self.slot(each.type, behind, _join(name, each.name), _join(start_of_key, each.name))
             members.append(Member(each.name, slot, presence if isinstance(each.type, Optional) else None))
             presence += isinstance(each.type, Optional)
-        return Row(start, struct.name, words, tuple(members)), behind
+        return Row(start, struct.name, words, tuple(members), unknown), behind
 
     def variant(self, cases: tuple[Field, ...], offset: int, name: str, key: str) -> tuple[Variant, int]:
         start = _align(offset, 8)

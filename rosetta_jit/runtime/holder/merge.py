@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 from rosetta_jit.errors import EncodeError
+from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, writable
@@ -25,6 +26,10 @@ def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
     if depth > values.MAX_DEPTH:
         raise EncodeError("nesting", "", f"messages contain each other more than {values.MAX_DEPTH} deep")
     for name, value in fields.items():
+        if name == UNKNOWN and message.access_.record.unknown is not None:
+            lanes, row = writable(message)
+            values.append_unknown(message.access_.record.unknown, lanes, row, value)
+            continue
         entry = message.access_.record.entries[name]
         if entry.presence is not None or not is_zero(value):
             _merge_field(message, entry, value, depth)

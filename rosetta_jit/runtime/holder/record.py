@@ -184,6 +184,8 @@ class Record:
         Names of the cases of each union; one with a discriminator is named as its field.
     touch : tuple of Presence
         What must be set when something in it is written: its own presence, and that of the records around it in the same row.
+    unknown : Blob or None
+        Fields that were read and that the schema does not know.
     """
 
     struct: str
@@ -193,6 +195,7 @@ class Record:
     touch: tuple[Presence, ...]
     entries: dict[str, Entry] = field(default_factory=dict[str, "Entry"])
     unions: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    unknown: Blob | None = None
 
 
 Spanned = Text | Blob | Numbers | Items | Pairs | Child
@@ -293,6 +296,8 @@ class Tree:
     def _record(self, struct: Struct, slot: Slot, lane: int, touch: tuple[Presence, ...], *, recursive: bool) -> Record:
         assert isinstance(slot, slots.Row)
         record = Record(struct.name, lane, slot.offset, _end(slot), touch)
+        if slot.unknown is not None:
+            record.unknown = Blob(self._cell(lane, slot.unknown.offset, "i64"), slot.unknown.lane)
         if recursive:
             self.recursive[lane] = record
         choices = self._choices(struct, slot, lane)
@@ -383,8 +388,8 @@ def _end(slot: Slot) -> int:
             return offset + _SIZE[scalar]
         case slots.Span(offset, _):
             return offset + slots.SPAN_BYTES
-        case slots.Row(offset, _, words, members):
-            return max([offset + 8 * words, *(_end(member.slot) for member in members)])
+        case slots.Row(offset, _, _, members):
+            return max([offset + slot.head_bytes, *(_end(member.slot) for member in members)])
         case slots.Variant(offset, members):
             return max([offset + 8, *(_end(member.slot) for member in members)])
         case _:

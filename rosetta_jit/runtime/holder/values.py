@@ -11,6 +11,7 @@ from enum import Enum as Enumeration
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 from rosetta_jit.errors import EncodeError, ValuesError
+from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, grid
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
@@ -74,14 +75,17 @@ def read(node: Node, lanes: Lanes, row: int, form: Form, depth: int = 0) -> Any:
 
 
 def read_record(record: Record, lanes: Lanes, row: int, form: Form, depth: int = 0) -> dict[str, Any]:
-    """The fields of a record that are present."""
+    """The fields of a record that are present; between holders also those that the schema does not know, as bytes."""
     if depth > MAX_DEPTH:
         raise EncodeError("nesting", "", f"messages contain each other more than {MAX_DEPTH} deep")
-    return {
+    found = {
         entry.name: read(entry.node, lanes, row, form, depth + 1)
         for entry in record.entries.values()
         if arena.present(lanes, entry.presence, row)
     }
+    if form is Form.RAW and record.unknown is not None and arena.span_of(lanes, record.unknown.span, row)[1]:
+        found[UNKNOWN] = bytes(arena.content(lanes, record.unknown.span, record.unknown.lane, row))
+    return found
 
 
 def _named(type_: ScalarType, value: Any) -> Any:
@@ -134,10 +138,19 @@ def write_record(record: Record, lanes: Lanes, row: int, values: Any, path: str 
     if depth > MAX_DEPTH:
         raise ValuesError(path, f"messages contain each other more than {MAX_DEPTH} deep")
     for name, value in _mapping(values, path).items():
+        if name == UNKNOWN and record.unknown is not None:
+            append_unknown(record.unknown, lanes, row, value)
+            continue
         entry = record.entries.get(name)
         if entry is None:
             raise ValuesError(f"{path}.{name}", f"{record.struct or 'the record'} has no such field")
         write_entry(entry, lanes, row, value, path, depth=depth)
+
+
+def append_unknown(node: Blob, lanes: Lanes, row: int, data: bytes) -> None:
+    """Add fields that the schema does not know to those of a record."""
+    known = bytes(arena.content(lanes, node.span, node.lane, row))
+    arena.replace(lanes, node, row, known + data)
 
 
 def write_entry(entry: Entry, lanes: Lanes, row: int, value: Any, path: str = "", *, depth: int = 0) -> None:

@@ -44,6 +44,10 @@ def enum(entry: DeclaredEnum) -> model.Enum:
     return model.Enum(entry.full, values, closed=entry.version == "proto2", span=entry.enum.name.span)
 
 
+KEEPS_UNKNOWN = (("unknown", True),)
+"""The option of a struct whose messages keep fields that the schema does not know."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Builder:
     declared: Declarations
@@ -53,7 +57,7 @@ class _Builder:
         message = entry.message
         own = tuple(self.member(entry, member) for member in message.members)
         added = tuple(self.extension(extension) for extension in self.extensions.get(entry.full, ()))
-        return model.Struct(entry.full, own + added, doc=message.doc, span=message.name.span)
+        return model.Struct(entry.full, own + added, doc=message.doc, span=message.name.span, options=KEEPS_UNKNOWN)
 
     def member(self, entry: DeclaredMessage, member: Field | Oneof) -> model.Field:
         match member:
