@@ -7,7 +7,7 @@ OUTPUT ?= demo-output
 NATIVE := build/native/libpeers.so
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check campaign bench bench-check clean
+.PHONY: help demo test check campaign conformance bench bench-check clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -25,6 +25,9 @@ check: $(VENV)/.test ## lint and check types alone
 
 campaign: $(VENV)/.test ## the long runs of the test programme (hours)
 	$(BIN)/python -m pytest -m campaign $(ARGS)
+
+conformance: $(VENV)/.test ## protobuf's own conformance suite; CONFORMANCE_TEST_RUNNER and CONFORMANCE_PROTOS name its program and schemas
+	$(BIN)/python -m pytest tests/conformance $(ARGS)
 
 bench: $(VENV)/.test $(NATIVE) ## measure, print the table of targets and ratios; missed targets are marked
 	$(BIN)/python -m pytest bench --bench-report $(ARGS)

@@ -9,12 +9,11 @@ from rosetta_jit.cli.arguments import Commands, add_command
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Mapping
-
     from rosetta_jit.frameworks.base import Framework
-    from rosetta_jit.frameworks.features import Finding
+    from rosetta_jit.frameworks.features import Table
 
-SIGNS = {"yes": "yes", "gap": "gap", "none": "-"}
+SIGNS = {"yes": "yes", "read": "read", "gap": "gap", "none": "-"}
+LEGEND = "yes: both ways   read: not written   gap: the framework has it, we do not   -: the framework does not have it"
 
 
 def add(commands: Commands) -> None:
@@ -46,6 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _plain(framework: Framework) -> dict[str, object]:
     return {
         "idl": list(framework.idl),
+        "manners": _manners(framework),
         "encodings": {
             name: {"byte_order": name in framework.byte_orders, "lenient": dict(framework.leniencies.get(name, {}))}
             for name in framework.encodings
@@ -59,33 +59,44 @@ def _described(framework: Framework) -> str:
         order = "  byte_order=little|big" if name in framework.byte_orders else ""
         lines.append(f"  encoding   {name}{order}")
         lines += [f"    lenient  {each}: {why}" for each, why in framework.leniencies.get(name, {}).items()]
-    return "\n".join(lines)
+    return "\n".join([*lines, f"  holders    {_manners(framework)}"])
+
+
+def _manners(framework: Framework) -> str:
+    """Whose holders they are like."""
+    return framework.manners.rpartition(":")[2].lower().replace("_", "-") or "plain"
 
 
 def _features(frameworks: list[Framework], *, as_json: bool) -> None:
     from rosetta_jit.frameworks.features import findings
 
-    tables = {each.name: findings(each, each.probes()) for each in frameworks}
+    tables = {each.name: findings(each) for each in frameworks}
     if as_json:
         print(json.dumps({name: _plain_table(table) for name, table in tables.items()}, indent=2))
     else:
-        print("\n\n".join(_table(name, table) for name, table in tables.items()))
+        print("\n\n".join([*(_table(name, table) for name, table in tables.items() if _shown(table)), LEGEND]))
 
 
-def _plain_table(table: Mapping[str, Mapping[str, Finding]]) -> dict[str, dict[str, dict[str, str]]]:
+def _plain_table(table: Table) -> dict[str, dict[str, dict[str, str]]]:
     return {
         feature: {column: {"state": each.state, **({"note": each.note} if each.note else {})} for column, each in row.items()}
         for feature, row in table.items()
     }
 
 
-def _table(name: str, table: Mapping[str, Mapping[str, Finding]]) -> str:
-    """Only features that the framework has; gaps with what stands in the way below."""
-    shown = {feature: row for feature, row in table.items() if any(each.state != "none" for each in row.values())}
+def _shown(table: Table) -> Table:
+    """Only features that the framework has."""
+    return {feature: row for feature, row in table.items() if any(each.state != "none" for each in row.values())}
+
+
+def _table(name: str, table: Table) -> str:
+    """What stands in the way is below: one line for what is the same in several columns."""
+    shown = _shown(table)
     columns = list(next(iter(table.values())))
-    first = max(map(len, shown))
-    lines = [name.ljust(first) + "".join(f"  {column}" for column in columns)]
+    first = max(map(len, (name, *shown)))
+    lines = [name.ljust(first) + "".join(f"  {column.ljust(4)}" for column in columns)]
     for feature, row in shown.items():
-        lines.append(feature.ljust(first) + "".join(f"  {SIGNS[row[column].state].ljust(len(column))}" for column in columns).rstrip())
-    notes = {each.note: f"  gap: {feature}: {each.note}" for feature, row in shown.items() for each in row.values() if each.note}
-    return "\n".join(line.rstrip() for line in (*lines, *notes.values()))
+        lines.append(feature.ljust(first) + "".join(f"  {SIGNS[row[column].state].ljust(max(4, len(column)))}" for column in columns))
+    notes = {(feature, each.note): each.state for feature, row in shown.items() for each in row.values() if each.note}
+    lines += [f"  {SIGNS[state]}: {feature}: {note}" for (feature, note), state in notes.items()]
+    return "\n".join(line.rstrip() for line in lines)

@@ -12,6 +12,7 @@ import os
 import struct
 import sys
 from functools import cache
+from pathlib import Path
 
 import rosetta_jit as rj
 
@@ -97,7 +98,7 @@ def main():
         sys.stdout.buffer.write(struct.pack("<I", len(response)) + response)
         sys.stdout.buffer.flush()
         if record:
-            with open(record, "a", encoding="ascii") as file:
+            with Path(record).open("a", encoding="ascii") as file:
                 file.write(f"{data.hex()} {response.hex()}\n")
 
 

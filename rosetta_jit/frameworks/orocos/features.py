@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from rosetta_jit.frameworks.features import Probe
 
+INCLUDES = "".join(f"#include <{name}>\n" for name in ("cstdint", "string", "vector"))
 
-def struct(members: str, before: str = "") -> str:
+
+def struct(members: str, before: str = "", include: str = "") -> str:
     """A header with a struct of some members."""
-    return f"#include <vector>\n#include <string>\n#include <cstdint>\nnamespace probe {{ {before} struct Probe {{ {members} }}; }}"
+    more = f"#include <{include}>\n" if include else ""
+    return f"{INCLUDES}{more}namespace probe {{ {before} struct Probe {{ {members} }}; }}"
 
 
 HEADER: dict[str, str | Probe] = {
@@ -17,54 +20,79 @@ HEADER: dict[str, str | Probe] = {
     "float64": struct("double x;"),
     "long double": struct("long double x;"),
     "character": struct("char x;"),
-    "wide character": struct("wchar_t x;"),
+    "wide character": struct("char16_t x;"),
     "string, unchecked": struct("std::string x;"),
+    "string, UTF-16": struct("std::u16string x;"),
+    "string, fixed": struct("char x[16];"),
     "blob": struct("std::vector<unsigned char> x;"),
     "blob, fixed": struct("unsigned char x[16];"),
     "array, fixed": struct("double x[9];"),
     "array, variable": struct("std::vector<double> x;"),
-    "array, multi-dimensional": struct("double x[3][4];"),
+    "array, several fixed dimensions": struct("double x[3][4];"),
     "array of arrays": struct("std::vector<std::vector<double>> x;"),
     "struct": struct("Point p;", "struct Point { double x, y; };"),
     "oneof": struct("union { int i; double d; } x;"),
-    "enum": struct("Color c;", "enum Color { RED, GREEN };"),
-    "map": Probe("#include <map>\nnamespace probe { struct Probe { std::map<int, double> x; }; }"),
+    "enum, open": struct("Color c;", "enum Color { RED, GREEN };"),
+    "bit set": struct("unsigned x : 3;"),
+    "default": struct("int x = 5;"),
+    "map": struct("std::map<int, double> x;", include="map"),
+    "set": struct("std::set<int> x;", include="set"),
+    "constant": struct("static const int LIMIT = 5; int x;"),
     "recursion": struct("std::vector<Probe> x;"),
-    "inheritance": struct("int y; };  struct Unused { int z;", "struct Base { int x; };").replace(
-        "struct Probe {", "struct Probe : Base {"
-    ),
+    "inheritance": struct("int y;", "struct Base { int x; };").replace("struct Probe {", "struct Probe : Base {"),
     "namespace": struct("int x;"),
     "import": Probe('#include "point.hpp"\nstruct Probe { Point p; };', {"point.hpp": "struct Point { double x; };"}),
+    "time": struct("Time x;", "struct Time { std::int64_t microseconds; };"),
+    "documentation": struct("\n/// where it is\nint x;"),
 }
 
+NUMBERS = {
+    "boolean": ("bool", "uint", 1),
+    **{f"int{bits}": (f"int{bits}_t", "sint", bits // 8) for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": (f"uint{bits}_t", "uint", bits // 8) for bits in (8, 16, 32, 64)},
+    "float32": ("float", "float", 4),
+    "float64": ("double", "float", 8),
+    "character": ("char", "sint", 1),
+}
+"""The numbers of a registry: name, category, bytes."""
 
-def registry(name: str, more: str = "") -> str:
+
+def registry(name: str, *more: str, size: int = 72) -> str:
     """A registry with a struct of one field of a type."""
-    numbers = "".join(
-        f'<numeric name="/{name}" category="{kind}" size="{size}"/>'
-        for name, kind, size in (
-            ("int32_t", "sint", 4),
-            ("double", "float", 8),
-            ("float", "float", 4),
-            ("bool", "uint", 1),
-            ("uint8_t", "uint", 1),
-        )
-    )
-    probe = f'<compound name="/probe/Probe" size="72"><field name="x" type="{name}" offset="0"/></compound>'
-    return f'<?xml version="1.0"?><typelib>{numbers}{more}{probe}</typelib>'
+    numbers = "".join(f'<numeric name="/{word}" category="{kind}" size="{bytes_}"/>' for word, kind, bytes_ in NUMBERS.values())
+    probe = f'<compound name="/probe/Probe" size="{size}"><field name="x" type="{name}" offset="0"/></compound>'
+    return f'<?xml version="1.0"?><typelib>{numbers}{"".join(more)}{probe}</typelib>'
 
+
+def array(of: str, length: int) -> str:
+    """An array in a registry."""
+    return f'<array name="{of}[{length}]" of="{of}" dimension="{length}"/>'
+
+
+def vector(of: str) -> str:
+    """A vector in a registry."""
+    return f'<container name="/std/vector&lt;{of}&gt;" of="{of}" size="24" kind="/std/vector"/>'
+
+
+DOUBLES = "/std/vector&lt;/double&gt;"
 
 REGISTRY: dict[str, str | Probe] = {
-    "int32": registry("/int32_t"),
-    "uint8": registry("/uint8_t"),
-    "float32": registry("/float"),
-    "float64": registry("/double"),
-    "array, fixed": registry("/double[9]", '<array name="/double[9]" of="/double" dimension="9"/>'),
-    "array, variable": registry(
-        "/std/vector&lt;/double&gt;", '<container name="/std/vector&lt;/double&gt;" of="/double" size="24" kind="/std/vector"/>'
+    **{feature: registry(f"/{word}", size=8) for feature, (word, _, _) in NUMBERS.items()},
+    "string, unchecked": registry("/std/string", '<container name="/std/string" of="/char" size="32" kind="/std/string"/>', size=32),
+    "string, fixed": registry("/char[16]", array("/char", 16), size=16),
+    "blob": registry("/std/vector&lt;/uint8_t&gt;", vector("/uint8_t"), size=24),
+    "blob, fixed": registry("/uint8_t[16]", array("/uint8_t", 16), size=16),
+    "array, fixed": registry("/double[9]", array("/double", 9)),
+    "array, variable": registry(DOUBLES, vector("/double"), size=24),
+    "array, several fixed dimensions": registry("/double[4][3]", array("/double", 4), array("/double[4]", 3), size=96),
+    "array of arrays": registry(f"/std/vector&lt;{DOUBLES}&gt;", vector("/double"), vector(DOUBLES), size=24),
+    "struct": registry("/Point", '<compound name="/Point" size="8"><field name="x" type="/double" offset="0"/></compound>', size=8),
+    "enum, open": registry("/Color", '<enum name="/Color"><value symbol="RED" value="0"/></enum>', size=4),
+    "recursion": registry("/std/vector&lt;/probe/Probe&gt;", vector("/probe/Probe"), size=24),
+    "namespace": registry("/int32_t", size=4),
+    "time": registry(
+        "/base/Time", '<compound name="/base/Time" size="8"><field name="microseconds" type="/int64_t" offset="0"/></compound>', size=8
     ),
-    "enum": registry("/Color", '<enum name="/Color"><value symbol="RED" value="0"/></enum>'),
-    "namespace": registry("/int32_t"),
 }
 
 PROBES = {".hpp": HEADER, ".h": HEADER, ".tlb": REGISTRY}

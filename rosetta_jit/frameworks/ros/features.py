@@ -21,4 +21,6 @@ PROBES: dict[str, str | Probe] = {
     "constant": "int32 LIMIT=5\nint32 x",
     "namespace": "int32 x",
     "import": Probe("Point x", POINT),
+    "documentation": "int32 x # where it is",
+    "service": Probe("int32 question\n---\nint32 answer", file="probe/Probe.srv"),
 }

@@ -4,4 +4,4 @@ from __future__ import annotations
 
 from rosetta_jit.frameworks.ros.features import PROBES as SHARED
 
-PROBES = {".msg": SHARED | {"time": "time x"}}
+PROBES = {".msg": SHARED | {"time": "time x", "duration": "duration x"}}
