@@ -27,11 +27,15 @@ State = Literal["yes", "read", "gap", "none"]
 
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A text in some IDL. ``files`` are what it imports; ``file`` is what it is called."""
+    """A text in some IDL. ``files`` are what it imports; ``file`` is what it is called.
+
+    ``without`` are the encodings of the framework that have nothing of the kind, and rightly refuse it.
+    """
 
     text: str
     files: Mapping[str, str] = field(default_factory=dict[str, str])
     file: str = ""
+    without: tuple[str, ...] = ()
 
 
 Probes = Mapping[str, Mapping[str, str | Probe]]
@@ -48,7 +52,7 @@ class Finding:
 
 YES, NONE = Finding("yes"), Finding("none")
 BEST: tuple[State, ...] = ("yes", "read", "gap", "none")
-Read = tuple[Struct, Schema] | Finding
+Read = tuple[Struct, Schema, Probe] | Finding
 Table = Mapping[str, Mapping[str, Finding]]
 
 
@@ -104,18 +108,18 @@ def _read(framework: Framework, feature: str, probe: Probe, suffix: str) -> Read
         return Finding("gap", why)
     if not FEATURES[feature](struct, schema):
         return Finding("gap", "it is read, and does not reach the model")
-    return struct, schema
+    return struct, schema, probe
 
 
 def _encoded(framework: Framework, encoding: str, read: Read) -> Finding:
     if isinstance(read, Finding):
         return read
-    struct, schema = read
+    struct, schema, probe = read
     try:
         layout(Ref(struct.name), schema)
         made = framework.encoding(encoding)(struct, schema, encoding, Choices())
     except SchemaError as error:
-        return Finding("gap", _why(error))
+        return Finding("none" if encoding in probe.without else "gap", _why(error))
     except ValueError as error:
         return Finding("gap", str(error))
     return YES if made.written is not None else Finding("read", f"{encoding} is several encodings, and does not say which to write")

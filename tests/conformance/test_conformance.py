@@ -1,7 +1,7 @@
 """protobuf's own conformance suite, binary to binary: none of its 1,302 cases may fail.
 
-The runner is built from protobuf's sources; CONFORMANCE_TEST_RUNNER names it and CONFORMANCE_PROTOS the sources' `src`. What it has asked, and
-what it has accepted, is kept in the vectors, so that every machine can ask again.
+The runner is built from protobuf's sources; CONFORMANCE_TEST_RUNNER names it and CONFORMANCE_PROTOS the sources' `src`. What it has asked,
+and what it has accepted, is kept in the vectors, so that every machine can ask again.
 """
 
 from __future__ import annotations

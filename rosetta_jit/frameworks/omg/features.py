@@ -24,7 +24,7 @@ PROBES: dict[str, str | Probe] = {
     "character": struct("char x;"),
     "wide character": struct("wchar x;"),
     "string, UTF-8": struct("string x;"),
-    "string, UTF-16": struct("wstring x;"),
+    "string, wide": struct("wstring x;"),
     "string, bounded": struct("string<5> x;"),
     "string, fixed": struct("char x[16];"),
     "blob": struct("sequence<octet> x;"),

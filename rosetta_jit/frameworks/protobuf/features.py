@@ -20,7 +20,6 @@ PROBES = {
         "float32": message("float x = 1;"),
         "float64": message("double x = 1;"),
         "string, UTF-8": message("string x = 1;"),
-        "string, unchecked": message("optional string x = 1;", syntax="proto2"),
         "blob": message("bytes x = 1;"),
         "array, variable": message("repeated double x = 1;"),
         "struct": message("Point x = 1;", more="message Point { double x = 1; }"),

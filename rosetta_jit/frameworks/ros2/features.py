@@ -12,7 +12,7 @@ BUILTIN = {"builtin_interfaces/msg/Time.msg": "int32 sec\nuint32 nanosec", "buil
 PROBES = {
     ".msg": SHARED
     | {
-        "string, UTF-16": "wstring x",
+        "string, wide": "wstring x",
         "string, bounded": "string<=5 x",
         "blob, bounded": "uint8[<=5] x",
         "array, bounded": "float64[<=5] x",
