@@ -9,11 +9,15 @@ from rosetta_jit.cli.arguments import Commands, add_command
 
 if TYPE_CHECKING:
     import argparse
+
     from rosetta_jit.frameworks.base import Framework
     from rosetta_jit.frameworks.features import Table
 
 SIGNS = {"yes": "yes", "read": "read", "gap": "gap", "none": "-"}
 LEGEND = "yes: both ways   read: not written   gap: the framework has it, we do not   -: the framework does not have it"
+
+NAMED = 6
+"""So many features are named before a reason; more are counted."""
 
 
 def add(commands: Commands) -> None:
@@ -97,6 +101,15 @@ def _table(name: str, table: Table) -> str:
     lines = [name.ljust(first) + "".join(f"  {column.ljust(4)}" for column in columns)]
     for feature, row in shown.items():
         lines.append(feature.ljust(first) + "".join(f"  {SIGNS[row[column].state].ljust(max(4, len(column)))}" for column in columns))
-    notes = {(feature, each.note): each.state for feature, row in shown.items() for each in row.values() if each.note}
-    lines += [f"  {SIGNS[state]}: {feature}: {note}" for (feature, note), state in notes.items()]
+    lines += (f"  {SIGNS[state]}: {what}: {note}" for (state, note), what in _notes(shown).items())
     return "\n".join(line.rstrip() for line in lines)
+
+
+def _notes(shown: Table) -> dict[tuple[str, str], str]:
+    """For each reason the features that it is about, or how many they are."""
+    reasons: dict[tuple[str, str], dict[str, None]] = {}
+    for feature, row in shown.items():
+        for each in row.values():
+            if each.note:
+                reasons.setdefault((each.state, each.note), {})[feature] = None
+    return {reason: "; ".join(about) if len(about) <= NAMED else f"{len(about)} features" for reason, about in reasons.items()}

@@ -72,14 +72,12 @@ def _row(framework: Framework, feature: str, probes: Probes) -> dict[str, Findin
 
 
 def _best(found: list[Finding]) -> Finding:
-    return min(found, key=lambda each: BEST.index(each.state), default=NONE)
+    return min(found, key=lambda each: (BEST.index(each.state), not each.note), default=NONE)
 
 
 def _twin(framework: Framework, probes: Probes, suffix: str) -> str:
     """The first suffix with the same front end and probes: C++ headers have two, and are read once."""
-    return next(
-        each for each in framework.idl if framework.idl[each] == framework.idl[suffix] and probes.get(each) is probes.get(suffix)
-    )
+    return next(each for each in framework.idl if framework.idl[each] == framework.idl[suffix] and probes.get(each) is probes.get(suffix))
 
 
 def _distinct(framework: Framework, probes: Probes) -> tuple[str, ...]:

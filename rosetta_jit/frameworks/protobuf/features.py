@@ -31,8 +31,7 @@ PROBES = {
         "default": message("optional int32 x = 1 [default = 5];", syntax="proto2"),
         "map": message("map<int32, double> x = 1;"),
         "recursion": message("repeated Probe x = 1;"),
-        "extension": message("optional int32 x = 1; extensions 100 to 200;", syntax="proto2")
-        + " extend Probe { optional int32 y = 100; }",
+        "extension": message("optional int32 x = 1; extensions 100 to 200;", syntax="proto2") + " extend Probe { optional int32 y = 100; }",
         "evolution": message("int32 x = 1;"),
         "namespace": message("int32 x = 1;"),
         "import": Probe(

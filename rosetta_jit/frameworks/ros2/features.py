@@ -7,7 +7,10 @@ from rosetta_jit.frameworks.omg.features import PROBES as IDL
 from rosetta_jit.frameworks.omg.features import struct
 from rosetta_jit.frameworks.ros.features import PROBES as SHARED
 
-BUILTIN = {"builtin_interfaces/msg/Time.msg": "int32 sec\nuint32 nanosec", "builtin_interfaces/msg/Duration.msg": "int32 sec\nuint32 nanosec"}
+BUILTIN = {
+    "builtin_interfaces/msg/Time.msg": "int32 sec\nuint32 nanosec",
+    "builtin_interfaces/msg/Duration.msg": "int32 sec\nuint32 nanosec",
+}
 
 PROBES = {
     ".msg": SHARED

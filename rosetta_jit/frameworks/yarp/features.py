@@ -20,14 +20,22 @@ def native(word: str, name: str) -> str:
     return thrift(f'1: {word} (yarp.type = "{name}") x;')
 
 
-WORDS = {"int8": ":int8", "int16": ":int16", "int32": ":int", "int64": ":int64", "float32": ":float32", "float64": ":double"}
-THRIFT_WORDS = {"boolean": "bool", "int8": "byte", "int16": "i16", "int32": "i32", "int64": "i64", "float64": "double"}
-UNSIGNED = {8: "byte", 16: "i16", 32: "i32", 64: "i64"}
+def young(text: str) -> Probe:
+    """A type that has come after 2012."""
+    return Probe(text, without=("yarp2012",))
+
+
+WORDS = {"int32": ":int", "float64": ":double"}
+YOUNG = {"int8": ":int8", "int16": ":int16", "int64": ":int64", "float32": ":float32"}
+THRIFT_WORDS = {"boolean": "bool", "int32": "i32", "float64": "double"}
+YOUNG_THRIFT = {"int8": "byte", "int16": "i16", "int64": "i64"}
+UNSIGNED = {8: "byte", 16: "i16", 64: "i64"}
 
 PROBES: dict[str, dict[str, str | Probe]] = {
     ".bottle-schema": {
         "boolean": schema('("x" :bool)'),
         **{feature: schema(f'("x" {word})') for feature, word in WORDS.items()},
+        **{feature: young(schema(f'("x" {word})')) for feature, word in YOUNG.items()},
         "string, unchecked": schema('("x" :string)'),
         "string, fixed": schema('("x" :string (:length 16))'),
         "blob": schema('("x" :blob)'),
@@ -54,8 +62,10 @@ PROBES: dict[str, dict[str, str | Probe]] = {
     },
     ".thrift": {
         **{feature: thrift(f"1: {word} x;") for feature, word in THRIFT_WORDS.items()},
-        **{f"uint{bits}": native(word, f"std::uint{bits}_t") for bits, word in UNSIGNED.items()},
-        "float32": native("double", "yarp::conf::float32_t"),
+        **{feature: young(thrift(f"1: {word} x;")) for feature, word in YOUNG_THRIFT.items()},
+        **{f"uint{bits}": young(native(word, f"std::uint{bits}_t")) for bits, word in UNSIGNED.items()},
+        "uint32": native("i32", "std::uint32_t"),
+        "float32": young(native("double", "yarp::conf::float32_t")),
         "string, unchecked": thrift("1: string x;"),
         "blob": thrift("1: binary x;"),
         "array, variable": thrift("1: list<double> x;"),
