@@ -24,6 +24,7 @@ FRAMEWORKS = (
         "yarp",
         features=f"{_HERE}.yarp.features:PROBES",
         idl={".bottle-schema": f"{_HERE}.yarp.schema:parse", ".thrift": f"{_HERE}.yarp.thrift:parse"},
+        manners=f"{_HERE}.yarp.manners:BOTTLE",
         encodings={"yarp": _BOTTLES, "yarp3": _BOTTLES, "yarp4": _BOTTLES, "yarp2012": _BOTTLES},
     ),
     Framework(

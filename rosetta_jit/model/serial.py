@@ -2,9 +2,10 @@
 
     {"type": Type, "declared": {name: Type}}          only what the type reaches
     Type  = [word, ...]                               the word of the model in lower case, then its attributes in order
-    Field = [name, Type, number, unit, default, required, options]
+    Field = [name, Type, number, unit, default, required, options, constant, length]
+    Expr  = [word, ...], as of a type
 
-Documentation, spans, and what a bottle schema computes stay behind: only the compiler reads them.
+Documentation and spans stay behind: only the compiler reads them.
 """
 
 from __future__ import annotations
@@ -117,7 +118,55 @@ class _Writing:
 
     def field(self, field: Field, depth: int) -> list[Any]:
         default, options = _plain_constant(field.default), _plain_options(field.options)
-        return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options]
+        computed = [_plain_expr(field.constant), _plain_expr(field.length)]
+        return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options, *computed]
+
+
+def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
+    match value:
+        case None:
+            return None
+        case expr.Literal(literal):
+            return ["literal", literal]
+        case expr.Name(name):
+            return ["name", name]
+        case expr.Path(side, steps):
+            return ["path", side, [step.name if isinstance(step, expr.Member) else _plain_expr(step.index) for step in steps]]
+        case expr.Len(path):
+            return ["len", _plain_expr(path)]
+        case expr.Unary(operator, operand):
+            return ["unary", operator, _plain_expr(operand)]
+        case expr.Binary(operator, left, right):
+            return ["binary", operator, _plain_expr(left), _plain_expr(right)]
+        case expr.Call(function, arguments):
+            return ["call", function, [_plain_expr(each) for each in arguments]]
+        case _:
+            assert_never(value)
+
+
+def _expr(plain: Any, depth: int) -> Any:
+    if depth > MAX_DEPTH:
+        raise ValueError(f"expressions nest more than {MAX_DEPTH} deep")
+    match plain:
+        case None:
+            return None
+        case ["literal", value]:
+            return expr.Literal(value)
+        case ["name", name]:
+            return expr.Name(name)
+        case ["path", side, steps]:
+            found = tuple(expr.Member(each) if isinstance(each, str) else expr.Index(_expr(each, depth + 1)) for each in steps)
+            return expr.Path(side, found)
+        case ["len", path]:
+            return expr.Len(_expr(path, depth + 1))
+        case ["unary", operator, operand]:
+            return expr.Unary(operator, _expr(operand, depth + 1))
+        case ["binary", operator, left, right]:
+            return expr.Binary(operator, _expr(left, depth + 1), _expr(right, depth + 1))
+        case ["call", function, arguments]:
+            return expr.Call(function, tuple(_expr(each, depth + 1) for each in arguments))
+        case _:
+            raise ValueError(f"not an expression: {plain!r:.80}")
 
 
 def _plain_length(length: object) -> Any:
@@ -176,12 +225,14 @@ def _type(plain: list[Any], depth: int) -> Type:
 
 
 def _field(plain: list[Any], depth: int) -> Field:
-    name, type_, number, unit, default, required, options = plain
+    name, type_, number, unit, default, required, options, constant, length = plain
     return Field(
         name,
         _type(type_, depth),
         number=number,
         unit=unit,
+        constant=_expr(constant, depth),
+        length=_expr(length, depth),
         default=_constant(default),
         required=required,
         options=_options(options),

@@ -11,7 +11,7 @@ import numpy as np
 
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
 from rosetta_jit.runtime.holder import values
 from rosetta_jit.runtime.holder.access import Access, getter
 from rosetta_jit.runtime.holder.classes import Holder
@@ -93,7 +93,10 @@ class Family:
 
     def of_struct(self, struct: str) -> type[Holder]:
         """The holder class of another struct of the schema, with the same manners."""
-        return self.holder if struct == self.struct.name else holder_class(Ref(struct), self.schema, self.manners)
+        if struct == self.struct.name:
+            return self.holder
+        type_ = Ref(struct) if struct in self.schema.types else _written_within(self.struct, self.schema, struct)
+        return holder_class(type_, self.schema, self.manners)
 
     def view_class(self, struct: str) -> type[View]:
         """The class of views of a struct: a subclass of its holder class."""
@@ -129,6 +132,22 @@ class Family:
         """A view of one message of a batch."""
         cls = self.view_class(self.struct.name)
         return bind_row(cls.__new__(cls), lanes, self.access(self.tree.root), row)
+
+
+def _written_within(struct: Struct, schema: Schema, name: str) -> Struct:
+    """The struct of that name that is written within the fields of another, without a declaration of its own."""
+    pending: list[Type] = [struct, *schema.types.values()]
+    while pending:
+        match pending.pop():
+            case Struct() as found if found.name == name:
+                return found
+            case Struct(_, fields) | Union(_, fields):
+                pending += [each.type for each in fields]
+            case Array(inner) | Optional(inner) | Map(_, inner):
+                pending.append(inner)
+            case _:
+                pass
+    raise KeyError(name)
 
 
 def _shown(record: Record, base: type) -> list[str]:
