@@ -2,17 +2,34 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
+from pathlib import Path
+
+import pytest
+
+import rosetta_jit
+from rosetta_jit.frameworks.table import FRAMEWORKS
 
 FOLDER = {
     "toy/__init__.py": """
 from rosetta_jit.frameworks.base import Framework
 
-TOY = Framework("toy", idl={".toy": "toy.idl:parse"}, encodings={"toy": "toy.encoding:encode_type"}, manners="toy.manners:MANNERS")
+TOY = Framework(
+    "toy",
+    idl={".toy": "toy.idl:parse"},
+    encodings={"toy": "toy.encoding:encode_type"},
+    manners="toy.manners:TOYS",
+    leniencies={"toy": {"magic": "any three bytes may come first (older toys)"}},
+    byte_orders=("toy",),
+    features="toy.features:PROBES",
+)
 """,
     "toy/idl.py": """
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.errors import SchemaError
 from rosetta_jit.model.types import Field, Float, Schema, Struct
 from rosetta_jit.source import Span
 
@@ -20,14 +37,18 @@ from rosetta_jit.source import Span
 def parse(source, load):
     name, *fields = source.text.split()
     span = Span(source, 0, len(name))
+    if not name.startswith("toy."):
+        raise SchemaError((Diagnostic("error", "toy", "this is no toy", span, label="begins with `toy.`"),))
     return Schema({name: Struct(name, tuple(Field(each, Float(64), span=span) for each in fields), span=span)}, (source.name,))
 """,
     "toy/encoding.py": """
-from rosetta_jit.wire.codec import Constant, Encoding, Number, Seq
+from rosetta_jit.wire.codec import Constant, Encoding, Number, Padding, Seq
 
 
 def encode_type(struct, schema, name, choices):
-    codec = Seq((Constant((), b"TOY"), *(Number((each.name,), "f64", ">") for each in struct.fields)))
+    order = "<" if choices.byte_order == "little" else ">"
+    first = (Padding("u8", ord(each)) for each in "TOY") if "magic" in choices.lenient else (Constant((), b"TOY"),)
+    codec = Seq((*first, *(Number((each.name,), "f64", order) for each in struct.fields)))
     return Encoding(name, (codec,), codec)
 """,
     "toy/manners.py": """
@@ -43,44 +64,105 @@ class Toy(Holder):
         return sum(self.to_dict().values())
 
 
-MANNERS = replace(PLAIN, base=Toy)
+TOYS = replace(PLAIN, base=Toy)
+""",
+    "toy/features.py": """
+PROBES = {".toy": {"float64": "toy.Probe x", "namespace": "toy.Probe x", "map": "map.Probe x"}}
 """,
     "toy-1.dist-info/METADATA": "Metadata-Version: 2.1\nName: toy\nVersion: 1\n",
     "toy-1.dist-info/entry_points.txt": "[rosetta_jit.frameworks]\ntoy = toy:TOY\n",
-    "types/pair.toy": "toy.pair left right",
-    "types/pair.proto": 'syntax = "proto2"; package toy; message Sum { required double total = 1; }',
-    "types/pair.mapping": """import "pair.toy"
+}
+
+USE = {
+    "pair.toy": "toy.pair left right",
+    "wrong.toy": "game.pair left right",
+    "pair.proto": 'syntax = "proto2"; package toy; message Sum { required double total = 1; }',
+    "pair.mapping": """import "pair.toy"
 import "pair.proto"
 data-holder: toy.Sum
 wire-schema: toy.pair
 unpack-rules:
   .total = .left + .right
+pack-rules:
+  .left = .total - 1
+  .right = 1
 """,
-    "run.py": """
+    "pair.json": '{"total": 3.0}',
+    "use.py": """
 import rosetta_jit as rj
 
-options = {"search_path": ["types"], "imports": ["pair.toy"]}
+options = {"imports": ["pair.toy"], "search_path": ["."]}
 decode, encode = rj.Decoder.of("toy.pair", **options), rj.Encoder.of("toy.pair", **options)
-holder = decode(b"TOY" + bytes.fromhex("3ff0000000000000 4000000000000000"))
+message = b"TOY" + bytes.fromhex("3ff0000000000000 4000000000000000")
+holder = decode(message)
 assert (holder.left, holder.right, holder.total()) == (1.0, 2.0, 3.0)
-assert encode(holder)[:3] == b"TOY"
-assert rj.Decoder("types/pair.mapping", search_path=["types"])(encode(holder)).total == 3.0
+assert encode(holder) == message
+
+little = rj.Encoder.of("toy.pair", byte_order="little", **options)
+assert little(holder) == b"TOY" + bytes.fromhex("000000000000f03f 0000000000000040")
+
+assert rj.Decoder("pair.mapping")(message).total == 3.0
+to_pair = rj.Encoder("pair.mapping")
+total = to_pair.holder_type.from_dict({"total": 3.0})
+assert to_pair(total) == b"TOY" + bytes.fromhex("4000000000000000 3ff0000000000000")
+
+assert rj.Decoder.of("toy.pair", lenient=["magic"], **options)(b"???" + bytes(16)).total() == 0
+try:
+    decode(b"???" + bytes(16))
+except rj.DecodeError as error:
+    assert error.kind == "constant"
+else:
+    raise AssertionError
 """,
 }
 
 
-def test_nothing_outside_its_folder_is_touched(tmp_path):
-    for name, text in FOLDER.items():
-        path = tmp_path / name
-        path.parent.mkdir(exist_ok=True)
+@pytest.fixture(scope="module")
+def toys(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("toys")
+    for name, text in {**{f"site/{each}": text for each, text in FOLDER.items()}, **USE}.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
-    run(["run.py"], tmp_path, environment)
-    assert "toy\n  reads      .toy\n  encoding   toy" in run(["-m", "rosetta_jit", "frameworks", "toy"], tmp_path, environment)
-    run(["-m", "rosetta_jit", "check", "types/pair.mapping"], tmp_path, environment)
+    return folder
 
 
-def run(command, folder, environment):
-    done = subprocess.run([sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+def run(folder, *command, fails=False):
+    environment = {**os.environ, "PYTHONPATH": str(folder / "site"), "ROSETTA_JIT_CACHE_DIR": str(folder / "cache")}
+    done = subprocess.run([sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=False, check=False)
+    assert bool(done.returncode) == fails, done.stderr.decode()
+    return done.stderr.decode() if fails else done.stdout
+
+
+def test_decodes_and_encodes(toys):
+    run(toys, "use.py")
+
+
+def test_commands(toys):
+    command = ("-m", "rosetta_jit")
+    assert run(toys, *command, "check", "pair.mapping") == b""
+    (toys / "pair.bin").write_bytes(run(toys, *command, "encode", "pair.mapping", "pair.json"))
+    assert json.loads(run(toys, *command, "decode", "pair.mapping", "pair.bin", "--json")) == {"total": 3.0}
+
+
+def test_mistakes_are_reported_at_their_place(toys):
+    (toys / "wrong.mapping").write_text((toys / "pair.mapping").read_text().replace("pair.toy", "wrong.toy"))
+    report = run(toys, "-m", "rosetta_jit", "check", "wrong.mapping", fails=True)
+    assert "this is no toy" in report
+    assert "wrong.toy:1:1" in report
+
+
+def test_is_listed_with_what_it_can_describe(toys):
+    listed = run(toys, "-m", "rosetta_jit", "frameworks", "toy").decode()
+    assert "  encoding   toy  byte_order=little|big\n    lenient  magic: any three bytes" in listed
+    table = json.loads(run(toys, "-m", "rosetta_jit", "frameworks", "toy", "--features", "--json"))["toy"]
+    assert table["float64"] == {".toy": {"state": "yes"}, "toy": {"state": "yes"}}
+    assert table["map"][".toy"] == {"state": "gap", "note": "this is no toy"}
+    assert table["enum, open"] == {".toy": {"state": "none"}, "toy": {"state": "none"}}
+
+
+def test_nobody_else_knows_it():
+    """Not one of our frameworks, and not a word about it outside its folder."""
+    assert "toy" not in {each.name for each in FRAMEWORKS}
+    package = Path(rosetta_jit.__file__).parent
+    assert not [path for path in package.rglob("*.py") if "toy" in path.read_text(encoding="utf-8").lower().split()]
