@@ -8,30 +8,18 @@ cannot be decoded raises `rosetta_jit.errors.DecodeError`, a ValueError that say
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 import numpy as np
 
-from rosetta_jit.errors import RosettaError
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.shape import shape_of
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
-from rosetta_jit.runtime.holder.message import View
+from rosetta_jit.runtime.holder.serialising import encoded, programs_of
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Family
-
-
-class Programs(Protocol):
-    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
-
-    def encode(self, holder: Any) -> bytes:
-        """The bytes of a holder."""
-        ...
-
-    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
-        """Fill a holder from bytes, or add to what it has."""
-        ...
+    from rosetta_jit.runtime.holder.serialising import Programs
 
 
 class LcmMessage(Holder):
@@ -63,7 +51,7 @@ class LcmMessage(Holder):
         EncodeError
             If a size does not agree with its array.
         """
-        return self._programs().encode(self.__deepcopy__({}) if isinstance(self, View) else self)
+        return encoded(self)
 
     @classmethod
     def decode(cls, data: Any) -> Self:
@@ -75,7 +63,7 @@ class LcmMessage(Holder):
             If they are no message of the type. It is a ValueError.
         """
         message = cast("type[Self]", cls.family_.holder)()
-        LcmMessage._programs(message).decode_into(data.read() if hasattr(data, "read") else data, message, merge=False)
+        programs_of(message).decode_into(data.read() if hasattr(data, "read") else data, message, merge=False)
         return message
 
     @classmethod
@@ -87,11 +75,6 @@ class LcmMessage(Holder):
     def _get_packed_fingerprint(cls) -> bytes:
         """The fingerprint, as messages begin with it."""
         return _hash(cls.family_).to_bytes(8, "big")
-
-    def _programs(self) -> Programs:
-        if self.programs_ is None:
-            raise RosettaError(f"no decoder or encoder of {self.family_.struct.name} has been compiled")
-        return self.programs_
 
 
 @cache

@@ -11,31 +11,19 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
 
-from rosetta_jit.errors import RosettaError
 from rosetta_jit.frameworks.ros1.times import DURATION, TIME
 from rosetta_jit.model.types import Array, Bytes, Ref, Struct
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
-from rosetta_jit.runtime.holder.message import View
+from rosetta_jit.runtime.holder.serialising import encoded, programs_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.serialising import Programs
 
 SEPARATOR = "=" * 80
-
-
-class Programs(Protocol):
-    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
-
-    def encode(self, holder: Any) -> bytes:
-        """The bytes of a holder."""
-        ...
-
-    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
-        """Fill a holder from bytes, or add to what it has."""
-        ...
 
 
 class Buffer(Protocol):
@@ -90,7 +78,7 @@ class RosMessage(Holder):
         EncodeError
             If a fixed array has another length, or a string is no UTF-8.
         """
-        buff.write(self._programs().encode(self.__deepcopy__({}) if isinstance(self, View) else self))
+        buff.write(encoded(self))
 
     def deserialize(self, data: Any) -> Self:
         """Become the message of some bytes; returns itself.
@@ -100,7 +88,7 @@ class RosMessage(Holder):
         DecodeError
             If they are no message of the type.
         """
-        self._programs().decode_into(data, self, merge=False)
+        programs_of(self).decode_into(data, self, merge=False)
         return self
 
     def serialize_numpy(self, buff: Buffer, numpy: object) -> None:
@@ -115,11 +103,6 @@ class RosMessage(Holder):
 
     def __str__(self) -> str:
         return "\n".join(_yaml(self.to_dict()))
-
-    def _programs(self) -> Programs:
-        if self.programs_ is None:
-            raise RosettaError(f"no decoder or encoder of {self.family_.struct.name} has been compiled")
-        return self.programs_
 
 
 def members(family: Family) -> dict[str, Any]:

@@ -8,35 +8,22 @@ range or beyond a bound ValueError, also where Python runs with ``-O`` and rosid
 from __future__ import annotations
 
 import json
-from copy import deepcopy
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
-from rosetta_jit.errors import RosettaError
 from rosetta_jit.frameworks.ros2.idl import DUMMY
 from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, name_parts
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
-from rosetta_jit.runtime.holder.message import View
+from rosetta_jit.runtime.holder.serialising import encoded, programs_of
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
     from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.serialising import Programs
 
 SPELLED = {"float32": "float", "float64": "double", "bool": "boolean", "byte": "octet", "char": "uint8"}
 """Words of `.msg` files that IDL has other words for."""
-
-
-class Programs(Protocol):
-    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
-
-    def encode(self, holder: Any) -> bytes:
-        """The bytes of a holder."""
-        ...
-
-    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
-        """Fill a holder from bytes, or add to what it has."""
-        ...
 
 
 class Ros2Message(Holder):
@@ -80,7 +67,7 @@ def serialize_message(message: Any) -> bytes:
     EncodeError
         If the message cannot be written.
     """
-    return _programs(message).encode(deepcopy(message) if isinstance(message, View) else message)
+    return encoded(message)
 
 
 def deserialize_message(data: Any, message_type: type[Ros2Message]) -> Any:
@@ -92,14 +79,8 @@ def deserialize_message(data: Any, message_type: type[Ros2Message]) -> Any:
         If they are no message of the type.
     """
     message = cast("Any", message_type)()
-    _programs(message).decode_into(data, message, merge=False)
+    programs_of(message).decode_into(data, message, merge=False)
     return message
-
-
-def _programs(message: Any) -> Programs:
-    if message.programs_ is None:
-        raise RosettaError(f"no decoder or encoder of {message.family_.struct.name} has been compiled")
-    return message.programs_
 
 
 def members(family: Family) -> dict[str, Any]:

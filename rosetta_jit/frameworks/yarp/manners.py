@@ -8,29 +8,22 @@ What a holder shows is the bottle that it would be written as. It is made anew f
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar
 
-from rosetta_jit.errors import RosettaError
 from rosetta_jit.frameworks.yarp import tree
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.tags import YARP4, vocab
 from rosetta_jit.frameworks.yarp.text import to_text
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
-from rosetta_jit.runtime.holder.message import View
+from rosetta_jit.runtime.holder.serialising import encoded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosetta_jit.runtime.holder.serialising import Programs
+
 INTEGERS = ("int8", "int16", "int32", "int64")
 FLOATS = ("float32", "float64")
-
-
-class Programs(Protocol):
-    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
-
-    def encode(self, holder: Any) -> bytes:
-        """The bytes of a holder."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,9 +164,7 @@ class BottleMessage(Holder):
         EncodeError
             If the message cannot be written.
         """
-        if self.programs_ is None:
-            raise RosettaError(f"no decoder or encoder of {self.family_.struct.name} has been compiled")
-        return Bottle(read(self.programs_.encode(self.__deepcopy__({}) if isinstance(self, View) else self), YARP4))
+        return Bottle(read(encoded(self), YARP4))
 
     def size(self) -> int:
         """How many elements the bottle has."""

@@ -9,6 +9,7 @@ access      getters and setters
 sequence    arrays and maps that numpy cannot show
 classes     what every holder can do
 family      the class of a type, made once
+serialising holders that write and read themselves
 """
 
 from rosetta_jit.runtime.holder.classes import Holder
