@@ -30,6 +30,9 @@ SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 MANY = 64
 """Calls of a routine from which on it stays a function: LLVM takes more than linear time on what it inlines."""
 
+SHORT = 24
+"""Statements of a routine up to which it is part of its callers, if they are not many."""
+
 
 def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
     """Define the kernel's function in the module.
@@ -42,6 +45,8 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
         routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
         if calls[routine.name] >= MANY:
             routines[routine.name].attributes.add("noinline")
+        elif sum(1 for _ in statements(routine.body)) <= SHORT:
+            routines[routine.name].attributes.add("alwaysinline")
     function = _function(module, SIGNATURE, name, ("buffer", "begin", "end", "state", "row"))
     entry = ir.IRBuilder(function.append_basic_block("entry"))
     first = function.append_basic_block("body")
