@@ -51,6 +51,9 @@ if TYPE_CHECKING:
 MAX_BLOCKS = 100
 MAX_EXPRESSION = 100
 
+LARGE = 4_000
+"""Statements of a kernel from which on work that is done twice takes seconds."""
+
 
 def blocks_of(stmt: Stmt) -> tuple[Block, ...]:
     """The blocks inside a statement."""
@@ -73,6 +76,11 @@ def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
         yield stmt, depth
         inner = [(s, depth + 1) for part in blocks_of(stmt) for s in part]
         stack.extend(reversed(inner))
+
+
+def is_large(kernel: Kernel) -> bool:
+    """Whether a kernel is so large that it is not worth while to improve it again and again."""
+    return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
 
 
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
