@@ -114,9 +114,9 @@ def name_too_long(span: Span | None, limit: int) -> Diagnostic:
     return _error("name-length", f"a name has more than {limit} characters", span, "too long")
 
 
-def edition(span: Span) -> Diagnostic:
-    """`edition = "2023"`."""
-    return _error("edition", "editions are not supported", span, "not supported", 'Use `syntax = "proto2";` or `syntax = "proto3";`.')
+def unknown_edition(span: Span, value: str) -> Diagnostic:
+    """An edition that does not exist, or is newer than what we know."""
+    return _error("edition", f"the edition {value[:40]!r} is not known", span, "unknown", 'Use "2023" or "2024".')
 
 
 def unknown_syntax(span: Span, value: str) -> Diagnostic:
@@ -167,8 +167,9 @@ def bad_descriptor(reason: str) -> Diagnostic:
 
 
 def unsupported_descriptor(file: str, syntax: str) -> Diagnostic:
-    """A descriptor of a file in an edition."""
-    return _error("edition", f"the file `{file}` is written in `{syntax}`; only proto2 and proto3 are supported", None, "")
+    """A descriptor of a file in a version of the language that is not known."""
+    known = "proto2, proto3 and the editions 2023 and 2024 are known"
+    return _error("edition", f"the file `{file[:100]}` is written in `{syntax[:40]}`; {known}", None, "")
 
 
 def repeated_name(name: Name, full: str, kind: str, first: Span | None) -> Diagnostic:
@@ -176,6 +177,62 @@ def repeated_name(name: Name, full: str, kind: str, first: Span | None) -> Diagn
     notes = () if first is None else (f"the {kind} `{full}` is at {first}",)
     help_ = "The values of an enum stand beside it: they share their names with its neighbours." if kind == "value" else ""
     return Diagnostic("error", "repeated-name", f"`{full}` has two meanings", name.span, label="a second one", notes=notes, help=help_)
+
+
+def late_import(span: Span | None) -> Diagnostic:
+    """An import behind one for options."""
+    return _error("import", "imports for options alone come last", span, "behind `import option`")
+
+
+def weak_import(span: Span) -> Diagnostic:
+    """`import weak` in edition 2024."""
+    return _error(
+        "import", "there are no weak imports since edition 2024", span, "gone", "Use `import option` where options alone need it."
+    )
+
+
+def option_import(span: Span) -> Diagnostic:
+    """`import option` before edition 2024."""
+    return _error("import", "imports for options alone need edition 2024", span, "too early")
+
+
+def early_visibility(span: Span) -> Diagnostic:
+    """`export` or `local` before edition 2024."""
+    return _error("visibility", "visibility needs edition 2024", span, "too early")
+
+
+def misplaced_visibility(span: Span, word: str) -> Diagnostic:
+    """`export` or `local` before something else than a message or an enum."""
+    return _error(
+        "visibility", f"`{word}` stands before `message` and `enum` alone", span, "not here", f"A type of that name is `.{word}`."
+    )
+
+
+def local_name(name: Name, full: str, file: str) -> Diagnostic:
+    """A message or an enum that is local to another file."""
+    return _error("visibility", f"`{full}` is local to `{file}`", name.span, "not visible", "Write `export` before its declaration.")
+
+
+def nested_export(name: Name) -> Diagnostic:
+    """Something nested that is exported where visibility is strict."""
+    return _error(
+        "visibility",
+        f"`{name.text}` is nested and cannot be exported under STRICT",
+        name.span,
+        "in a message",
+        "Declare it outside. Enums can stay in a local message that says `reserved 1 to max;`.",
+    )
+
+
+def style(name: Name, example: str) -> Diagnostic:
+    """A name that is not written as the style guide wants it."""
+    return _error(
+        "style",
+        f"`{name.text}` is not in the style of its edition",
+        name.span,
+        f"expected a name like `{example}`",
+        "Else write `option features.enforce_naming_style = STYLE_LEGACY;`.",
+    )
 
 
 def unknown_name(name: Name, kinds: Collection[str], other: str | None) -> Diagnostic:
@@ -256,6 +313,16 @@ def range_out_of_range(span: Span | None, low: int, high: int) -> Diagnostic:
     return _error("range", "a range has impossible numbers", span, f"expected {low} to {high}")
 
 
+def reserved_string(name: Name) -> Diagnostic:
+    """A reserved name in quotes in an edition."""
+    return _error("reserved", "in editions reserved names have no quotes", name.span, "a string", "Write it without quotes.")
+
+
+def reserved_identifier(name: Name) -> Diagnostic:
+    """A reserved name without quotes in proto2 or proto3."""
+    return _error("reserved", "before editions reserved names have quotes", name.span, "no string", f'Write `"{name.text[:60]}"`.')
+
+
 def overlap(span: Span | None, range_: Range, other: Range) -> Diagnostic:
     """Two ranges that share numbers."""
     message = f"{range_.first} to {range_.last} overlaps with {other.first} to {other.last}"
@@ -276,6 +343,14 @@ def missing_label(name: Name) -> Diagnostic:
 def required_in_proto3(span: Span | None) -> Diagnostic:
     """`required` in proto3."""
     return _error("label", "proto3 has no required fields", span, "not in proto3", "Leave the label out, or write `optional`.")
+
+
+def label_in_edition(span: Span | None, label: str) -> Diagnostic:
+    """`optional` or `required` in an edition."""
+    help_ = "Leave it out: fields are optional unless they choose another presence."
+    if label == "required":
+        help_ = "Write `[features.field_presence = LEGACY_REQUIRED]` behind the number."
+    return _error("label", f"editions have no {label} fields", span, "not in an edition", help_)
 
 
 def label_in_oneof(span: Span | None, label: str) -> Diagnostic:
@@ -319,25 +394,43 @@ def group_in_proto3(name: Name) -> Diagnostic:
     return _error("group", "proto3 has no groups", name.span, "not in proto3", "Declare a message and a field of its type.")
 
 
+def group_in_edition(name: Name) -> Diagnostic:
+    """A group in an edition."""
+    help_ = "Declare a message and a field of its type with `[features.message_encoding = DELIMITED]`."
+    return _error("group", "editions have no groups", name.span, "not in an edition", help_)
+
+
 def lower_case_group(name: Name) -> Diagnostic:
     """A group whose name does not start with a capital letter."""
     return _error("group", "the name of a group starts with a capital letter", name.span, "it names a message too")
 
 
 def closed_enum(name: Name, enum: str) -> Diagnostic:
-    """An enum of proto2 in a message of proto3."""
+    """A closed enum in a message of proto3."""
     return _error(
         "closed-enum",
-        f"a proto3 message cannot hold the proto2 enum `{enum}`",
+        f"a proto3 message cannot hold the closed enum `{enum}`",
         name.span,
         "its enum knows no other values",
-        "Declare the enum in a proto3 file.",
+        "Declare the enum in a proto3 file, or in an edition.",
     )
 
 
+def closed_implicit(name: Name, enum: str) -> Diagnostic:
+    """A closed enum in a field of implicit presence."""
+    help_ = "Choose another `features.field_presence` for the field, or OPEN for the enum."
+    return _error("closed-enum", f"implicit presence needs an open enum, and `{enum}` is closed", name.span, "has implicit presence", help_)
+
+
 def same_json_name(name: Name, first: Name, json: str) -> Diagnostic:
-    """Two fields of a proto3 message with one name in JSON."""
-    return _error("json-name", f"`{name.text}` and `{first.text}` are both `{json}` in JSON", name.span, "proto3 refuses that")
+    """Two fields of a message with one name in JSON."""
+    message = f"`{name.text}` and `{first.text}` are both `{json[:60]}` in JSON"
+    return _error("json-name", message, name.span, "JSON cannot tell them apart", "Choose another name with `json_name`.")
+
+
+def json_name_of_extension(span: Span | None) -> Diagnostic:
+    """An extension that chooses a name in JSON."""
+    return _error("json-name", "an extension has no other name in JSON", span, "not here")
 
 
 def cannot_pack(name: Name) -> Diagnostic:
@@ -348,6 +441,12 @@ def cannot_pack(name: Name) -> Diagnostic:
 def default_in_proto3(span: Span | None) -> Diagnostic:
     """A default in proto3."""
     return _error("default", "proto3 has no defaults", span, "not in proto3")
+
+
+def default_of_implicit(span: Span | None) -> Diagnostic:
+    """A default where zero means absent."""
+    help_ = "Choose EXPLICIT as its `features.field_presence`."
+    return _error("default", "a field of implicit presence has no default", span, "it is 0 or empty where it is not set", help_)
 
 
 def default_of_many(span: Span | None) -> Diagnostic:
@@ -371,8 +470,8 @@ def empty_enum(name: Name) -> Diagnostic:
 
 
 def first_not_zero(span: Span | None, number: int) -> Diagnostic:
-    """A proto3 enum that does not start with 0."""
-    return _error("enum", f"the first value of an enum is 0 in proto3, not {number}", span, "must be 0")
+    """An open enum that does not start with 0."""
+    return _error("enum", f"the first value of an open enum is 0, not {number}", span, "must be 0")
 
 
 def value_out_of_range(span: Span | None, number: int) -> Diagnostic:
@@ -399,7 +498,7 @@ def idle_alias_option(name: Name) -> Diagnostic:
 def same_stripped_name(name: Name, first: Name) -> Diagnostic:
     """Two values that differ in the enum's prefix or in case alone."""
     message = f"`{name.text}` and `{first.text}` are one name where the enum's own and case are left out"
-    return _error("enum", message, name.span, "proto3 refuses that")
+    return _error("enum", message, name.span, "languages that leave them out cannot tell them apart")
 
 
 def empty_extend(span: Span) -> Diagnostic:
@@ -457,3 +556,40 @@ def repeated_option(span: Span | None, name: str) -> Diagnostic:
 def wrong_option(span: Span | None, name: str, wanted: str, value: str) -> Diagnostic:
     """The value of an option that its type cannot hold."""
     return _error("option", f"`{name.replace('(.', '(')}` cannot be {value[:60]}", span, f"expected {wanted}")
+
+
+def features_before_editions(span: Span | None) -> Diagnostic:
+    """A feature in proto2 or proto3."""
+    return _error("feature", "features need an edition", span, "not here", 'Write `edition = "2023";` instead of the syntax.')
+
+
+def unknown_feature(span: Span | None, name: str) -> Diagnostic:
+    """A feature that does not exist."""
+    help_ = "Import the file that declares it." if "(" in name else ""
+    return _error("feature", f"there is no feature `{name[:100]}`", span, "unknown", help_)
+
+
+def early_feature(span: Span | None, name: str, since: str) -> Diagnostic:
+    """A feature that the edition does not have yet."""
+    return _error("feature", f"`{name}` needs edition {since}", span, "too early")
+
+
+def feature_elsewhere(span: Span | None, name: str, targets: Sequence[str]) -> Diagnostic:
+    """A feature that is chosen for something that does not have it."""
+    places = ", ".join(target.removesuffix("Options").lower() for target in targets)
+    return _error("feature", f"`{name}` cannot be chosen here", span, f"expected in the options of: {places}")
+
+
+def idle_feature(span: Span | None, name: str, word: str, field: str, reason: str) -> Diagnostic:
+    """A feature that is chosen for a field of another kind."""
+    return _error("feature", f"`{field}` cannot choose {word} as its `features.{name}`", span, reason)
+
+
+def required_by_default(span: Span | None) -> Diagnostic:
+    """A file all of whose fields would be required."""
+    return _error("feature", "fields are not required by default", span, "for a whole file", "Choose LEGACY_REQUIRED for single fields.")
+
+
+def replaced_option(span: Span | None, name: str, since: str, feature: str) -> Diagnostic:
+    """An option that gave way to a feature."""
+    return _error("option", f"there is no option `{name}` since edition {since}", span, "gone", f"Use `{feature}`.")

@@ -5,6 +5,8 @@ What depends on other statements is left to the checks.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, cast
 
 from lark import Token, Tree
@@ -12,12 +14,15 @@ from lark import Token, Tree
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.protobuf.proto.tree import (
+    EDITIONS,
+    SYNTAXES,
     Enum,
     EnumValue,
     Extend,
     Field,
     File,
     Import,
+    ImportKind,
     Label,
     MapType,
     Message,
@@ -27,8 +32,9 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Range,
     Service,
     Version,
+    Visibility,
 )
-from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
+from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,11 +52,24 @@ MAX_FIELD_NUMBER = 2**29 - 1
 def read(source: Source, problems: list[Diagnostic]) -> File | None:
     """The file that a source holds; None where its syntax is too broken to say."""
     root = syntax.parse(source, problems)
-    return None if root is None else _Reader(source, problems).file(root)
+    return None if root is None else _Reader(source, problems, _version(root, ValueReader(source, problems))).file(root)
 
 
+def _version(root: Node, reader: ValueReader) -> Version:
+    for node in all_of(root, "syntax"):
+        word, string = tokens_of(node)[0], one(node, "string")
+        value = reader.text(string)
+        for version in EDITIONS if word == "edition" else SYNTAXES:
+            if version == value:
+                return version
+        unknown = say.unknown_edition if word == "edition" else say.unknown_syntax
+        reader.problems.append(unknown(reader.span(string), value))
+    return "proto2"
+
+
+@dataclass(frozen=True, slots=True)
 class _Reader(ValueReader):
-    __slots__ = ()
+    version: Version
 
     def file(self, root: Node) -> File:
         packages = [self.path(one(node, "path")) for node in all_of(root, "package")]
@@ -59,9 +78,9 @@ class _Reader(ValueReader):
         extends, groups = self.extends(root)
         return File(
             name=self.source.name,
-            version=self.version(root),
+            version=self.version,
             package=packages[0] if packages else None,
-            imports=tuple(self.import_(node) for node in all_of(root, "import")),
+            imports=self.imports(root),
             messages=(*(self.message(node) for node in all_of(root, "message")), *groups),
             enums=tuple(self.enum(node) for node in all_of(root, "enum")),
             extends=extends,
@@ -69,36 +88,52 @@ class _Reader(ValueReader):
             options=self.options(root),
         )
 
-    def version(self, root: Node) -> Version:
-        for node in all_of(root, "syntax"):
-            word = tokens_of(node)[0]
-            string = one(node, "string")
-            value = self.text(string)
-            if word == "edition":
-                self.problems.append(say.edition(self.span(string)))
-            elif value in ("proto2", "proto3"):
-                return value
-            else:
-                self.problems.append(say.unknown_syntax(self.span(string), value))
-        return "proto2"
+    def imports(self, root: Node) -> tuple[Import, ...]:
+        imports = tuple(self.import_(node) for node in all_of(root, "import"))
+        for before, import_ in pairwise(imports):
+            if before.kind == "option" and import_.kind != "option":
+                self.problems.append(say.late_import(import_.span))
+        return imports
 
     def import_(self, node: Node) -> Import:
-        words = tokens_of(node)
-        for word in words:
-            if word not in ("public", "weak"):
-                self.problems.append(say.unexpected(self.at(word), word, {"STRING"}))
         path = one(node, "string")
-        return Import(self.text(path), public="public" in words, span=self.span(path))
+        return Import(self.text(path), self.import_kind(tokens_of(node)), self.span(path))
+
+    def import_kind(self, words: list[Token]) -> ImportKind:
+        for word in words:
+            match str(word):
+                case "public":
+                    return "public"
+                case "weak":
+                    if self.version == "2024":
+                        self.problems.append(say.weak_import(self.at(word)))
+                    return "weak"
+                case "option":
+                    if self.version != "2024":
+                        self.problems.append(say.option_import(self.at(word)))
+                    return "option"
+                case other:
+                    self.problems.append(say.unexpected(self.at(word), other, {"STRING"}))
+        return "plain"
+
+    def visibility(self, node: Node) -> Visibility | None:
+        word = tokens_of(node)[0]
+        if word.type != "VISIBILITY":
+            return None
+        if self.version != "2024":
+            self.problems.append(say.early_visibility(self.at(word)))
+        return cast("Visibility", str(word))
 
     # Messages
 
     def message(self, node: Node) -> Message:
-        return self.body(node, self.name(tokens_of(node)[1]), self.doc(node))
+        return self.body(node, self.name(tokens_of(node)[-1]), self.doc(node), self.visibility(node))
 
-    def body(self, node: Node, name: Name, doc: str) -> Message:
+    def body(self, node: Node, name: Name, doc: str, visibility: Visibility | None = None) -> Message:
         members = tuple(
             self.oneof(child) if child.data == "oneof" else self.field(child) for child in all_of(node, "field", "group", "oneof")
         )
+        self.check_words(node)
         extends, extend_groups = self.extends(node)
         reserved, reserved_names = self.reserved(node)
         options = self.options(node)
@@ -115,11 +150,20 @@ class _Reader(ValueReader):
             enums=tuple(self.enum(child) for child in all_of(node, "enum")),
             extends=extends,
             extensions=self.extensions(node, MAX_MESSAGE_SET_NUMBER if message_set else MAX_FIELD_NUMBER),
+            extension_options=tuple(option for block in all_of(node, "extensions") for option in self.settings(block)),
             reserved=reserved,
             reserved_names=reserved_names,
             options=options,
             doc=doc,
+            visibility=visibility,
         )
+
+    def check_words(self, node: Node) -> None:
+        """In edition 2024 a field of a message cannot begin with the words for visibility, though types may have such names."""
+        for field in all_of(node, "field"):
+            first = ends(field)[0]
+            if self.version == "2024" and first in syntax.VISIBILITIES:
+                self.problems.append(say.misplaced_visibility(self.at(first), first))
 
     def groups(self, node: Node) -> Iterator[Message]:
         """The messages that the groups among some fields declare."""
@@ -185,11 +229,20 @@ class _Reader(ValueReader):
 
     def reserved(self, node: Node, limit: int = MAX_FIELD_NUMBER) -> tuple[tuple[Range, ...], tuple[Name, ...]]:
         blocks = list(all_of(node, "reserved"))
-        names = [string for block in blocks for string in all_of(block, "string")]
         return (
             tuple(self.range(child, limit) for block in blocks for child in all_of(block, "range")),
-            tuple(Name(self.text(string), self.span(string)) for string in names),
+            tuple(name for block in blocks for name in self.reserved_names(block)),
         )
+
+    def reserved_names(self, node: Node) -> Iterator[Name]:
+        """Strings in proto2 and proto3, identifiers in editions."""
+        quoted = [Name(self.text(string), self.span(string)) for string in all_of(node, "string")]
+        bare = [self.name(token) for token in tokens_of(node)]
+        if self.version in EDITIONS:
+            self.problems.extend(say.reserved_string(name) for name in quoted)
+        else:
+            self.problems.extend(say.reserved_identifier(name) for name in bare)
+        yield from (*quoted, *bare)
 
     def range(self, node: Node, limit: int) -> Range:
         first, *rest = node.children
@@ -215,11 +268,12 @@ class _Reader(ValueReader):
     def enum(self, node: Node) -> Enum:
         reserved, reserved_names = self.reserved(node, MAX_NUMBER)
         return Enum(
-            name=self.name(tokens_of(node)[0]),
+            name=self.name(tokens_of(node)[-1]),
             values=tuple(self.value(child) for child in all_of(node, "value")),
             reserved=reserved,
             reserved_names=reserved_names,
             options=self.options(node),
+            visibility=self.visibility(node),
         )
 
     def value(self, node: Node) -> EnumValue:

@@ -14,7 +14,7 @@ from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Name, Option, Value, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Word
 from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:
@@ -58,8 +58,15 @@ class ValueReader:
                 return self.number(node)
             case "word":
                 return Word("".join(tokens_of(node)))
+            case "listing":
+                return Listing(tuple(self.option_value(child) for child in cast("list[Node]", node.children)))
             case _:
-                return Aggregate()
+                return Aggregate(tuple(self.entry(child) for child in cast("list[Node]", node.children)))
+
+    def entry(self, node: Node) -> Entry:
+        key, value = cast("tuple[Node | Token, Node]", node.children)
+        name = f"({''.join(tokens_of(key))})" if isinstance(key, Tree) else str(key)
+        return Entry(name, self.option_value(value))
 
     # Words, numbers, strings
 
