@@ -75,8 +75,8 @@ def _refused(writer: Writer, where: Where) -> Block:
     return (Expect(Const("bool", value=False), failure),)
 
 
-def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> None:
-    """Skip the value behind a tag: of a group all its fields, and its end tag.
+def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> Local:
+    """Skip the value behind a tag: of a group all its fields, and its end tag. Where that tag begins is the result.
 
     The numbers of the groups that are open lie in the scratch lane, which is the stack of this loop.
     """
@@ -85,6 +85,7 @@ def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> 
     limit = writer.let("limit", add(Binary("sub", END, BEGIN), 2))
     at, depth, rounds = writer.var("at", writer.position), writer.var("depth", index(0)), writer.var("rounds", index(0))
     current, goes_on = writer.var("tag", tag), writer.var("goes_on", Const("bool", value=True))
+    last_tag = writer.var("last_tag", at)
     with writer.nested() as body:
         writer.position = at
         _expect_tag(writer, current, where)
@@ -97,6 +98,7 @@ def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> 
         writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
         writer.assign(at, after)
         with writer.nested() as inner:
+            writer.assign(last_tag, at)
             writer.position = at
             writer.assign(current, Convert("i64", read_varint(writer, where)))
             writer.assign(at, writer.position)
@@ -114,6 +116,7 @@ def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> 
     writer.emit(While(Binary("and", goes_on, Compare("lt", rounds, limit)), block(body), invariant, rounds))
     writer.position = at
     writer.expect(Compare("eq", depth, index(0)), "truncated", where, "the group has no end")
+    return last_tag
 
 
 def _group_cases(writer: Writer, scratch: int, base: Local, depth: Local, tag: Local, where: Where) -> tuple[tuple[int, Block], ...]:
