@@ -8,12 +8,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
-from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, spelled
+from rosetta_jit.frameworks.protobuf.proto.check_custom_features import check_custom_feature
+from rosetta_jit.frameworks.protobuf.proto.constants import spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_features
 from rosetta_jit.frameworks.protobuf.proto.features import FEATURES, choices, chosen_word, own
-from rosetta_jit.frameworks.protobuf.proto.options import options_of, type_at, values
+from rosetta_jit.frameworks.protobuf.proto.options import options_of, type_at
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
-from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Aggregate, MapType, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, MapType, Word
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -77,26 +78,13 @@ def _choice(holder: str, choice: Choice, version: Version, declared: Declaration
     if type_ is None:
         yield say.unknown_feature(span, name)
     elif feature is None:
-        yield from _custom(choice, name, type_, declared)
+        yield from check_custom_feature(holder, choice, name, type_, version, declared)
     elif chosen_word(feature, choice) is None:
         yield say.wrong_option(span, name, "one of " + ", ".join(f"`{word}`" for word in feature.values), spelled(choice.value))
     elif version < feature.since:
         yield say.early_feature(span, name, feature.since)
     elif holder not in feature.targets:
         yield say.feature_elsewhere(span, name, sorted(feature.targets))
-
-
-def _custom(choice: Choice, name: str, type_: str, declared: Declarations) -> Iterator[Diagnostic]:
-    """A feature of one language: a field of a message that extends the others."""
-    wanted = "a message in braces" if type_[1:] in declared.messages and not isinstance(choice.value, Aggregate) else ""
-    try:
-        # In text format an enum can be given by its number, a bool by another word.
-        if not choice.aggregate:
-            list(values(type_, choice.value, declared))
-    except WrongValueError as error:
-        wanted = str(error.args[0])
-    if wanted:
-        yield say.wrong_option(choice.option.span, name, wanted, spelled(choice.value))
 
 
 def _field(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:

@@ -294,10 +294,15 @@ class _Reader(ValueReader):
     def method_type(self, node: Node) -> Name:
         path = self.path(one(node, "path"))
         for word in tokens_of(node):
+            # `(stream.Foo)` is a stream of `.Foo`; of other names the parser takes the first part for such a word too.
+            if word != "stream" and path.text.startswith("."):
+                return self.checked(Name(f"{word}{path.text}", self.span(node)))
             if word != "stream":
                 self.problems.append(say.unexpected(self.at(word), word, {"RPAR", "DOT", "STREAM"}))
-        # `(stream.Foo)` is a stream of `.Foo`: there `stream` is a keyword, whatever follows it.
-        return Name(path.text.removeprefix("stream"), path.span) if path.text.startswith("stream.") else path
+            return path
+        if path.text == "stream":
+            self.problems.append(say.unexpected(self.span(node), path.text, {"IDENT"}))
+        return path
 
 
 def _fields(node: Node) -> list[Node]:
