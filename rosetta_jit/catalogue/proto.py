@@ -565,8 +565,7 @@ def features_before_editions(span: Span | None) -> Diagnostic:
 
 def unknown_feature(span: Span | None, name: str) -> Diagnostic:
     """A feature that does not exist."""
-    help_ = "Import the file that declares it." if "(" in name else ""
-    return _error("feature", f"there is no feature `{name[:100]}`", span, "unknown", help_)
+    return _error("feature", f"there is no feature `{name[:100]}`", span, "unknown")
 
 
 def early_feature(span: Span | None, name: str, since: str) -> Diagnostic:
