@@ -48,6 +48,7 @@ class ValueReader:
             for part in name.children
             if isinstance(part, Tree) or part.type != "DOT"
         )
+        self.checked(Name(".".join(parts), self.span(name)))
         return Option(parts, self.option_value(value), self.span(name))
 
     def option_value(self, node: Node) -> Value:
