@@ -103,7 +103,7 @@ def _enum(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:
 
 
 def _is_implicit(entry: DeclaredField) -> bool:
-    """Whether a value of 0 is as if there were none; that of the values of a map is, since each entry has one."""
+    """Whether a value of 0 means that there is none; protoc takes it so for the values of maps too."""
     listed = entry.field.label == "repeated"
     return entry.features.field_presence == "IMPLICIT" and entry.place == "message" and not listed
 
