@@ -114,11 +114,6 @@ def name_too_long(span: Span | None, limit: int) -> Diagnostic:
     return _error("name-length", f"a name has more than {limit} characters", span, "too long")
 
 
-def unknown_edition(span: Span, value: str) -> Diagnostic:
-    """An edition that does not exist, or is newer than what we know."""
-    return _error("edition", f"the edition {value[:40]!r} is not known", span, "unknown", 'Use "2023" or "2024".')
-
-
 def unknown_syntax(span: Span, value: str) -> Diagnostic:
     """A version of the language that does not exist."""
     return _error("syntax-version", f"there is no syntax {value!r}", span, "unknown", 'Use "proto2" or "proto3".')
@@ -177,62 +172,6 @@ def repeated_name(name: Name, full: str, kind: str, first: Span | None) -> Diagn
     notes = () if first is None else (f"the {kind} `{full}` is at {first}",)
     help_ = "The values of an enum stand beside it: they share their names with its neighbours." if kind == "value" else ""
     return Diagnostic("error", "repeated-name", f"`{full}` has two meanings", name.span, label="a second one", notes=notes, help=help_)
-
-
-def late_import(span: Span | None) -> Diagnostic:
-    """An import behind one for options."""
-    return _error("import", "imports for options alone come last", span, "behind `import option`")
-
-
-def weak_import(span: Span) -> Diagnostic:
-    """`import weak` in edition 2024."""
-    return _error(
-        "import", "there are no weak imports since edition 2024", span, "gone", "Use `import option` where options alone need it."
-    )
-
-
-def option_import(span: Span) -> Diagnostic:
-    """`import option` before edition 2024."""
-    return _error("import", "imports for options alone need edition 2024", span, "too early")
-
-
-def early_visibility(span: Span) -> Diagnostic:
-    """`export` or `local` before edition 2024."""
-    return _error("visibility", "visibility needs edition 2024", span, "too early")
-
-
-def misplaced_visibility(span: Span, word: str) -> Diagnostic:
-    """`export` or `local` before something else than a message or an enum."""
-    return _error(
-        "visibility", f"`{word}` stands before `message` and `enum` alone", span, "not here", f"A type of that name is `.{word}`."
-    )
-
-
-def local_name(name: Name, full: str, file: str) -> Diagnostic:
-    """A message or an enum that is local to another file."""
-    return _error("visibility", f"`{full}` is local to `{file}`", name.span, "not visible", "Write `export` before its declaration.")
-
-
-def nested_export(name: Name) -> Diagnostic:
-    """Something nested that is exported where visibility is strict."""
-    return _error(
-        "visibility",
-        f"`{name.text}` is nested and cannot be exported under STRICT",
-        name.span,
-        "in a message",
-        "Declare it outside. Enums can stay in a local message that says `reserved 1 to max;`.",
-    )
-
-
-def style(name: Name, example: str) -> Diagnostic:
-    """A name that is not written as the style guide wants it."""
-    return _error(
-        "style",
-        f"`{name.text}` is not in the style of its edition",
-        name.span,
-        f"expected a name like `{example}`",
-        "Else write `option features.enforce_naming_style = STYLE_LEGACY;`.",
-    )
 
 
 def unknown_name(name: Name, kinds: Collection[str], other: str | None) -> Diagnostic:
@@ -313,16 +252,6 @@ def range_out_of_range(span: Span | None, low: int, high: int) -> Diagnostic:
     return _error("range", "a range has impossible numbers", span, f"expected {low} to {high}")
 
 
-def reserved_string(name: Name) -> Diagnostic:
-    """A reserved name in quotes in an edition."""
-    return _error("reserved", "in editions reserved names have no quotes", name.span, "a string", "Write it without quotes.")
-
-
-def reserved_identifier(name: Name) -> Diagnostic:
-    """A reserved name without quotes in proto2 or proto3."""
-    return _error("reserved", "before editions reserved names have quotes", name.span, "no string", f'Write `"{name.text[:60]}"`.')
-
-
 def overlap(span: Span | None, range_: Range, other: Range) -> Diagnostic:
     """Two ranges that share numbers."""
     message = f"{range_.first} to {range_.last} overlaps with {other.first} to {other.last}"
@@ -343,14 +272,6 @@ def missing_label(name: Name) -> Diagnostic:
 def required_in_proto3(span: Span | None) -> Diagnostic:
     """`required` in proto3."""
     return _error("label", "proto3 has no required fields", span, "not in proto3", "Leave the label out, or write `optional`.")
-
-
-def label_in_edition(span: Span | None, label: str) -> Diagnostic:
-    """`optional` or `required` in an edition."""
-    help_ = "Leave it out: fields are optional unless they choose another presence."
-    if label == "required":
-        help_ = "Write `[features.field_presence = LEGACY_REQUIRED]` behind the number."
-    return _error("label", f"editions have no {label} fields", span, "not in an edition", help_)
 
 
 def label_in_oneof(span: Span | None, label: str) -> Diagnostic:
@@ -394,12 +315,6 @@ def group_in_proto3(name: Name) -> Diagnostic:
     return _error("group", "proto3 has no groups", name.span, "not in proto3", "Declare a message and a field of its type.")
 
 
-def group_in_edition(name: Name) -> Diagnostic:
-    """A group in an edition."""
-    help_ = "Declare a message and a field of its type with `[features.message_encoding = DELIMITED]`."
-    return _error("group", "editions have no groups", name.span, "not in an edition", help_)
-
-
 def lower_case_group(name: Name) -> Diagnostic:
     """A group whose name does not start with a capital letter."""
     return _error("group", "the name of a group starts with a capital letter", name.span, "it names a message too")
@@ -414,12 +329,6 @@ def closed_enum(name: Name, enum: str) -> Diagnostic:
         "its enum knows no other values",
         "Declare the enum in a proto3 file, or in an edition.",
     )
-
-
-def closed_implicit(name: Name, enum: str) -> Diagnostic:
-    """A closed enum in a field of implicit presence."""
-    help_ = "Choose another `features.field_presence` for the field, or OPEN for the enum."
-    return _error("closed-enum", f"implicit presence needs an open enum, and `{enum}` is closed", name.span, "has implicit presence", help_)
 
 
 def same_json_name(name: Name, first: Name, json: str) -> Diagnostic:
@@ -441,12 +350,6 @@ def cannot_pack(name: Name) -> Diagnostic:
 def default_in_proto3(span: Span | None) -> Diagnostic:
     """A default in proto3."""
     return _error("default", "proto3 has no defaults", span, "not in proto3")
-
-
-def default_of_implicit(span: Span | None) -> Diagnostic:
-    """A default where zero means absent."""
-    help_ = "Choose EXPLICIT as its `features.field_presence`."
-    return _error("default", "a field of implicit presence has no default", span, "it is 0 or empty where it is not set", help_)
 
 
 def default_of_many(span: Span | None) -> Diagnostic:
@@ -556,39 +459,3 @@ def repeated_option(span: Span | None, name: str) -> Diagnostic:
 def wrong_option(span: Span | None, name: str, wanted: str, value: str) -> Diagnostic:
     """The value of an option that its type cannot hold."""
     return _error("option", f"`{name.replace('(.', '(')}` cannot be {value[:60]}", span, f"expected {wanted}")
-
-
-def features_before_editions(span: Span | None) -> Diagnostic:
-    """A feature in proto2 or proto3."""
-    return _error("feature", "features need an edition", span, "not here", 'Write `edition = "2023";` instead of the syntax.')
-
-
-def unknown_feature(span: Span | None, name: str) -> Diagnostic:
-    """A feature that does not exist."""
-    return _error("feature", f"there is no feature `{name[:100]}`", span, "unknown")
-
-
-def early_feature(span: Span | None, name: str, since: str) -> Diagnostic:
-    """A feature that the edition does not have yet."""
-    return _error("feature", f"`{name}` needs edition {since}", span, "too early")
-
-
-def feature_elsewhere(span: Span | None, name: str, targets: Sequence[str]) -> Diagnostic:
-    """A feature that is chosen for something that does not have it."""
-    places = ", ".join(target.removesuffix("Options").lower() for target in targets)
-    return _error("feature", f"`{name}` cannot be chosen here", span, f"expected in the options of: {places}")
-
-
-def idle_feature(span: Span | None, name: str, word: str, field: str, reason: str) -> Diagnostic:
-    """A feature that is chosen for a field of another kind."""
-    return _error("feature", f"`{field}` cannot choose {word} as its `features.{name}`", span, reason)
-
-
-def required_by_default(span: Span | None) -> Diagnostic:
-    """A file all of whose fields would be required."""
-    return _error("feature", "fields are not required by default", span, "for a whole file", "Choose LEGACY_REQUIRED for single fields.")
-
-
-def replaced_option(span: Span | None, name: str, since: str, feature: str) -> Diagnostic:
-    """An option that gave way to a feature."""
-    return _error("option", f"there is no option `{name}` since edition {since}", span, "gone", f"Use `{feature}`.")

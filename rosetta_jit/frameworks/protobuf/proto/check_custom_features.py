@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, spelled
 from rosetta_jit.frameworks.protobuf.proto.options import values
 from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Aggregate, Name, Word
@@ -48,10 +49,10 @@ def check_custom_feature(
         return
     for since in _introduced(field):
         if since not in BEFORE_EDITIONS and (since not in EDITIONS or version < since):
-            yield say.early_feature(span, name, since)
+            yield say_edition.early_feature(span, name, since)
     targets = {option.value.text for option in field.options if option.parts == ("targets",) and isinstance(option.value, Word)}
     if targets and TARGETS[holder] not in targets:
-        yield say.feature_elsewhere(span, name, sorted(each for each, target in TARGETS.items() if target in targets))
+        yield say_edition.feature_elsewhere(span, name, sorted(each for each, target in TARGETS.items() if target in targets))
 
 
 def _wanted(choice: Choice, type_: str, declared: Declarations) -> str | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.check_custom_features import check_custom_feature
 from rosetta_jit.frameworks.protobuf.proto.constants import spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_features
@@ -43,7 +44,7 @@ def check_features(declared: Declarations) -> Iterator[Diagnostic]:
                 for choice in choices(options):
                     yield from _choice(holder, choice, file.version, declared)
         if file_features(file).field_presence == "LEGACY_REQUIRED":
-            yield from (say.required_by_default(option.span) for option in file.options if "field_presence" in own((option,)))
+            yield from (say_edition.required_by_default(option.span) for option in file.options if "field_presence" in own((option,)))
     for message in declared.messages.values():
         for field in fields_in(message):
             yield from _field(field, declared)
@@ -54,7 +55,7 @@ def check_features(declared: Declarations) -> Iterator[Diagnostic]:
 def _option(holder: str, option: Option, version: Version) -> Iterator[Diagnostic]:
     if version not in EDITIONS:
         if option.parts[0] == "features":
-            yield say.features_before_editions(option.span)
+            yield say_edition.features_before_editions(option.span)
         return
     told = [choice.path for choice in choices((option,))]
     if len(set(told)) < len(told):
@@ -62,7 +63,7 @@ def _option(holder: str, option: Option, version: Version) -> Iterator[Diagnosti
     since, feature = REPLACED.get((holder, option.name), ("", ""))
     unset = option.name == "java_string_check_utf8" and option.value == Word("false")
     if since and since <= version and not unset:
-        yield say.replaced_option(option.span, option.name, since, feature)
+        yield say_edition.replaced_option(option.span, option.name, since, feature)
 
 
 def _choice(holder: str, choice: Choice, version: Version, declared: Declarations) -> Iterator[Diagnostic]:
@@ -76,15 +77,15 @@ def _choice(holder: str, choice: Choice, version: Version, declared: Declaration
     type_ = type_at("FeatureSet", choice.path, declared)
     feature = FEATURES.get(choice.path[0])
     if type_ is None:
-        yield say.unknown_feature(span, name)
+        yield say_edition.unknown_feature(span, name)
     elif feature is None:
         yield from check_custom_feature(holder, choice, name, type_, version, declared)
     elif chosen_word(feature, choice) is None:
         yield say.wrong_option(span, name, "one of " + ", ".join(f"`{word}`" for word in feature.values), spelled(choice.value))
     elif version < feature.since:
-        yield say.early_feature(span, name, feature.since)
+        yield say_edition.early_feature(span, name, feature.since)
     elif holder not in feature.targets:
-        yield say.feature_elsewhere(span, name, sorted(feature.targets))
+        yield say_edition.feature_elsewhere(span, name, sorted(feature.targets))
 
 
 def _field(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:
@@ -95,7 +96,7 @@ def _field(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]
         for name, word in own((option,)).items():
             reason = _reason(entry, name, word, declared)
             if reason:
-                yield say.idle_feature(option.span, name, word, entry.field.name.text, reason)
+                yield say_edition.idle_feature(option.span, name, word, entry.field.name.text, reason)
 
 
 def _reason(entry: DeclaredField, name: str, word: str, declared: Declarations) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in
 from rosetta_jit.frameworks.protobuf.proto.options import flag
@@ -73,7 +74,7 @@ def _label(field: Field, version: Version) -> Iterator[Diagnostic]:
         case _, "required", "proto3":
             yield say.required_in_proto3(field.label_span)
         case _, "optional" | "required" as label, "2023" | "2024":
-            yield say.label_in_edition(field.label_span, label)
+            yield say_edition.label_in_edition(field.label_span, label)
         case _:
             pass
 
@@ -84,7 +85,7 @@ def _group(field: Field, version: Version, declared: Declarations) -> Iterator[D
     if version == "proto3":
         yield say.group_in_proto3(field.name)
     if version in EDITIONS:
-        yield say.group_in_edition(field.name)
+        yield say_edition.group_in_edition(field.name)
 
 
 def _enum(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:
@@ -99,7 +100,7 @@ def _enum(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:
     if enum.closed and entry.version == "proto3":
         yield say.closed_enum(entry.field.name, enum.full)
     elif enum.closed and _is_implicit(entry):
-        yield say.closed_implicit(entry.field.name, enum.full)
+        yield say_edition.closed_implicit(entry.field.name, enum.full)
 
 
 def _is_implicit(entry: DeclaredField) -> bool:
@@ -120,7 +121,7 @@ def _default(entry: DeclaredField, option: Option, declared: Declarations) -> It
     elif isinstance(type_, MapType) or entry.repeated:
         yield say.default_of_many(option.span)
     elif _is_implicit(entry):
-        yield say.default_of_implicit(option.span)
+        yield say_edition.default_of_implicit(option.span)
     elif type_.text:
         yield from _default_value(type_, option, declared)
 

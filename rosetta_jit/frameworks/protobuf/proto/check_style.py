@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_features
 from rosetta_jit.frameworks.protobuf.proto.features import choose
 from rosetta_jit.frameworks.protobuf.proto.tree import Oneof
@@ -32,7 +32,7 @@ def check_style(declared: Declarations) -> Iterator[Diagnostic]:
     """Every name that a file declares."""
     for name, wanted, features in _names(declared):
         if features.enforce_naming_style != "STYLE_LEGACY" and not wanted.fullmatch(name.text):
-            yield say.style(name, EXAMPLES[wanted])
+            yield say_edition.style(name, EXAMPLES[wanted])
 
 
 Named = tuple["Name", re.Pattern[str], "Features"]

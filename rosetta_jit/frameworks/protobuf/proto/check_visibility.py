@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import MAX_FIELD_NUMBER
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def check_visibility(declared: Declarations) -> Iterator[Diagnostic]:
             enums = () if _is_namespace(entry, declared) else entry.message.enums
             for inner in (*entry.message.messages, *enums):
                 if inner.visibility == "export":
-                    yield say.nested_export(inner.name)
+                    yield say_edition.nested_export(inner.name)
 
 
 def _is_namespace(entry: DeclaredMessage, declared: Declarations) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
@@ -51,7 +52,7 @@ class DeclarationReader(ValueReader):
         if word.type != "VISIBILITY":
             return None
         if self.version != "2024":
-            self.problems.append(say.early_visibility(self.at(word)))
+            self.problems.append(say_edition.early_visibility(self.at(word)))
         return cast("Visibility", str(word))
 
     # Messages
@@ -93,7 +94,7 @@ class DeclarationReader(ValueReader):
         for field in all_of(node, "field"):
             first = ends(field)[0]
             if self.version == "2024" and first in VISIBILITIES:
-                self.problems.append(say.misplaced_visibility(self.at(first), first))
+                self.problems.append(say_edition.misplaced_visibility(self.at(first), first))
 
     def groups(self, node: Node) -> Iterator[Message]:
         """The messages that the groups among some fields declare."""
@@ -169,9 +170,9 @@ class DeclarationReader(ValueReader):
         quoted = [Name(self.text(string), self.span(string)) for string in all_of(node, "string")]
         bare = [self.name(token) for token in tokens_of(node)]
         if self.version in EDITIONS:
-            self.problems.extend(say.reserved_string(name) for name in quoted)
+            self.problems.extend(say_edition.reserved_string(name) for name in quoted)
         else:
-            self.problems.extend(say.reserved_identifier(name) for name in bare)
+            self.problems.extend(say_edition.reserved_identifier(name) for name in bare)
         yield from (*quoted, *bare)
 
     def range(self, node: Node, limit: int) -> Range:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
@@ -148,7 +149,7 @@ class _Resolver:
             self.problems.append(say.wrong_kind(name, full, symbol.kind, kinds))
             return Name("", name.span)
         if not symbol.exported and self.file_name not in symbol.files:
-            self.problems.append(say.local_name(name, full, min(symbol.files)))
+            self.problems.append(say_edition.local_name(name, full, min(symbol.files)))
         return Name(f".{full}", name.span)
 
     def files(self, kinds: frozenset[Kind]) -> frozenset[str]:

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.protobuf.proto.declaration_reading import DeclarationReader
 from rosetta_jit.frameworks.protobuf.proto.tree import (
@@ -42,7 +43,7 @@ def _version(root: Node, reader: ValueReader) -> Version:
         for version in EDITIONS if word == "edition" else SYNTAXES:
             if version == value:
                 return version
-        unknown = say.unknown_edition if word == "edition" else say.unknown_syntax
+        unknown = say_edition.unknown_edition if word == "edition" else say.unknown_syntax
         reader.problems.append(unknown(reader.span(string), value))
     return "proto2"
 
@@ -71,7 +72,7 @@ class _Reader(DeclarationReader):
         imports = tuple(self.import_(node) for node in all_of(root, "import"))
         for before, import_ in pairwise(imports):
             if before.kind == "option" and import_.kind != "option":
-                self.problems.append(say.late_import(import_.span))
+                self.problems.append(say_edition.late_import(import_.span))
         return imports
 
     def import_(self, node: Node) -> Import:
@@ -85,11 +86,11 @@ class _Reader(DeclarationReader):
                     return "public"
                 case "weak":
                     if self.version == "2024":
-                        self.problems.append(say.weak_import(self.at(word)))
+                        self.problems.append(say_edition.weak_import(self.at(word)))
                     return "weak"
                 case "option":
                     if self.version != "2024":
-                        self.problems.append(say.option_import(self.at(word)))
+                        self.problems.append(say_edition.option_import(self.at(word)))
                     return "option"
                 case other:
                     self.problems.append(say.unexpected(self.at(word), other, {"STRING"}))
