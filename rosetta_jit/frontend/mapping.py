@@ -81,7 +81,7 @@ class _Tokens(PostLex):
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(("START", "LEN", "FOR", "WHEN", "REJECT"), "FOR")
     return Recovery(starts, frozenset({"START", "LEN", "WHEN", "REJECT"}), opens=frozenset({"FOR", "WHEN"}), closes="END")
 
@@ -116,6 +116,7 @@ class _Reader:
             tuple(self._import(child) for child in statements if child.data == "import_file"),
             holder,
             wire,
+            self._rules(statements, "", Context(self.source, "holder", "wire", self.problems)),
             self._rules(statements, "unpack", Context(self.source, "holder", "wire", self.problems)),
             self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
             holder_span,
@@ -150,7 +151,7 @@ class _Reader:
         return name, self._token_span(token)
 
     def _rules(self, statements: list[Tree[Token]], direction: str, context: Context) -> tuple[Rule, ...] | None:
-        block = self._only(statements, f"{direction}_rules", f"{direction}-rules")
+        block = self._only(statements, f"{direction}_rules".lstrip("_"), f"{direction}-rules".lstrip("-"))
         if block is None:
             return None
         return tuple(read_rule(child, context) for child in block.children if isinstance(child, Tree))

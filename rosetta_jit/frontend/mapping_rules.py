@@ -14,7 +14,7 @@ from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
-from rosetta_jit.model.mapping import Assign, For, Reject, SetLength, When
+from rosetta_jit.model.mapping import Assign, For, Reject, Relation, SetLength, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -54,6 +54,10 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
         case "set_length":
             place, value = _trees(tree)
             return SetLength(_path(place, context.target, context), _expr(value, context), span)
+        case "relation" | "length_relation":
+            left, right = _trees(tree)
+            place = _path(left, context.target, context)
+            return Relation(place if tree.data == "relation" else Len(place, place.span), _expr(right, context), span)
         case "when":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)

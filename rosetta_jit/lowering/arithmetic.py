@@ -59,6 +59,15 @@ def _division(writer: Writer, operator: str, left: Expr, right: Expr, where: Whe
     return Binary("div" if operator == "/" else "rem", left, right)
 
 
+def divided(writer: Writer, left: Expr, right: Expr, where: Where, line: str = "") -> Expr:
+    """``left / right``; of integers only where nothing remains."""
+    if type_of(left) in ("f32", "f64"):
+        return Binary("div", left, right)
+    over = binary(writer, "%", left, right, where, line)
+    writer.expect(Compare("eq", over, index(0)), "range", where, "the division leaves a remainder", line=line)
+    return Binary("div", left, right)
+
+
 def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str = "") -> Expr:
     """``number`` rounded up to a multiple of ``quantum``; a quantum of 1 or less changes nothing."""
     writer.expect(Compare("ge", number, index(0)), "range", where, "a negative size cannot be aligned", line=line)

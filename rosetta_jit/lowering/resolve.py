@@ -11,11 +11,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
-from rosetta_jit.lowering.typed import Access, Assign, Choice, Const, FieldStep, For, Local, Reject, SetLength, When
+from rosetta_jit.lowering.typed import Access, Assign, Choice, Const, Convert, FieldStep, For, Local, Reject, SetLength, When
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union
 
@@ -100,6 +101,8 @@ class _Block:
                 return self.when(rule, scope)
             case model.Reject(text):
                 return Reject(text, rule.span)
+            case model.Relation():
+                raise AssertionError(rule)
             case _:
                 assert_never(rule)
 
@@ -116,6 +119,8 @@ class _Block:
         value = type_expr(rule.value, scope)
         if place is None:
             return None
+        if value is not None and rule.fits:
+            value = _fitted(value, place.type)
         fitting = None if value is None else _fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
@@ -195,6 +200,12 @@ def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
     for condition, chosen in reversed(value.cases):
         rest = (When(condition, (_by_case(place, chosen, span),), rest, span),)
     return rest[0]
+
+
+def _fitted(value: Expr, target: Type) -> Expr:
+    """A number as the type of its place, by a check where it may not fit."""
+    rules = rules_between(value.type, target)
+    return Convert(value, target, rules[0], value.span) if rules and convert(value, target) is None else value
 
 
 def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
@@ -130,6 +130,8 @@ class Values:
                 for argument in arguments[1:]:
                     result = Binary(function, result, argument)
                 return result
+            case "divide":
+                return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:
