@@ -216,6 +216,13 @@ def computed_cycle(span: Span | None, names: Iterable[str]) -> Diagnostic:
     return _error("computed-cycle", "constants that need each other", span, "one of them", "", "in turn: " + ", ".join(names))
 
 
+def too_many_terms(span: Span | None, limit: int) -> Diagnostic:
+    """A computed value that unfolds to a huge expression."""
+    return _error(
+        "too-many-terms", f"a value is computed from more than {limit} terms in all", span, "this one", "compute from plain fields"
+    )
+
+
 def rest_not_last(span: Span | None, name: str) -> Diagnostic:
     """A field after one that takes all remaining elements."""
     return _error("rest-not-last", f'nothing can follow "{_cut(name)}", which takes the rest', span, "here", "move it to the end")

@@ -205,7 +205,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
         writer.advance(total)
         return
     stored = fields.stored(blob.path)
-    write_count(writer, fields, blob.count, stored.size, where, extra=extra)
+    write_count(writer, fields, blob.count, stored.size, where, "length", extra=extra)
     writer.require(stored.size, where, "no room for the message")
     if writer.direction == "encode":
         fields.copy_bytes(blob.path, stored)
@@ -233,7 +233,7 @@ def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
     stored = fields.stored(text.path)
     writer.expect(Compare("lt", stored.size, index(1 << 30)), "range", where, "too many for the wire")
     marks = writer.let("marks", Convert("i64", Compare("gt", stored.size, index(0))))
-    write_count(writer, fields, text.count, writer.let("units", Binary("add", stored.size, marks)), where)
+    write_count(writer, fields, text.count, writer.let("units", Binary("add", stored.size, marks)), where, "length")
     writer.require(mul(add(stored.size, marks), 2), where, "no room for the message")
     begin = writer.position
     if writer.direction == "encode":
@@ -315,17 +315,17 @@ def _told(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
     return index(count.value) if isinstance(count.value, int) else writer.let("count", evaluate(count.value, fields.scope, writer, where))
 
 
-def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where: Where, *, extra: int = 0) -> None:
-    """A count to be written, ``extra`` more than the value has; one that the schema fixes, or another field tells, must be that one."""
+def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where: Where, kind: str = "count", *, extra: int = 0) -> None:
+    """A count to be written, ``extra`` more than the value has; one that the schema fixes, or other fields tell, must be that one."""
     if count.maximum is not None:
-        writer.expect(Compare("le", value, index(count.maximum)), "count", where, f"at most {count.maximum}")
+        writer.expect(Compare("le", value, index(count.maximum)), kind, where, f"at most {count.maximum}")
+    if count.value is not None and not isinstance(count.value, int):
+        agrees = Compare("eq", value, _told(writer, fields, count, where))
+        writer.expect(agrees, kind, where, "must agree with the fields that determine it")
     value = add(value, extra)
     if isinstance(count.value, int):
-        writer.expect(Compare("eq", value, index(count.value)), "count", where, f"must be {count.value}")
+        writer.expect(Compare("eq", value, index(count.value)), kind, where, f"must be {count.value}")
     if count.scalar is None:
-        if not isinstance(count.value, int):
-            agrees = Compare("eq", value, _told(writer, fields, count, where))
-            writer.expect(agrees, "count", where, "must agree with the field that tells it")
         return
     scalar = scalar_name(count.scalar)
     if scalar in LIMITS:

@@ -240,11 +240,12 @@ class _Bottles:
                 return Constant(path, value, SCALARS[self.unit(type_) or ""])
 
     def computed(self, value: expr.Expr | None) -> expr.Expr | None:
-        """A computed value with its paths from the message on, and the constants of the schema put in."""
+        """A computed value with its paths from the message on, and put in for them what the schema itself fixes or computes."""
         match value:
             case expr.Path(side, steps):
                 names = tuple(step.name for step in steps if isinstance(step, expr.Member))
-                known = self.constant_at(names)
+                scope, field = self.field_at(names)
+                known = None if field is None else scope.computed(field.constant)
                 return known or expr.Path(side, tuple(expr.Member(name) for name in (*self.base, *names)))
             case expr.Unary(operator, operand):
                 return expr.Unary(operator, self.computed(operand) or operand)
@@ -255,15 +256,16 @@ class _Bottles:
             case _:
                 return value
 
-    def constant_at(self, names: tuple[str, ...]) -> expr.Literal | None:
-        """The constant of a field of the declaration, if it has one."""
-        owner: Type | None = self.declared
-        found: Field | None = None
-        for name in names:
-            owner = self.schema.resolve(owner) if owner is not None else None
-            found = next((each for each in owner.fields if each.name == name), None) if isinstance(owner, Struct) else None
-            owner = found.type if found is not None else None
-        return found.constant if found is not None and isinstance(found.constant, expr.Literal) else None
+    def field_at(self, names: tuple[str, ...]) -> tuple[_Bottles, Field | None]:
+        """A field of the declaration, and the codecs of the one that it stands in: the paths of its own value start there."""
+        scope, owner, found = self, self.declared, None
+        for number, name in enumerate(names):
+            found = next((each for each in owner.fields if each.name == name), None) if owner is not None else None
+            inner = self.schema.resolve(found.type) if found is not None else None
+            owner = inner if isinstance(inner, Struct) else None
+            if found is not None and isinstance(found.type, Ref) and owner is not None and number < len(names) - 1:
+                scope = scope.within(owner, (*self.base, *names[: number + 1]))
+        return scope, found
 
     def unit(self, type_: Type) -> str | None:
         """The spelling of the tag of a scalar; None for lists and dicts."""

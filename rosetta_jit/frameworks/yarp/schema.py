@@ -2,7 +2,7 @@
 
     File     = { Import | "type.name" ( [(:documentation "...")] Field* ) }        Import = (:import "path")
     Field    = ("name" Type [Constant] Option*)
-    Type     = :int8 :int16 :int32 (:int) :int64 :float32 :float64 (:double) :vocab32 (:vocab) :vocab64 :string :blob :bool
+    Type     = :int8 :uint8 :int16 :int32 (:int) :int64 :float32 :float64 (:double) :vocab32 (:vocab) :vocab64 :string :blob :bool
              | :quantum                       the quantum word of an image, whose bytes differ by dialect
              | (:vocab :|set|)                a vocab32 that is always this one
              | (:list Type [(:length 16)])    elements of one type

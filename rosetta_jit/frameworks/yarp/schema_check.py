@@ -17,9 +17,16 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.source import Span
 
 MAX_FIELDS = 1 << 16
 """Fields of a type with all that it contains; kernels grow with it, and declarations can double it line by line."""
+
+MAX_TERMS = 256
+"""Terms of a computed value with all that it is computed from; fields can double them line by line."""
+
+Place = tuple[str, str]
+"""A field: the declaration that it stands in, and its path from there."""
 
 Members = dict[int, dict[str, "Type"]]
 """The fields of each struct by name, so that many paths into a large one are found in linear time; keys are identities."""
@@ -32,7 +39,7 @@ def check(structs: Mapping[str, Struct], limit: int) -> list[Diagnostic]:
         return problems
     members = {id(struct): {field.name: field.type for field in struct.fields} for struct in _structs(structs)}
     found = (problem for struct in structs.values() for problem in _check_computed(struct, structs, members))
-    return list(islice(found, limit))
+    return list(islice(found, limit)) or list(islice(_check_terms(structs, members), limit))
 
 
 def _check_names(structs: Mapping[str, Struct]) -> Iterator[Diagnostic]:
@@ -130,6 +137,48 @@ def _check_computed(root: Struct, structs: Mapping[str, Struct], members: Member
     except CycleError as error:
         names: list[str] = error.args[1]
         yield catalogue.computed_cycle(places[names[0]].span, names)
+
+
+def _check_terms(structs: Mapping[str, Struct], members: Members) -> Iterator[Diagnostic]:
+    """What is computed from computed values is bounded: an encoding puts them in."""
+    own: dict[Place, int] = {}
+    needs: dict[Place, list[Place]] = {}
+    spans: dict[Place, Span | None] = {}
+    for root in structs.values():
+        for name, field, _ in _fields(root, "", in_list=False):
+            for place, value in (((root.name, name), field.constant), ((root.name, f"{name}:length"), field.length)):
+                own[place], spans[place] = _terms(value), field.span
+                needs[place] = [_home(path, root, structs, members) for path in _paths(value)]
+    for place in TopologicalSorter(needs).static_order():
+        own[place] = own.get(place, 1) + sum(own[each] for each in needs.get(place, ()))
+        if own[place] > MAX_TERMS:
+            yield catalogue.too_many_terms(spans.get(place), MAX_TERMS)
+            return
+
+
+def _terms(value: Expr | None) -> int:
+    match value:
+        case Unary(_, operand):
+            return 1 + _terms(operand)
+        case Binary(_, left, right):
+            return 1 + _terms(left) + _terms(right)
+        case Call(_, arguments):
+            return 1 + sum(_terms(each) for each in arguments)
+        case _:
+            return 1
+
+
+def _home(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members) -> Place:
+    """The field that a path leads to, seen from the last declaration on its way."""
+    owner, names = root, list[str]()
+    for step in path.steps:
+        assert isinstance(step, Member)
+        type_ = members[id(owner)][step.name]
+        names.append(step.name)
+        if isinstance(type_, Ref) and step is not path.steps[-1]:
+            root, names = structs[type_.name], []
+        owner = structs[type_.name] if isinstance(type_, Ref) else type_ if isinstance(type_, Struct) else owner
+    return root.name, ".".join(names)
 
 
 def _fields(type_: Type, prefix: str, *, in_list: bool) -> Iterator[tuple[str, Field, bool]]:

@@ -27,6 +27,7 @@ TEXT = String("octets", "string")
 SCALARS: Mapping[str, Type] = MappingProxyType(
     {
         ":int8": Int(8, True, "int8"),
+        ":uint8": Int(8, False, "int8"),
         ":int16": Int(16, True, "int16"),
         ":int": Int(32, True, "int32"),
         ":int32": Int(32, True, "int32"),

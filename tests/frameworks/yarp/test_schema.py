@@ -59,6 +59,7 @@ def test_reads_the_example_of_the_paper():
     ("text", "type_"),
     [
         (":int8", Int(8, True, "int8")),
+        (":uint8", Int(8, False, "int8")),
         (":int16", Int(16, True, "int16")),
         (":int", Int(32, True, "int32")),
         (":int32", Int(32, True, "int32")),
