@@ -61,6 +61,8 @@ def _structs(structs: Mapping[str, Struct]) -> Iterator[Struct]:
             case Struct(_, fields) as struct:
                 yield struct
                 pending += [field.type for field in fields]
+            case Union(_, cases):
+                pending += [case.type for case in cases]
             case Array(inner) | Map(_, inner):
                 pending.append(inner)
             case _:
@@ -125,11 +127,12 @@ def _check_computed(root: Struct, structs: Mapping[str, Struct], members: Member
     needs: dict[str, set[str]] = {}
     places: dict[str, Field] = {}
     for name, field, in_list in _fields(root, "", in_list=False):
-        paths = [*_paths(field.constant), *_paths(field.length)]
-        if paths and in_list:
+        paths, lists = [*_paths(field.constant), *_paths(field.length)], [*_lengths(field.constant), *_lengths(field.length)]
+        if (paths or lists) and in_list:
             yield catalogue.computed_in_list(field.span)
-        elif paths:
+        elif paths or lists:
             yield from (found for path in paths if (found := _check_path(path, root, structs, members)) is not None)
+            yield from (found for path in lists if (found := _check_path(path, root, structs, members, counted=True)) is not None)
             needs[name] = {_dotted(path) for path in _paths(field.constant)}
             places[name] = field
     try:
@@ -147,25 +150,13 @@ def _check_terms(structs: Mapping[str, Struct], members: Members) -> Iterator[Di
     for root in structs.values():
         for name, field, _ in _fields(root, "", in_list=False):
             for place, value in (((root.name, name), field.constant), ((root.name, f"{name}:length"), field.length)):
-                own[place], spans[place] = _terms(value), field.span
+                own[place], spans[place] = len([*_parts(value)]), field.span
                 needs[place] = [_home(path, root, structs, members) for path in _paths(value)]
     for place in TopologicalSorter(needs).static_order():
         own[place] = own.get(place, 1) + sum(own[each] for each in needs.get(place, ()))
         if own[place] > MAX_TERMS:
             yield catalogue.too_many_terms(spans.get(place), MAX_TERMS)
             return
-
-
-def _terms(value: Expr | None) -> int:
-    match value:
-        case Unary(_, operand):
-            return 1 + _terms(operand)
-        case Binary(_, left, right):
-            return 1 + _terms(left) + _terms(right)
-        case Call(_, arguments):
-            return 1 + sum(_terms(each) for each in arguments)
-        case _:
-            return 1
 
 
 def _home(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members) -> Place:
@@ -190,32 +181,48 @@ def _fields(type_: Type, prefix: str, *, in_list: bool) -> Iterator[tuple[str, F
                 yield from _fields(field.type, f"{prefix}{field.name}.", in_list=in_list)
         case Array(inner) | Map(_, inner):
             yield from _fields(inner, prefix, in_list=True)
+        case Union(_, cases):
+            for case in cases:
+                yield prefix + case.name, case, True
+                yield from _fields(case.type, f"{prefix}{case.name}.", in_list=True)
         case _:
             return
 
 
 def _paths(expr: Expr | None) -> Iterator[Path]:
+    """The fields whose values an expression uses."""
+    return (part for part in _parts(expr) if isinstance(part, Path))
+
+
+def _lengths(expr: Expr | None) -> Iterator[Path]:
+    """The fields whose lengths an expression uses."""
+    return (part.path for part in _parts(expr) if isinstance(part, Len))
+
+
+def _parts(expr: Expr | None) -> Iterator[Expr]:
+    """An expression and what it is made of, without the paths of lengths."""
     match expr:
-        case None | Literal() | Name():
+        case None:
             return
-        case Path():
+        case Literal() | Name() | Path() | Len():
             yield expr
-        case Len(path):
-            yield path
         case Unary(_, operand):
-            yield from _paths(operand)
+            yield expr
+            yield from _parts(operand)
         case Binary(_, left, right):
-            yield from _paths(left)
-            yield from _paths(right)
+            yield expr
+            yield from _parts(left)
+            yield from _parts(right)
         case Call(_, arguments):
+            yield expr
             for argument in arguments:
-                yield from _paths(argument)
+                yield from _parts(argument)
         case _:
             assert_never(expr)
 
 
-def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members) -> Diagnostic | None:
-    """The path must lead, through structs alone, to an integer."""
+def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members, *, counted: bool = False) -> Diagnostic | None:
+    """The path must lead, through structs alone, to an integer, or to what is ``counted``."""
     type_: Type = root
     for step in path.steps:
         type_ = structs[type_.name] if isinstance(type_, Ref) else type_
@@ -229,6 +236,8 @@ def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members
                 return catalogue.path_through_list(path.span, _dotted(path))
             case _:
                 return catalogue.unknown_path(path.span, _dotted(path), ())
+    if counted:
+        return None if isinstance(type_, Array | String | Bytes) else catalogue.path_not_counted(path.span, _dotted(path))
     return None if isinstance(type_, Int) else catalogue.path_not_integer(path.span, _dotted(path))
 
 

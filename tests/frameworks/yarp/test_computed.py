@@ -7,7 +7,10 @@ import pytest
 import rosetta_jit as rj
 
 BACKENDS = ("numba", "python", "interpreter")
-TOLD = '"t.T"\n( ("n" :int) ("xs" (:list :double) (:length n)) ("text" :string (:length later)) ("data" :blob (:length (* 2 n))) ("later" :int) )\n'
+TOLD = """
+"t.T"
+( ("n" :int) ("xs" (:list :double) (:length n)) ("text" :string (:length later)) ("data" :blob (:length (* 2 n))) ("later" :int) )
+"""
 CHAIN = """
 "t.T"
 ( ("n" :int) ("twice" :int (* n 2)) ("inner" "t.Inner") ("xs" (:list :int) (:length (+ twice inner.more))) )
