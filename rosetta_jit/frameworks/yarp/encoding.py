@@ -9,18 +9,20 @@ first attempt, and the general one comes after it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.thrift import endless
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.bottle_codec import Bottles
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect
 from rosetta_jit.frameworks.yarp.thrift_encoding import Thrift
 from rosetta_jit.model.layout import recursive_structs
-from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct
+from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct, Union
 from rosetta_jit.wire.codec import Codec, Encoding
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosetta_jit.frameworks.base import Choices
     from rosetta_jit.model.types import Type
 
@@ -34,49 +36,70 @@ def encode_type(struct: Struct, schema: Schema, dialect: str, choices: Choices) 
         If the dialect has no tag for a type of the schema.
     """
     if dialect != "yarp":
-        return Encoding(dialect, _forms(struct, schema, DIALECTS[dialect]), _message(struct, schema, DIALECTS[dialect]))
+        attempts = _attempts(struct, schema, DIALECTS[dialect])
+        return Encoding(dialect, _codecs(attempts), attempts[-1].codec, nested=_nested(attempts))
     usable = [each for each in (YARP2012, YARP3, YARP4) if not _missing(struct, schema, each)]
     if not usable:
         return encode_type(struct, schema, "yarp4", choices)
     if not _has_text(struct, schema) and len(usable) > 1:
         usable = [each for each in usable if each is not YARP2012]
-    forms = [_forms(struct, schema, each) for each in usable]
+    forms = [_attempts(struct, schema, each) for each in usable]
     ordered = [form[0] for form in forms] + [each for form in forms for each in form[1:]]
-    return Encoding("yarp", tuple(dict.fromkeys(ordered)), None)
+    different = [*dict.fromkeys(ordered)]
+    return Encoding("yarp", _codecs(different), None, nested=_nested(different))
 
 
-def _forms(struct: Struct, schema: Schema, dialect: Dialect) -> tuple[Codec, ...]:
-    """The form that YARP writes, then whatever it reads."""
+@dataclass(frozen=True, slots=True)
+class _Attempt:
+    """The codec of a message, and those of the structs in it that contain themselves."""
+
+    codec: Codec
+    nested: tuple[tuple[str, Codec], ...] = ()
+
+
+def _codecs(attempts: Sequence[_Attempt]) -> tuple[Codec, ...]:
+    return tuple(each.codec for each in attempts)
+
+
+def _nested(attempts: Sequence[_Attempt]) -> tuple[dict[str, Codec], ...]:
+    return tuple(dict(each.nested) for each in attempts) if any(each.nested for each in attempts) else ()
+
+
+def _attempts(struct: Struct, schema: Schema, dialect: Dialect) -> tuple[_Attempt, ...]:
+    """What a reader tries: the form that YARP writes for what is not empty, then whatever it reads. The last one is written."""
     if struct.option("thrift"):
-        return (_message(struct, schema, dialect),)
-    expected = Bottles(schema, dialect, exact=True).message(struct)
-    general = Bottles(schema, dialect).message(struct)
+        thrift = Thrift(schema, dialect, recursive_structs(Ref(struct.name), schema))
+        return (_Attempt(thrift.message(struct), tuple(thrift.nested().items())),)
+    expected = _Attempt(Bottles(schema, dialect, exact=True).message(struct))
+    general = _Attempt(Bottles(schema, dialect).message(struct))
     return (expected, general) if expected != general else (general,)
-
-
-def _message(struct: Struct, schema: Schema, dialect: Dialect) -> Codec:
-    if not struct.option("thrift"):
-        return Bottles(schema, dialect).message(struct)
-    for name in sorted(recursive_structs(Ref(struct.name), schema)):
-        raise SchemaError((endless(schema.types[name].span, name),))
-    return Thrift(schema, dialect).message(struct)
 
 
 def _missing(struct: Struct, schema: Schema, dialect: Dialect) -> bool:
     try:
-        _message(struct, schema, dialect)
+        _attempts(struct, schema, dialect)
     except SchemaError:
         return True
     return False
 
 
-def _has_text(type_: Type, schema: Schema) -> bool:
-    match schema.resolve(type_):
-        case String() | Map():
-            return True
-        case Array(element, _):
-            return _has_text(element, schema)
-        case Struct(_, fields):
-            return any(each.option("key") is not None or _has_text(each.type, schema) for each in fields)
-        case _:
-            return False
+def _has_text(struct: Struct, schema: Schema) -> bool:
+    """Whether strings are in a message, which 2012 wrote in its own way."""
+    pending: list[Type] = [struct]
+    seen: set[str] = set()
+    while pending:
+        match pending.pop():
+            case String() | Map():
+                return True
+            case Array(element):
+                pending.append(element)
+            case Struct(_, fields) | Union(_, fields):
+                if any(each.option("key") is not None for each in fields):
+                    return True
+                pending += [each.type for each in fields]
+            case Ref(name) if name not in seen:
+                seen.add(name)
+                pending.append(schema.types[name])
+            case _:
+                pass
+    return False
