@@ -127,6 +127,18 @@ def test_the_dialect_is_found():
             assert decode(found[name]).to_dict() == programs(type_, dialect, "python")[0](found[name]).to_dict()
 
 
+@pytest.mark.parametrize("dialect", ["yarp3", "yarp4"])
+def test_point_clouds_that_promise_too_much(dialect):
+    decode, _ = programs("yarp.sig.PointCloudXYZ", dialect)
+    cases = json.loads((VECTORS / f"malformed-{dialect}.json").read_text())
+    clouds = [bytes.fromhex(case["hex"]) for case in cases if case["kind"] == "pointcloud"]
+    clouds += [struct.pack("<iiibiii", 1 << 16, 1 << 16, 2, 1, 256 | DOUBLE[dialect], 0, 0)[: 21 + extra] for extra in (0, 4)]
+    assert len(clouds) == 4
+    for data in clouds:
+        with pytest.raises(rj.DecodeError):
+            decode(data)
+
+
 # --- properties -------------------------------------------------------------------------------------------------------------
 
 PROPERTY = '(a 1) (b 2.5) (c hello) (d true) (e (1.0 2.0)) (f (1 2)) (g ("x y" z)) (h ()) (k {1 2 255})'
