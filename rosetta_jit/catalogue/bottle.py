@@ -295,6 +295,12 @@ def blob_of_any_size(span: Span | None, name: str) -> Diagnostic:
     return _error("blob-of-any-size", f'the content of the blob "{_cut(name)}" has no fixed size', span, "this one", "use numbers alone")
 
 
+def not_spread(span: Span | None, name: str) -> Diagnostic:
+    """A list marked `:spread` whose elements are no plain structs."""
+    why = "elements of a :spread list are bottles of plain fields"
+    return _error("not-spread", f'the elements of "{_cut(name)}" cannot lie in the list around', span, "this one", why)
+
+
 def misplaced_union(span: Span | None, name: str) -> Diagnostic:
     """A union whose case would decide about what follows it."""
     return _error(

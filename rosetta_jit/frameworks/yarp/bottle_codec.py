@@ -104,13 +104,16 @@ class Bottles:
         """The count of a list and its elements."""
         keyed = is_dict(struct)
         fixed = [each for each in struct.fields if self.has(each) and not each.option("rest")]
-        absent = tuple(Repeat((*path, each.name), Count(None, value=0), Seq(())) for each in struct.fields if not self.has(each))
         head = tuple(self.entry(each, path) if keyed else self.place(each, path, tagged=tagged) for each in fixed)
         rest = next((each for each in struct.fields if each.option("rest")), None)
         if rest is None:
-            return Seq((Constant(path, len(head), "i32", kind="count"), *head, *absent))
+            return Seq((Constant(path, len(head), "i32", kind="count"), *head, *self.absent(struct, path)))
         listed = self.elements(rest, (*path, rest.name), tagged=tagged, head=head)
-        return Seq((listed, *absent)) if absent else listed
+        return Seq((listed, *absent)) if (absent := self.absent(struct, path)) else listed
+
+    def absent(self, struct: Struct, path: Path) -> tuple[Codec, ...]:
+        """The lists that the dialect does not have: they have no elements, and no bytes."""
+        return tuple(Repeat((*path, each.name), Count(None, value=0), Seq(())) for each in struct.fields if not self.has(each))
 
     def has(self, field: Field) -> bool:
         """Whether the dialect is one of those that write a field."""
@@ -144,7 +147,7 @@ class Bottles:
             return self.within(resolved, path).element(field, resolved, path)
         match resolved:
             case Struct() if field.option("blob"):
-                return self.blob(field, resolved, path)
+                return Seq((Constant(path, self.dialect.tags["blob"], "i32", kind="tag"), self.blob(field, resolved, path)))
             case Struct() if is_packed(resolved):
                 raise SchemaError((catalogue.packed_element(field.span, field.name),))
             case Struct() if union_of(resolved) is not None:
@@ -191,6 +194,8 @@ class Bottles:
         count = Count("i32", value=fixed if fixed is not None else self.computed(field.length))
         inner = replace(field, constant=None, length=None, options=())
         spread = self.spread(field)
+        if field.option("spread") and (spread is None or not _is_plain(spread)):
+            raise SchemaError((catalogue.not_spread(field.span, field.name),))
         if spread is not None:
             below = self.within(spread, ()) if isinstance(array.element, Ref) else self
             item: Codec = Seq(tuple(below.place(each, (), tagged=tagged) for each in spread.fields))
@@ -205,12 +210,12 @@ class Bottles:
         return element if isinstance(element, Struct) else None
 
     def blob(self, field: Field, struct: Struct, path: Path) -> Codec:
-        """A blob whose bytes are a struct."""
+        """The length of a blob, and its bytes, which are a struct."""
         content = replace(self, exact=True).struct(struct, path)
         size = fixed_size(content)
         if size is None:
             raise SchemaError((catalogue.blob_of_any_size(field.span, field.name),))
-        return Seq((Constant(path, self.dialect.tags["blob"], "i32", kind="tag"), Constant(path, size, "i32", kind="count"), content))
+        return Seq((Constant(path, size, "i32", kind="count"), content))
 
     # --- values without a code ---------------------------------------------------------------------------------------
 
@@ -224,9 +229,9 @@ class Bottles:
         words, octets = divmod(int(field.option("padding") or 0), 4)
         behind = (*[Padding("u32", 0)] * words, *[Padding("u8", 0)] * octets)
         match resolved:
-            case Struct() if is_packed(resolved):
+            case Struct() if field.option("blob") or is_packed(resolved):
                 below = self.within(resolved, path) if isinstance(type_, Ref) else self
-                found = below.values(resolved, path)
+                found = below.blob(field, resolved, path) if field.option("blob") else below.values(resolved, path)
             case Struct() | Array() | Map():
                 found = self.element(field, type_, path)
             case _:
@@ -278,26 +283,29 @@ class Bottles:
 
     def with_union(self, struct: Struct, union: Union, path: Path) -> Codec:
         """A list that ends with a union. Where its case makes all elements of one type, YARP's writer says that type once."""
-        *head, last = struct.fields
+        *head, last = (each for each in struct.fields if self.has(each))
         teller, cases = (*path, last.name, "_d"), (*path, last.name, "_u")
-        count = Constant(path, len(struct.fields), "i32", kind="count")
+        count = Constant(path, len(head) + 1, "i32", kind="count")
         bodies = [self.case_form(each, (*cases, each.name)) for each in union.cases]
         if len({code for code, _ in bodies}) < len(bodies):
             raise SchemaError((catalogue.like_cases(last.span, last.name),))
         special: dict[int, Form] = {}
         for label, case in enumerate(union.cases):
-            unit = self.unit(case.type)
+            (unit,) = self.units([case])
             if unit is not None and self.units(head) <= {unit}:
                 places = (self.place(each, path, tagged=False) for each in head)
                 special[label] = LIST | self.tag(unit, case), Seq((count, *places, Table(teller, None, ((0, label),))))
         code = Table(teller, "i32", tuple((code, label) for label, (code, _) in enumerate(bodies)))
         general = (LIST, Seq((count, *(self.place(each, path, tagged=True) for each in head), code)))
         form = Choice(teller, "i32", (*special.values(), general), labels=tuple(special))
-        return Cases(cases, form, tuple(((label,), body) for label, (_, body) in enumerate(bodies)))
+        told = Cases(cases, form, tuple(((label,), body) for label, (_, body) in enumerate(bodies)))
+        return Seq((told, *absent)) if (absent := self.absent(struct, path)) else told
 
     def case_form(self, case: Field, path: Path) -> Form:
         """The code that announces a case of a union, and what follows it."""
         match self.schema.resolve(case.type):
+            case Struct() if case.option("blob"):
+                return self.dialect.tags["blob"], self.value(case, case.type, path)
             case (Struct() | Map() | Array()) as group:
                 below = self.within(group, path) if isinstance(case.type, Ref) and isinstance(group, Struct) else self
                 return below.forms(case, group, path)[0]
@@ -319,6 +327,8 @@ class Bottles:
                 continue
             if spread is not None:
                 found |= self.units(spread.fields)
+            elif field.option("blob"):
+                found.add("blob")
             else:
                 found.add(self.unit(array.element if field.option("rest") and isinstance(array, Array) else field.type))
         return found
@@ -342,6 +352,12 @@ class Bottles:
         if unit not in self.dialect.tags:
             raise SchemaError((catalogue.no_such_tag(field.span, unit or "list", self.dialect.name),))
         return self.dialect.tags[unit]
+
+
+def _is_plain(struct: Struct) -> bool:
+    """Whether a struct is a list with a place for each field, none of which depends on others or on the dialect."""
+    odd = any(each.option("rest") or each.option("since") for each in struct.fields)
+    return bool(struct.fields) and not struct.options and not is_dict(struct) and not odd
 
 
 def _free_path(field: Field, type_: Struct | Map | Array, path: Path) -> Path | None:

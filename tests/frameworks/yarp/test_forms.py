@@ -46,6 +46,25 @@ def test_a_typed_blob():
     check(body, {"n": 7, "head": {"a": 1, "b": 2.0}}, struct.pack("<6ihd", 256, 2, 1, 7, 12, 10, 1, 2.0))
 
 
+def test_typed_blobs_are_blobs_like_others():
+    head = '("head" (:blob (:bottle :packed ("a" :int16))))'
+    check(f'("b" :blob) {head}', {"b": b"x", "head": {"a": 1}}, struct.pack("<3i1sih", 256 | 12, 2, 1, b"x", 2, 1))
+    check(f':packed {head} ("n" :int8)', {"head": {"a": 1}, "n": 2}, struct.pack("<ihb", 2, 1, 2))
+    union = f'("n" :int) ("v" (:union ("i" :int) {head}))'
+    check(union, {"n": 7, "v": {"head": {"a": 1}}}, struct.pack("<6ih", 256, 2, 1, 7, 12, 2, 1))
+
+
+def test_what_came_later_is_empty_before():
+    body = '("n" :int) ("new" (:list :int) (:since :yarp4)) ("v" (:union ("i" :int) ("s" :string)))'
+    decode, encode = programs(body, encoding="yarp3")
+    data = struct.pack("<4i", 257, 2, 7, 5)
+    assert decode(data).to_dict()["new"] == []
+    assert encode(decode(data)) == data
+    newer = decode(data)
+    newer.new = [1, 2]
+    assert programs(body)[0](programs(body)[1](newer)).to_dict()["new"] == [1, 2]
+
+
 def test_spread_elements_are_counted_one_by_one():
     body = '("n" :int) ("points" (:list (:bottle ("x" :int) ("y" :int))) :rest :spread)'
     decode, encode = programs(body)
@@ -103,6 +122,8 @@ def test_a_dict_of_anything():
         (f'("n" :int) ("u" (:union ("b" (:bottle {UNION}))))', "misplaced-union"),
         ('("n" :int) ("u" (:union ("a" :vocab) ("b" :bool)))', "like-cases"),
         (':packed ("u" (:union ("a" :int)))', "misplaced-union"),
+        ('("n" :int) ("xs" (:list :int) :rest :spread)', "not-spread"),
+        ('("n" :int) ("xs" (:list (:bottle ("y" (:list :int) :rest))) :rest :spread)', "not-spread"),
     ],
 )
 def test_what_has_no_bytes(body, words):
