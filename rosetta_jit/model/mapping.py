@@ -2,6 +2,7 @@
 
     Mapping = Import*, holder type, wire type, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
+            | When(condition, Rule*, Rule*) | Reject(text)
 
 In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's.
 """
@@ -53,7 +54,25 @@ class For:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For
+@dataclass(frozen=True, slots=True)
+class When:
+    """``when condition ... else ... end``"""
+
+    condition: Expr
+    then: tuple[Rule, ...]
+    otherwise: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """``reject "text"``: the message is refused, whatever else it holds."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject
 
 
 @dataclass(frozen=True, slots=True)
