@@ -15,7 +15,7 @@ _DDS = {
     "text": "bytes that are no UTF-8 are kept (Fast CDR)",
     "enum": "numbers that the enum does not name are kept (rosbags, Cyclone DDS in Python)",
     "bounds": "more than a bound allows is read and written (rosbags)",
-    "trailing": "up to three bytes may be left over (payloads padded by Fast DDS)",
+    "trailing": "up to three bytes may be left over, announced or not (payloads padded by older Fast DDS)",
 }
 _IDL = f"{_HERE}.omg.idl:parse"
 

@@ -277,12 +277,24 @@ Codec = (
 
 
 @dataclass(frozen=True, slots=True)
+class Ending:
+    """Padding behind a message: the last two bits of its byte number ``told`` say how many bytes.
+
+    It is written up to a multiple of ``align`` bytes from the origin.
+    """
+
+    told: int
+    align: int = 1
+
+
+@dataclass(frozen=True, slots=True)
 class Encoding:
     """All that a wire is for one type.
 
     ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
-    ``origin`` is where alignment counts from, in bytes behind the begin of the message; ``spare`` bytes may be left over at its end.
+    ``origin`` is where alignment counts from, in bytes behind the begin of the message. At its end there is what ``ending`` says, and
+    ``spare`` bytes may be left over.
     """
 
     name: str
@@ -291,6 +303,7 @@ class Encoding:
     recursive: Mapping[str, Tagged] = field(default_factory=dict["str", "Tagged"])
     nested: tuple[Mapping[str, Codec], ...] = ()
     origin: int = 0
+    ending: Ending | None = None
     spare: int = 0
 
 

@@ -41,6 +41,9 @@ def show_encoding(encoding: Encoding) -> str:
         lines += [f"attempt {number}", *_lines(attempt, 1)]
     if encoding.written is not None and encoding.written not in encoding.attempts:
         lines += ["written", *_lines(encoding.written, 1)]
+    if encoding.ending is not None:
+        aligned = f", written up to a multiple of {encoding.ending.align} bytes" if encoding.ending.align > 1 else ""
+        lines.append(f"padding at the end, as much as the last two bits of byte {encoding.ending.told} say{aligned}")
     for messages in (encoding.recursive, *encoding.nested[:1]):
         for name, each in messages.items():
             lines += [f"message {name}", *_lines(each, 1)]

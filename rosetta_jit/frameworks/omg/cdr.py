@@ -26,6 +26,7 @@ from rosetta_jit.wire.codec import (
     Count,
     Delimited,
     Encoding,
+    Ending,
     Maybe,
     Member,
     Members,
@@ -50,6 +51,10 @@ HEADER_BYTES = 4
 EXTENSIBILITY = {"final": 0x06, "appendable": 0x08, "mutable": 0x0A}
 """Representation identifiers of XCDR2 (DDS-XTypes 1.3, table 60), of the big-endian form; the little-endian one is one more."""
 PADDING_OF_PAYLOADS = 3
+OPTIONS = 3
+"""The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
+ENDINGS = {"cdr": Ending(OPTIONS), "cdr2": Ending(OPTIONS, align=4)}
+"""XCDR2 is written with the padding that the specification asks for; XCDR1 without any, as ROS 2 has it."""
 DUAL_USE = {1: 5, 4: 6, 8: 7}
 """Length codes of sequences whose count is also their length, by the size of their elements."""
 
@@ -68,7 +73,8 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
         nested += [{each: rules.settled(rules.members(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
     origin = 0 if name == "cdr-giop" else HEADER_BYTES
     spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
-    return Encoding(name, tuple(attempts), attempts[0], nested=tuple(nested) if recursive else (), origin=origin, spare=spare)
+    recursion = tuple(nested) if recursive else ()
+    return Encoding(name, tuple(attempts), attempts[0], nested=recursion, origin=origin, ending=ENDINGS.get(name), spare=spare)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +99,7 @@ class _Rules:
         return settle(codec, phase)[0]
 
     def header(self, struct: Struct) -> tuple[Codec, ...]:
-        """The representation identifier, and two bytes of options that no reader needs."""
+        """The representation identifier, and two bytes of options, of which the `Ending` is the last."""
         base = EXTENSIBILITY[_extensibility(struct)] if self.second else 0
         return Constant((), bytes((0, base + (self.order == "<")))), Padding("u16", 0)
 

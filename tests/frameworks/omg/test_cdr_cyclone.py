@@ -27,6 +27,12 @@ def program(kind, schema, name, **options):
     return made
 
 
+def padded(data):
+    """As DDS-XTypes 1.3, 7.6.3.1.2 asks for it, and as Cyclone DDS in C writes it: Cyclone DDS in Python leaves out the padding."""
+    size = -len(data) % 4
+    return data[:3] + bytes([size]) + data[4:] + bytes(size)
+
+
 def agrees(seed, encoding, order, backend):
     schema, name, made = random_types(seed, extended=encoding == "cdr2")
     decode = program(Decoder, schema, name, encoding=encoding, backend=backend)
@@ -36,7 +42,7 @@ def agrees(seed, encoding, order, backend):
         data = theirs.serialize(use_version_2=encoding == "cdr2", endianness=ORDERS[order])
         holder = decode(data)
         assert repr(holder.to_dict()) == repr(plain)
-        assert bytes(encode(holder)) == data
+        assert bytes(encode(holder)) == (padded(data) if encoding == "cdr2" else data)
 
 
 @pytest.mark.parametrize("encoding", ["cdr", "cdr2"])
