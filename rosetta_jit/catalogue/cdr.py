@@ -20,15 +20,20 @@ def no_wide_strings(span: Span | None, name: str) -> Diagnostic:
 
 
 def no_optionals(span: Span | None, name: str) -> Diagnostic:
-    """An optional member in an encoding that has none."""
-    what = f"`{name}` is optional, which plain CDR cannot say"
-    return Diagnostic("error", "optional-member", what, span, help='choose encoding="cdr2"')
+    """An optional member in CORBA."""
+    return Diagnostic("error", "optional-member", f"`{name}` is optional, which CORBA has no bytes for", span, help='choose encoding="cdr"')
 
 
 def no_mutables(span: Span | None, name: str) -> Diagnostic:
-    """A mutable struct in an encoding that has none."""
-    what = f"`{name}` is mutable, which plain CDR cannot say"
-    return Diagnostic("error", "mutable-struct", what, span, help='choose encoding="cdr2"')
+    """A mutable struct in CORBA."""
+    return Diagnostic("error", "mutable-struct", f"`{name}` is mutable, which CORBA has no bytes for", span, help='choose encoding="cdr"')
+
+
+def recursive_parameter(span: Span | None, name: str) -> Diagnostic:
+    """A recursive struct in an optional member, or a member of a mutable struct, in XCDR1."""
+    what = f"`{name}` is recursive and has its length before it, which rosetta_jit does not write"
+    help_ = "make it a sequence of a final struct, which may be empty"
+    return Diagnostic("error", "recursive-parameter", what, span, help=help_)
 
 
 def no_recursion(span: Span | None, name: str) -> Diagnostic:

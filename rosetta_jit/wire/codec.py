@@ -1,7 +1,7 @@
 r"""A codec: an invertible description of bytes, without a direction.
 
     Codec  = Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Seq | Repeat | Choice | Cases | Maybe
-           | Delimited | Members | Utf16 | Tagged | Recursion
+           | Delimited | Members | Parameter | Parameters | Utf16 | Tagged | Recursion
     Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes, or that alone
 
 A leaf names the field that it carries by a path relative to the element around it: the message, an element of a `Repeat`, or a message of
@@ -180,12 +180,12 @@ class Utf16:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member of a mutable struct: its id, its codec, and how its length is told (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2)."""
+    """A member with its id and its length before it; ``length_code`` is how XCDR2 tells that (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2)."""
 
     number: int
     path: Path
     value: Codec
-    length_code: int
+    length_code: int = 4
     optional: bool = False
     must_understand: bool = False
 
@@ -193,6 +193,23 @@ class Member:
 @dataclass(frozen=True, slots=True)
 class Members:
     """The number of bytes of what follows, then members with their ids in any order, unknown ones skipped (PL_CDR2)."""
+
+    path: Path
+    members: tuple[Member, ...]
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """An optional member as XCDR1 has it: its id, and its length, which is zero where it is absent. Alignment counts from its begin."""
+
+    member: Member
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """Such members in any order up to a sentinel, absent ones left out, unknown ones skipped (PL_CDR)."""
 
     path: Path
     members: tuple[Member, ...]
@@ -270,6 +287,8 @@ Codec = (
     | Maybe
     | Delimited
     | Members
+    | Parameter
+    | Parameters
     | Utf16
     | Tagged
     | Recursion
@@ -320,7 +339,9 @@ def recurses(codec: Codec) -> bool:
             return any(recurses(each) for _, each in cases)
         case Maybe(_, value) | Delimited(_, value):
             return recurses(value)
-        case Members(_, members):
+        case Parameter(member):
+            return recurses(member.value)
+        case Members(_, members) | Parameters(_, members):
             return any(recurses(each.value) for each in members)
         case _:
             return False

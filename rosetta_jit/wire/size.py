@@ -18,6 +18,8 @@ from rosetta_jit.wire.codec import (
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Recursion,
     Repeat,
     Seq,
@@ -61,6 +63,8 @@ def fixed_size(codec: Codec) -> int | None:
             | Maybe()
             | Delimited()
             | Members()
+            | Parameter()
+            | Parameters()
             | Utf16()
             | Tagged()
             | Recursion()
@@ -90,7 +94,7 @@ def minimum_size(codec: Codec) -> int:
             return 4 + minimum_size(value)
         case Align():
             return 0
-        case Members() | Utf16():
+        case Members() | Parameter() | Parameters() | Utf16():
             return 4
         case Varint() | Recursion():
             return 1

@@ -1,7 +1,7 @@
 """Common Data Representation, in which CORBA and DDS write a type.
 
 cdr-giop    CORBA 3.3 part 2, 9.3: no header, the byte order is told elsewhere
-cdr         DDS-XTypes 1.3, 7.4.1 (XCDR1 of final types), behind an encapsulation header of four bytes that says the byte order
+cdr         DDS-XTypes 1.3, 7.4.1 (XCDR1), behind an encapsulation header of four bytes that says the byte order
 cdr2        DDS-XTypes 1.3, 7.4.3 (XCDR2): nothing is aligned to more than four bytes, and what may change has its size before it
 
 Everything is written at a multiple of its size from the origin, behind the header: that rule is `_Rules.aligned`, and nowhere else.
@@ -32,6 +32,8 @@ from rosetta_jit.wire.codec import (
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Path,
     Recursion,
     Repeat,
@@ -48,8 +50,11 @@ if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Order
 
 HEADER_BYTES = 4
-EXTENSIBILITY = {"final": 0x06, "appendable": 0x08, "mutable": 0x0A}
-"""Representation identifiers of XCDR2 (DDS-XTypes 1.3, table 60), of the big-endian form; the little-endian one is one more."""
+IDENTIFIERS = {
+    "cdr": {"final": 0x00, "appendable": 0x00, "mutable": 0x02},
+    "cdr2": {"final": 0x06, "appendable": 0x08, "mutable": 0x0A},
+}
+"""Representation identifiers (DDS-XTypes 1.3, table 60), of the big-endian form; the little-endian one is one more."""
 PADDING_OF_PAYLOADS = 3
 OPTIONS = 3
 """The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
@@ -100,7 +105,7 @@ class _Rules:
 
     def header(self, struct: Struct) -> tuple[Codec, ...]:
         """The representation identifier, and two bytes of options, of which the `Ending` is the last."""
-        base = EXTENSIBILITY[_extensibility(struct)] if self.second else 0
+        base = IDENTIFIERS[self.encoding][_extensibility(struct)]
         return Constant((), bytes((0, base + (self.order == "<")))), Padding("u16", 0)
 
     def aligned(self, codec: Codec, size: int) -> Codec:
@@ -132,9 +137,7 @@ class _Rules:
             case Union() as union:
                 return self.union(union, own, struct)
             case Optional(value):
-                if not self.second:
-                    raise SchemaError((words.no_optionals(field.span, field.name),))
-                return Maybe(own, self.value(value, own, field))
+                return Maybe(own, self.value(value, own, field)) if self.second else self.optional(field, own, struct)
             case type_:
                 return self.value(type_, own, field)
 
@@ -144,11 +147,23 @@ class _Rules:
         cases = tuple((labels, self.field(case, path, struct)) for labels, case in zip(union.labels, union.cases, strict=True))
         return Cases(path, discriminator, cases, union.default)
 
+    def optional(self, field: Field, path: Path, struct: Struct) -> Codec:
+        if self.encoding == "cdr-giop":
+            raise SchemaError((words.no_optionals(field.span, field.name),))
+        member = self.member(field, struct.fields.index(field), path)
+        if recurses(member.value):
+            raise SchemaError((words.recursive_parameter(field.span, field.name),))
+        return self.aligned(Parameter(member, self.order), 4)
+
     def mutable(self, struct: Struct, path: Path) -> Codec:
-        if not self.second:
+        if self.encoding == "cdr-giop":
             raise SchemaError((words.no_mutables(struct.span, struct.name),))
         members = tuple(self.member(each, number, (*path, each.name)) for number, each in enumerate(struct.fields))
-        return self.aligned(Members(path, members, self.order), 4)
+        recursive = next((each for each, member in zip(struct.fields, members, strict=True) if recurses(member.value)), None)
+        if recursive is not None:
+            raise SchemaError((words.recursive_parameter(recursive.span, recursive.name),))
+        kind = Members if self.second else Parameters
+        return self.aligned(kind(path, members, self.order), 4)
 
     def member(self, field: Field, position: int, path: Path) -> Member:
         optional = isinstance(field.type, Optional)
