@@ -1,4 +1,4 @@
-"""What CDR cannot carry, or peers do not agree on."""
+"""What CDR cannot carry."""
 
 from __future__ import annotations
 
@@ -8,15 +8,6 @@ from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span
-
-
-def no_wide_strings(span: Span | None, name: str) -> Diagnostic:
-    """A wide string on DDS, where implementations do not agree on its bytes."""
-    notes = ("Fast CDR 1 writes four bytes a character, others two, and neither says which",)
-    help_ = "use a string: it is UTF-8"
-    return Diagnostic(
-        "error", "wide-string", f"`{name}` is a wide string, whose bytes DDS peers do not agree on", span, notes=notes, help=help_
-    )
 
 
 def no_optionals(span: Span | None, name: str) -> Diagnostic:

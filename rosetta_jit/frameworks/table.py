@@ -17,6 +17,7 @@ _DDS = {
     "bounds": "more than a bound allows is read and written (rosbags)",
     "trailing": "up to three bytes may be left over, announced or not (payloads padded by older Fast DDS)",
 }
+_ROS2 = {"wstring": "wide strings have four bytes a unit, and units are counted, both ways (rmw_fastrtps, rmw_cyclonedds)"}
 _IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (
@@ -67,7 +68,7 @@ FRAMEWORKS = (
         encodings={"cdr": _CDR, "cdr2": _CDR},
         manners=f"{_HERE}.ros2.manners:RCLPY",
         files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
-        leniencies={"cdr": _DDS, "cdr2": _DDS},
+        leniencies={"cdr": _DDS | _ROS2, "cdr2": _DDS},
         byte_orders=("cdr", "cdr2"),
     ),
     Framework(

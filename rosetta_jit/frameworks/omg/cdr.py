@@ -217,7 +217,7 @@ class _Rules:
             case Enum():
                 return self.enumerator(type_, path)
             case String():
-                return self.string(type_, path, field)
+                return self.string(type_, path)
             case Bytes(_, length, maximum):
                 return Blob(path, Count(None, value=length)) if length is not None else self.counted(Blob(path, self.count(maximum)))
             case Array():
@@ -246,12 +246,21 @@ class _Rules:
         numbers = tuple((number, number) for number in sorted({number for _, number in enum.values}))
         return self.aligned(Table(path, scalar, numbers, self.order), size)
 
-    def string(self, string: String, path: Path, field: Field) -> Codec:
+    def string(self, string: String, path: Path) -> Codec:
         if string.encoding == "utf-16":
-            if self.encoding != "cdr-giop":
-                raise SchemaError((words.no_wide_strings(field.span, field.name),))
-            return self.counted(Utf16(path, replace(self.count(string.maximum), unit=2)))
+            return self.counted(self.wide_string(string, path))
         return self.counted(Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True))
+
+    def wide_string(self, string: String, path: Path) -> Codec:
+        """On DDS its bytes are counted, and there is no mark (DDS-XTypes 1.3, 7.4.1.1.2); what ROS 2 does instead is a leniency."""
+        counted = self.count(string.maximum)
+        if self.encoding == "cdr-giop":
+            return Utf16(path, replace(counted, unit=2))
+        unit = Number((), "u16", self.order)
+        if "wstring" not in self.lenient:
+            return Repeat(path, replace(counted, unit=2), unit)
+        halves = (unit, Constant((), 0, "u16", self.order))
+        return Repeat(path, counted, Seq(halves if self.order == "<" else halves[::-1]))
 
     def counted(self, codec: Codec) -> Codec:
         return self.aligned(codec, 4)
