@@ -38,7 +38,11 @@ FRAMEWORKS = (
     Framework(
         "ros1",
         features=f"{_HERE}.ros1.features:PROBES",
-        idl={".msg": f"{_HERE}.ros1.idl:parse"},
+        idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros1.idl:parse"),
+        several={
+            ".srv": ("Request", "Response"),
+            ".action": ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback"),
+        },
         encodings={"ros1": f"{_HERE}.ros1.encoding:encode_type"},
         manners=f"{_HERE}.ros1.manners:GENPY",
         files=("*ros1/*.msg", "*ros1-2012/*.msg"),
@@ -64,10 +68,21 @@ FRAMEWORKS = (
     Framework(
         "ros2",
         features=f"{_HERE}.ros2.features:PROBES",
-        idl={".msg": f"{_HERE}.ros2.idl:parse", ".idl": _IDL},
+        idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros2.idl:parse") | {".idl": _IDL},
+        several={
+            ".srv": ("_Request", "_Response", "_Event", ""),
+            ".action": (
+                "_Goal",
+                "_Result",
+                "_Feedback",
+                "_FeedbackMessage",
+                *(f"_{service}{end}" for service in ("SendGoal", "GetResult") for end in ("_Request", "_Response", "_Event", "")),
+                "",
+            ),
+        },
         encodings={"cdr": _CDR, "cdr2": _CDR},
         manners=f"{_HERE}.ros2.manners:RCLPY",
-        files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
+        files=("*/msg/*.msg", "*/msg/*.idl", "*/srv/*.srv", "*/action/*.action", "*ros2/*.*"),
         leniencies={"cdr": _DDS | _ROS2, "cdr2": _DDS},
         byte_orders=("cdr", "cdr2"),
     ),

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
-from rosetta_jit.frameworks.ros.names import declared_in, places, split
+from rosetta_jit.frameworks.ros.interfaces import parts
+from rosetta_jit.frameworks.ros.names import Declared, declared_in, places, split
 from rosetta_jit.frameworks.ros.order import dependencies_first
 from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS, read
 from rosetta_jit.frameworks.ros.sections import sections
@@ -26,7 +27,7 @@ MAX_MESSAGES = 4096
 def gather(source: Source, load: Load, dialect: Dialect, problems: list[Diagnostic]) -> tuple[Definition, ...]:
     """Read a source and the messages that it needs; those that the text itself defines come before any on the search path."""
     gathering = _Gathering(source, load, dialect, problems)
-    gathering.add(source, *declared_in(source.name, dialect))
+    gathering.add(source, declared_in(source.name, dialect))
     while gathering.waiting and len(problems) < MAX_PROBLEMS:
         gathering.find(*gathering.waiting.popleft())
     return () if problems else dependencies_first(gathering.found, problems)
@@ -42,9 +43,12 @@ class _Gathering:
     waiting: deque[tuple[TypeName, Definition]] = field(default_factory=deque["tuple[TypeName, Definition]"])
     missing: set[str] = field(default_factory=set[str])
 
-    def add(self, source: Source, package: str, short: str) -> None:
-        """The definitions of a text, whose first one is that of the named message."""
-        for section in sections(source, package, short, self.dialect, self.problems):
+    def add(self, source: Source, declared: Declared) -> None:
+        """The definitions of a text, whose first one is that of the named message, or of the file of a service or an action."""
+        several = source.name.endswith(f".{declared.folder}") and declared.folder in self.dialect.interfaces
+        for section in (parts if several else sections)(source, declared, self.dialect, self.problems):
+            if section.local and self.problems:
+                return  # what peers add to a file that is wrong says nothing new
             definition = read(section, self.dialect, self.problems)
             known = self.found.setdefault(definition.name, definition)
             if known is definition:
@@ -59,7 +63,9 @@ class _Gathering:
         package, short = split(type_.base)
         asked = tuple(places(type_.base, user.source.name, self.dialect))
         sources = (self.load(place) for place in asked)
-        source = next((each for each in sources if each is not None and declared_in(each.name, self.dialect)[0] in ("", package)), None)
+        source = next(
+            (each for each in sources if each is not None and declared_in(each.name, self.dialect).package in ("", package)), None
+        )
         if source is None:
             self.missing.add(type_.base)
             self.problems.append(say.unknown_message(type_.span, type_.base, type_.written, asked, tuple(self.dialect.scalars)))
@@ -67,4 +73,4 @@ class _Gathering:
             self.problems.append(say.too_many(type_.span, MAX_MESSAGES))
             self.waiting.clear()
         else:
-            self.add(source, package, short)
+            self.add(source, Declared(package, "msg", short))
