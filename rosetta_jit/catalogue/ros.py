@@ -173,6 +173,13 @@ def too_deep(span: Span, name: str, depth: int, fields: int) -> Diagnostic:
     return _error("nesting", message, span, "too large")
 
 
+def no_literal(span: Span, value: str) -> Diagnostic:
+    """A value of a message that is read as IDL, since others are declared in IDL, and is none there."""
+    return _error(
+        "value", f"IDL cannot write `{value}`", span, "has this value", "Declare it, or what it is used with, in the other language."
+    )
+
+
 def no_type_hash(span: Span | None, name: str) -> Diagnostic:
     """A type that type descriptions of ROS 2 cannot describe."""
     return _error("type-hash", f"the type of `{_short(name)}` has no place in a ROS 2 type description", span, "cannot be hashed")

@@ -68,7 +68,7 @@ FRAMEWORKS = (
     Framework(
         "ros2",
         features=f"{_HERE}.ros2.features:PROBES",
-        idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros2.idl:parse") | {".idl": _IDL},
+        idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros2.idl:parse") | {".idl": f"{_HERE}.ros2.idl:parse_idl"},
         several={
             ".srv": ("_Request", "_Response", "_Event", ""),
             ".action": (

@@ -70,6 +70,8 @@ class Dialect:
         What there is besides messages, by folder, which is also the suffix of the files.
     dashes
         A line between two messages of these.
+    foreign
+        The suffix of files of another IDL in which messages may be declared, too.
     empty
         The fields of a message without any: rosidl gives it one, which is on the wire and can hold anything.
     """
@@ -89,6 +91,7 @@ class Dialect:
     structs: Mapping[str, Struct] = field(default_factory=dict[str, "Struct"])
     aliases: Mapping[str, str] = field(default_factory=dict[str, str])
     interfaces: Mapping[str, Interface] = field(default_factory=dict[str, Interface])
+    foreign: str = ""
     empty: tuple[Field, ...] = ()
 
     def message(self, package: str, name: str, folder: str = "msg") -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, definitions_of, schema_of
+from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros1.md5 import md5_sums, service_sums
 from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
 
@@ -90,7 +90,7 @@ def parse(source: Source, load: Load) -> Schema:
     SchemaError
         With everything that is wrong in any of the texts.
     """
-    definitions = definitions_of(source, load, ROS1)
+    definitions = gathered(source, load, ROS1).definitions
     sums = md5_sums(definitions)
     services = service_sums(definitions, sums) if source.name.endswith(".srv") else {}
 

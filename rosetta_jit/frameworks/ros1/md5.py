@@ -1,6 +1,7 @@
 """The sum by which ROS 1 tells versions of a message or a service apart.
 
-https://wiki.ros.org/ROS/Technical%20Overview, and genmsg's ``compute_md5``. It is of the declarations without comments and blanks, constants first, with the sum of a message in place of its name.
+https://wiki.ros.org/ROS/Technical%20Overview, and genmsg's ``compute_md5``. It is of the declarations without comments and blanks,
+constants first, with the sum of a message in place of its name.
 """
 
 from __future__ import annotations

@@ -8,13 +8,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, definitions_of, schema_of
+from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
+from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
+from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
 from rosetta_jit.model.types import Bool, Field, Float, Int, String
+from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
+    from rosetta_jit.frameworks.ros import Definition
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
-    from rosetta_jit.source import Source
 
 SCALARS = {
     "bool": Bool("bool"),
@@ -77,15 +80,25 @@ ROS2 = Dialect(
     line_ends=re.compile(r"\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"),
     dashes=re.compile(r"^---\r?(?:\n|\Z)", re.MULTILINE),
     extended=True,
+    foreign=".idl",
     interfaces={"srv": SERVICE, "action": ACTION},
     empty=(Field(DUMMY, SCALARS["uint8"]),),
 )
 
 
+def as_idl(definitions: tuple[Definition, ...], source: Source, load: Load) -> Schema:
+    """All messages as rosidl would write them in `.idl` files, so that those can include others."""
+    texts = {f"{each.name}.idl": idl_text(each, ROS2) for each in definitions}
+    root = Source(f"{source.name}.idl", "".join(f'#include "{name}"\n' for name in texts))
+    return parse_declarations(root, with_messages(load, ROS2, texts))
+
+
 def parse(source: Source, load: Load) -> Schema:
     """The messages of a file and those that they need, from the text itself where it has their definitions, else from the search path.
 
-    The default of a field is `Field.default`; that of an array other than bytes is its option ``default``, a list in JSON.
+    Where one of these is declared in a `.idl` file, all are read as IDL, as rosidl does with every `.msg` file: then their names are
+    ``pkg::msg::Name``. The default of a field is `Field.default`; that of an array other than bytes is its option ``default``, a list in
+    JSON.
 
     Parameters
     ----------
@@ -99,4 +112,16 @@ def parse(source: Source, load: Load) -> Schema:
     SchemaError
         With everything that is wrong in any of the texts.
     """
-    return schema_of(definitions_of(source, load, ROS2), ROS2)
+    found = gathered(source, load, ROS2)
+    return schema_of(found.definitions, ROS2) if not found.foreign else as_idl(found.definitions, source, load)
+
+
+def parse_idl(source: Source, load: Load) -> Schema:
+    """The same of a `.idl` file, which may include the `.idl` files that rosidl would make of `.msg` files.
+
+    Raises
+    ------
+    SchemaError
+        With everything that is wrong.
+    """
+    return parse_declarations(source, with_messages(load, ROS2))
