@@ -21,17 +21,16 @@ def no_mutables(span: Span | None, name: str) -> Diagnostic:
 
 
 def recursive_parameter(span: Span | None, name: str) -> Diagnostic:
-    """A recursive struct in an optional member, or a member of a mutable struct, in XCDR1."""
-    what = f"`{name}` is recursive and has its length before it, which rosetta_jit does not write"
-    help_ = "make it a sequence of a final struct, which may be empty"
+    """A recursive struct in an optional member in XCDR1, or in a member of a mutable struct."""
+    what = f"`{name}` is recursive and has an id and a length before it, which rosetta_jit does not write"
+    help_ = "make it a sequence in a struct that is not mutable"
     return Diagnostic("error", "recursive-parameter", what, span, help=help_)
 
 
-def no_recursion(span: Span | None, name: str) -> Diagnostic:
-    """A recursive struct in XCDR2, where sizes stand before everything."""
-    return Diagnostic(
-        "error", "recursive-struct", f"`{name}` contains itself, which cdr2 does not carry yet", span, help='choose encoding="cdr"'
-    )
+def deep_recursion(span: Span | None, name: str, most: int) -> Diagnostic:
+    """A recursive struct in structs that have their sizes before them, within another."""
+    what = f"`{name}` has more than {most} sizes around a recursive struct, which cdr2 does not carry"
+    return Diagnostic("error", "deep-recursion", what, span, help="make the structs between them final")
 
 
 def nested_recursion(span: Span | None, name: str) -> Diagnostic:

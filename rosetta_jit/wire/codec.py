@@ -345,3 +345,26 @@ def recurses(codec: Codec) -> bool:
             return any(recurses(each.value) for each in members)
         case _:
             return False
+
+
+MAX_OPEN_SIZES = 3
+"""So many sizes can be around a recursive struct within another; the message itself may have more."""
+
+
+def open_sizes(codec: Codec) -> int:
+    """How many sizes there are at most around a recursive struct, within a codec that reaches one."""
+    match codec:
+        case _ if not recurses(codec):
+            return 0
+        case Seq(items):
+            return max(map(open_sizes, items))
+        case Repeat(_, _, item):
+            return open_sizes(item)
+        case Cases(_, _, cases):
+            return max(open_sizes(each) for _, each in cases)
+        case Maybe(_, value):
+            return open_sizes(value)
+        case Delimited(_, value):
+            return 1 + open_sizes(value)
+        case _:
+            return 0

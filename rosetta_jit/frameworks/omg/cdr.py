@@ -18,6 +18,7 @@ from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
 from rosetta_jit.wire.codec import (
+    MAX_OPEN_SIZES,
     Align,
     Blob,
     Cases,
@@ -40,6 +41,7 @@ from rosetta_jit.wire.codec import (
     Seq,
     Table,
     Utf16,
+    open_sizes,
     recurses,
 )
 from rosetta_jit.wire.size import WIDTH
@@ -70,12 +72,13 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     attempts: list[Codec] = []
     nested: list[dict[str, Codec]] = []
     recursive = recursive_structs(Ref(struct.name), schema)
-    if recursive and name == "cdr2":
-        raise SchemaError((words.no_recursion(struct.span, struct.name),))
     for order in orders[choices.byte_order]:
         rules = _Rules(schema, name, order, recursive, choices.lenient)
         attempts.append(rules.message(struct))
-        nested += [{each: rules.settled(rules.members(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
+        nested += [{each: rules.settled(rules.struct(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
+    for each in recursive:
+        if any(open_sizes(codecs[each]) > MAX_OPEN_SIZES for codecs in nested):
+            raise SchemaError((words.deep_recursion(_struct(schema, each).span, each, MAX_OPEN_SIZES),))
     origin = 0 if name == "cdr-giop" else HEADER_BYTES
     spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
     recursion = tuple(nested) if recursive else ()
@@ -224,6 +227,8 @@ class _Rules:
                 return self.array(type_, path, field)
             case Map(key, value, maximum):
                 entry = Seq(tuple(self.field(each, (), Struct("", ())) for each in map_entry(key, value).fields))
+                if recurses(entry):
+                    raise SchemaError((words.nested_recursion(field.span, field.name),))
                 repeat = self.counted(Repeat(path, self.count(maximum), entry, align=leading(entry)))
                 plain = self.primitive(key) is not None and self.primitive(value) is not None
                 return self.sized(repeat, path) if self.second and not plain else repeat
