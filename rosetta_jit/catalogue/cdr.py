@@ -1,4 +1,4 @@
-"""What CDR cannot carry, or peers do not agree on."""
+"""What CDR cannot carry."""
 
 from __future__ import annotations
 
@@ -10,32 +10,27 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
-def no_wide_strings(span: Span | None, name: str) -> Diagnostic:
-    """A wide string on DDS, where implementations do not agree on its bytes."""
-    notes = ("Fast CDR 1 writes four bytes a character, others two, and neither says which",)
-    help_ = "use a string: it is UTF-8"
-    return Diagnostic(
-        "error", "wide-string", f"`{name}` is a wide string, whose bytes DDS peers do not agree on", span, notes=notes, help=help_
-    )
-
-
 def no_optionals(span: Span | None, name: str) -> Diagnostic:
-    """An optional member in an encoding that has none."""
-    what = f"`{name}` is optional, which plain CDR cannot say"
-    return Diagnostic("error", "optional-member", what, span, help='choose encoding="cdr2"')
+    """An optional member in CORBA."""
+    return Diagnostic("error", "optional-member", f"`{name}` is optional, which CORBA has no bytes for", span, help='choose encoding="cdr"')
 
 
 def no_mutables(span: Span | None, name: str) -> Diagnostic:
-    """A mutable struct in an encoding that has none."""
-    what = f"`{name}` is mutable, which plain CDR cannot say"
-    return Diagnostic("error", "mutable-struct", what, span, help='choose encoding="cdr2"')
+    """A mutable struct in CORBA."""
+    return Diagnostic("error", "mutable-struct", f"`{name}` is mutable, which CORBA has no bytes for", span, help='choose encoding="cdr"')
 
 
-def no_recursion(span: Span | None, name: str) -> Diagnostic:
-    """A recursive struct in XCDR2, where sizes stand before everything."""
-    return Diagnostic(
-        "error", "recursive-struct", f"`{name}` contains itself, which cdr2 does not carry yet", span, help='choose encoding="cdr"'
-    )
+def recursive_parameter(span: Span | None, name: str) -> Diagnostic:
+    """A recursive struct in an optional member in XCDR1, or in a member of a mutable struct."""
+    what = f"`{name}` is recursive and has an id and a length before it, which rosetta_jit does not write"
+    help_ = "make it a sequence in a struct that is not mutable"
+    return Diagnostic("error", "recursive-parameter", what, span, help=help_)
+
+
+def deep_recursion(span: Span | None, name: str, most: int) -> Diagnostic:
+    """A recursive struct in structs that have their sizes before them, within another."""
+    what = f"`{name}` has more than {most} sizes around a recursive struct, which cdr2 does not carry"
+    return Diagnostic("error", "deep-recursion", what, span, help="make the structs between them final")
 
 
 def nested_recursion(span: Span | None, name: str) -> Diagnostic:

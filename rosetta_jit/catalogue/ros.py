@@ -139,6 +139,14 @@ def defined_twice(span: Span, name: str, first: Span) -> Diagnostic:
     return _error("defined-twice", f"`{_short(name)}` is defined in two ways", span, "differs from the first one", notes=notes)
 
 
+def wrong_parts(span: Span, kind: str, found: int, wanted: int) -> Diagnostic:
+    """A service or an action with too few or too many lines of `---`."""
+    what = {"srv": "a request and a response", "action": "a goal, a result and feedback"}[kind]
+    label = "one too many" if found > wanted else f"{found} of {wanted} lines of `---`"
+    message = f"{'a service' if kind == 'srv' else 'an action'} has {what}, with `---` between them"
+    return _error("parts", message, span, label, "Write a line of `---` between the parts, also where one of them is empty.")
+
+
 def unknown_message(span: Span, name: str, written: str, places: Sequence[str], scalars: Sequence[str]) -> Diagnostic:
     """A field of a message that is nowhere."""
     word = written.split("[", maxsplit=1)[0][:SHOWN]
@@ -163,6 +171,13 @@ def too_deep(span: Span, name: str, depth: int, fields: int) -> Diagnostic:
     """A message that unfolds to too much."""
     message = f"`{_short(name)}` nests more than {depth} deep or has more than {fields} fields in all"
     return _error("nesting", message, span, "too large")
+
+
+def no_literal(span: Span, value: str) -> Diagnostic:
+    """A value of a message that is read as IDL, since others are declared in IDL, and is none there."""
+    return _error(
+        "value", f"IDL cannot write `{value}`", span, "has this value", "Declare it, or what it is used with, in the other language."
+    )
 
 
 def no_type_hash(span: Span | None, name: str) -> Diagnostic:

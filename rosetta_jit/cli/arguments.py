@@ -36,8 +36,8 @@ def add_mappings(command: ArgumentParser) -> None:
 
 def add_encoding(command: ArgumentParser, default: str | None = None) -> None:
     """Which bytes, where a framework has several."""
-    shown = f" (default: {default})" if default else " (default: the mapping's own)"
-    command.add_argument("--encoding", default=default, help=f"yarp2012, yarp3, yarp4, yarp, protobuf{shown}")
+    shown = default or "the mapping's own"
+    command.add_argument("--encoding", default=default, help=f"one of those that `rosetta-jit frameworks` lists (default: {shown})")
 
 
 def encoding_of(arguments: Namespace) -> str | None:

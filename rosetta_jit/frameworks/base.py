@@ -63,6 +63,9 @@ class Framework:
         Of its holders; empty for plain ones.
     files
         Patterns of the file names that are this framework's and not another's with the same suffix.
+    several
+        For suffixes of files that declare several types: how the names of those end, behind that of the file. They lie in a folder that is
+        called like their suffix.
     leniencies
         For each encoding, what it can be asked to forgive: a name, and the peer that needs it.
     byte_orders
@@ -76,6 +79,7 @@ class Framework:
     encodings: Mapping[str, str]
     manners: str = ""
     files: tuple[str, ...] = ()
+    several: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, "tuple[str, ...]"])
     leniencies: Mapping[str, Mapping[str, str]] = field(default_factory=dict[str, "Mapping[str, str]"])
     byte_orders: tuple[str, ...] = ()
     features: str = ""
@@ -95,6 +99,14 @@ class Framework:
     def claims(self, file: str) -> bool:
         """Whether files of that name are its own."""
         return any(fnmatch(file, pattern) for pattern in self.files)
+
+    def files_of(self, parts: tuple[str, ...]) -> Iterator[str]:
+        """The files of several types of which one has that name."""
+        for suffix, endings in self.several.items():
+            folders = tuple(each for each in parts[:-1] if each != suffix[1:])
+            for stem in (parts[-1].removesuffix(each) for each in endings if parts[-1].endswith(each)):
+                yield "/".join((*folders, suffix[1:], stem)) + suffix
+                yield "/".join((*folders, stem)) + suffix
 
     def front_end(self, file: str) -> FrontEnd:
         """The front end for a file that it `reads`, imported when it is first called."""
@@ -132,7 +144,8 @@ class Readers:
         names = ("/".join((*parts[:-1], "msg", parts[-1])), "/".join(parts)) if len(parts) > 1 else parts
         for framework in sorted(self.likely, key=lambda each: not any(each.claims(type_ + suffix) for suffix in each.idl)):
             for folder in ("", f"{framework.name}/"):
-                yield from (folder + name + suffix for name in names for suffix in framework.idl)
+                yield from (folder + name + suffix for name in names for suffix in framework.idl if suffix not in framework.several)
+            yield from framework.files_of(parts)
 
     @property
     def likely(self) -> tuple[Framework, ...]:

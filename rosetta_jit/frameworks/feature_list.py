@@ -202,6 +202,6 @@ FEATURES: Mapping[str, Arrived] = {
     "duration": _named(DURATIONS),
     "unit": _member(lambda each: each.unit == UNIT),
     "documentation": _documented,
-    "service": lambda _, schema: any(name_parts(name)[-1].lower() in ("request", "call") for name in schema.types),
+    "service": lambda _, schema: any(name_parts(name)[-1].lower().endswith(("request", "call", "goal")) for name in schema.types),
 }
 """Every feature, and what shows it."""

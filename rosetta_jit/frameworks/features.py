@@ -1,7 +1,7 @@
 """What frameworks can describe, and what of it we can represent: the paper's table 1, found out by trying.
 
-For each feature that a framework has, it offers a probe: a small text in its IDL that needs the feature in a type named ``Probe``. The
-front end reads it, the model is asked whether the feature has arrived, and every encoding is asked for the bytes, to read and to write.
+For each feature that a framework has, it offers a probe: a small text in its IDL that needs the feature in a type, mostly called ``Probe``.
+The front end reads it, the model is asked whether the feature has arrived, and every encoding is asked for the bytes, to read and to write.
 Whatever fails on that way is a gap, with what stood in the way. What the framework itself does not have has no probe.
 """
 
@@ -27,7 +27,7 @@ State = Literal["yes", "read", "gap", "none"]
 
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A text in some IDL. ``files`` are what it imports; ``file`` is what it is called.
+    """A text in some IDL. ``files`` are what it imports; ``file`` is what it is called; ``declares`` is the last part of the type's name.
 
     ``without`` are the encodings of the framework that have nothing of the kind, and rightly refuse it.
     """
@@ -36,6 +36,7 @@ class Probe:
     files: Mapping[str, str] = field(default_factory=dict[str, str])
     file: str = ""
     without: tuple[str, ...] = ()
+    declares: str = "Probe"
 
 
 Probes = Mapping[str, Mapping[str, str | Probe]]
@@ -100,9 +101,10 @@ def _read(framework: Framework, feature: str, probe: Probe, suffix: str) -> Read
         schema = framework.front_end(name)(Source(name, probe.text), files.get)
     except SchemaError as error:
         return Finding("gap", _why(error))
-    struct = next((each for path, each in schema.types.items() if isinstance(each, Struct) and name_parts(path)[-1] == "Probe"), None)
+    last = probe.declares
+    struct = next((each for path, each in schema.types.items() if isinstance(each, Struct) and name_parts(path)[-1] == last), None)
     if struct is None:
-        why = next((each.message for path, each in schema.left_out.items() if name_parts(path)[-1] == "Probe"), "it is skipped")
+        why = next((each.message for path, each in schema.left_out.items() if name_parts(path)[-1] == last), "it is skipped")
         return Finding("gap", why)
     if not FEATURES[feature](struct, schema):
         return Finding("gap", "it is read, and does not reach the model")

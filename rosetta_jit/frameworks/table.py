@@ -15,8 +15,9 @@ _DDS = {
     "text": "bytes that are no UTF-8 are kept (Fast CDR)",
     "enum": "numbers that the enum does not name are kept (rosbags, Cyclone DDS in Python)",
     "bounds": "more than a bound allows is read and written (rosbags)",
-    "trailing": "up to three bytes may be left over (payloads padded by Fast DDS)",
+    "trailing": "up to three bytes may be left over, announced or not (payloads padded by older Fast DDS)",
 }
+_ROS2 = {"wstring": "wide strings have four bytes a unit, and units are counted, both ways (rmw_fastrtps, rmw_cyclonedds)"}
 _IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (
@@ -37,7 +38,11 @@ FRAMEWORKS = (
     Framework(
         "ros1",
         features=f"{_HERE}.ros1.features:PROBES",
-        idl={".msg": f"{_HERE}.ros1.idl:parse"},
+        idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros1.idl:parse"),
+        several={
+            ".srv": ("Request", "Response"),
+            ".action": ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback"),
+        },
         encodings={"ros1": f"{_HERE}.ros1.encoding:encode_type"},
         manners=f"{_HERE}.ros1.manners:GENPY",
         files=("*ros1/*.msg", "*ros1-2012/*.msg"),
@@ -63,11 +68,22 @@ FRAMEWORKS = (
     Framework(
         "ros2",
         features=f"{_HERE}.ros2.features:PROBES",
-        idl={".msg": f"{_HERE}.ros2.idl:parse", ".idl": _IDL},
+        idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros2.idl:parse") | {".idl": f"{_HERE}.ros2.idl:parse_idl"},
+        several={
+            ".srv": ("_Request", "_Response", "_Event", ""),
+            ".action": (
+                "_Goal",
+                "_Result",
+                "_Feedback",
+                "_FeedbackMessage",
+                *(f"_{service}{end}" for service in ("SendGoal", "GetResult") for end in ("_Request", "_Response", "_Event", "")),
+                "",
+            ),
+        },
         encodings={"cdr": _CDR, "cdr2": _CDR},
         manners=f"{_HERE}.ros2.manners:RCLPY",
-        files=("*/msg/*.msg", "*/msg/*.idl", "*ros2/*.msg", "*ros2/*.idl"),
-        leniencies={"cdr": _DDS, "cdr2": _DDS},
+        files=("*/msg/*.msg", "*/msg/*.idl", "*/srv/*.srv", "*/action/*.action", "*ros2/*.*"),
+        leniencies={"cdr": _DDS | _ROS2, "cdr2": _DDS},
         byte_orders=("cdr", "cdr2"),
     ),
     Framework(

@@ -1,13 +1,14 @@
 """Recursive structs whose bytes do not tell where they end: read and written depth first, with the stack in the holder's own rows.
 
 The codec of the message, and that of each recursive struct, is cut where a recursive struct follows; the pieces are the states of one loop.
-What a stack would hold is kept in the hidden words of the row that is being visited: to which row and state to return, and how many of its
-neighbours are still to be visited before that.
+What a stack would hold is kept in the hidden words of the row that is being visited: to which row and state to return, how many of its
+neighbours are still to be visited before that, and where what has its size before it began, or must end. The message itself has variables
+for these.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
@@ -30,10 +31,12 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 from rosetta_jit.lowering.fields import Cell, HolderElements, HolderFields
+from rosetta_jit.lowering.members import store_size
 from rosetta_jit.lowering.recursion import MAX_DEPTH, link
 from rosetta_jit.lowering.walk import begin_elements, if_present, switch_cases, walk
-from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block
-from rosetta_jit.wire.codec import Cases, Maybe, Recursion, Repeat, Seq, recurses
+from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
+from rosetta_jit.model.layout import LINK_WORDS
+from rosetta_jit.wire.codec import MAX_OPEN_SIZES, Cases, Delimited, Maybe, Recursion, Repeat, Seq, open_sizes, recurses
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,21 +44,34 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.wire.codec import Codec
 
-ROW_WORD, STATE_WORD, LEFT_WORD = range(3)
-"""The hidden words of a row: the row around it, the state to go on with there, how many neighbours follow it."""
+ROW_WORD, STATE_WORD, LEFT_WORD, OPEN_WORD = range(4)
+"""The hidden words of a row: the row around it, the state to go on with there, how many neighbours follow it; then those of `Delimited`."""
+assert LINK_WORDS - OPEN_WORD >= MAX_OPEN_SIZES
 
+SIZE_BYTES = 4
 DONE = -1
 ROOT = -1
 """The lane of pieces of the message itself."""
 
 
 @dataclass(frozen=True, slots=True)
+class Close:
+    """The end of what has its size before it."""
+
+    delimited: Delimited
+
+
+@dataclass(frozen=True, slots=True)
 class Piece:
-    """What is done in a state: a codec for the row of a lane, then on to another state. Without a codec, the row is finished."""
+    """What is done in a state: a codec for the row of a lane, then on to another state. Without a codec, the row is finished.
+
+    ``open`` is how many sizes around it are still to be closed in its row.
+    """
 
     lane: int
-    codec: Codec | None
+    codec: Codec | Close | None
     then: int
+    open: int = 0
 
 
 @dataclass(slots=True)
@@ -69,6 +85,7 @@ class Descent:
     state: Local
     row: Local
     depth: Local
+    opened: tuple[Local, ...] = ()
     pieces: list[Piece] = field(default_factory=list[Piece])
 
     def number(self, piece: Piece) -> int:
@@ -90,6 +107,8 @@ class Descent:
             fields = self.fields(piece.lane)
             if piece.codec is None:
                 self.finish(piece.lane)
+            elif isinstance(piece.codec, Close):
+                self.close(piece.codec.delimited, fields, piece)
             else:
                 with self.writer.whole():
                     self.flow(piece.codec, fields, piece)
@@ -116,9 +135,9 @@ class Descent:
             case Seq(items):
                 first = next(number for number, item in enumerate(items) if recurses(item))
                 walk(Seq(items[:first]), fields, self.writer)
-                rest = Piece(piece.lane, Seq(items[first + 1 :]), piece.then)
+                rest = replace(piece, codec=Seq(items[first + 1 :]))
                 then = self.number(rest) if items[first + 1 :] else piece.then
-                self.flow(items[first], fields, Piece(piece.lane, None, then))
+                self.flow(items[first], fields, replace(piece, then=then))
             case Repeat(_, _, Recursion()):
                 elements, count = begin_elements(self.writer, fields, codec)
                 assert isinstance(elements, HolderElements)
@@ -128,8 +147,49 @@ class Descent:
                 switch_cases(self.writer, fields, codec, lambda each: self.flow(each, fields, piece))
             case Maybe():
                 if_present(self.writer, fields, codec, lambda each: self.flow(each, fields, piece))
+            case Delimited():
+                self.open(codec, fields, piece)
             case _:
                 raise AssertionError(codec)  # encodings refuse recursion elsewhere
+
+    # --- sizes before what they are of -----------------------------------------------------------------------------------
+
+    def open(self, codec: Delimited, fields: HolderFields, piece: Piece) -> None:
+        """Note where it must end, or where its size will be written; then what is in it."""
+        writer, where = self.writer, fields.where.members(codec.path)
+        if writer.direction == "decode":
+            size = writer.let("size", integer(writer.load("u32", where, codec.order)))
+            writer.require(size, where)
+            self.note(piece, Binary("add", writer.position, size))
+        else:
+            self.note(piece, writer.position)
+            writer.require(SIZE_BYTES, where, "no room for the message")
+            writer.advance(SIZE_BYTES)
+        then = self.number(replace(piece, codec=Close(codec)))
+        self.flow(codec.value, fields, replace(piece, then=then, open=piece.open + 1))
+
+    def close(self, codec: Delimited, fields: HolderFields, piece: Piece) -> None:
+        """Check the end, or write the size."""
+        writer, where = self.writer, fields.where.members(codec.path)
+        noted = writer.let("noted", self.noted(piece))
+        if writer.direction == "decode":
+            writer.expect(Compare("eq", writer.position, noted), "length", where, "its content is not as long as it says")
+        elif writer.direction == "encode":
+            sane = Binary("and", Compare("ge", noted, BEGIN), Compare("le", noted, writer.position))
+            writer.expect(sane, "length", where, "the holder is damaged")
+            writer.require(SIZE_BYTES, where, "the holder is damaged", at=noted)
+            store_size(writer, noted, add(noted, SIZE_BYTES), where, codec.order)
+        self.go(piece.then)
+
+    def note(self, piece: Piece, value: Expr) -> None:
+        if piece.lane == ROOT:
+            self.writer.assign(self.opened[piece.open], value)
+        else:
+            assert piece.open < MAX_OPEN_SIZES  # encodings refuse more
+            self.remember(piece.lane, self.row, {OPEN_WORD + piece.open: value})
+
+    def noted(self, piece: Piece) -> Expr:
+        return self.opened[piece.open] if piece.lane == ROOT else self.recall(piece.lane, OPEN_WORD + piece.open)
 
     def go(self, state: int) -> None:
         self.writer.settle()
@@ -182,7 +242,8 @@ class Descent:
 def descend(nested: Mapping[str, Codec], attempt: Codec, fields: HolderFields, writer: Writer) -> None:
     """Read or write a message that contains recursive structs."""
     at, state, row = writer.cursor("at"), writer.var("state", index(0)), writer.var("here", index(0))
-    descent = Descent(writer, nested, fields, at, state, row, writer.var("depth", index(0)))
+    opened = tuple(writer.var("opened", index(0)) for _ in range(open_sizes(attempt)))
+    descent = Descent(writer, nested, fields, at, state, row, writer.var("depth", index(0)), opened)
     descent.number(Piece(ROOT, attempt, DONE))
     rounds = writer.var("rounds", index(0))
     blocks: list[tuple[int, Block]] = []

@@ -12,6 +12,7 @@ from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Dir
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.lowering.bound import Found, WireFields
 from rosetta_jit.lowering.descent import descend
+from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
 from rosetta_jit.lowering.recursion import cursors, read_rows
 from rosetta_jit.lowering.recursion_write import write_root
@@ -71,9 +72,7 @@ def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, ru
             _own(writer, encoding, attempt, holder)
         else:
             _mapped(writer, attempt, holder, rules)
-        if writer.direction == "decode":
-            spare = writer.position if not encoding.spare else add(writer.position, encoding.spare)
-            writer.expect(Compare("eq" if not encoding.spare else "ge", spare, END), "trailing", Where(), "bytes are left over")
+        end(writer, encoding)
         writer.emit(Return(writer.position))
     return block(body)
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import BEGIN, Binary, Compare, Const, Convert, Expr, If, Local, Select, Store, Switch, While, add, index
+from rosetta_jit.kernel.ir import BEGIN, Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While, add, index
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.writer import Writer, block, integer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.kernel.ir import Block
+    from rosetta_jit.kernel.ir import Block, Local
     from rosetta_jit.lowering.fields import Fields
     from rosetta_jit.lowering.writer import Where
     from rosetta_jit.wire.codec import Codec, Member, Members
@@ -37,8 +38,37 @@ def members(codec: Members, fields: Fields, writer: Writer, walk: Walk) -> None:
     writer.advance(4)
     inside = writer.let("inside", writer.position)
     for member in codec.members:
-        _write(codec, member, fields, writer, walk)
+        if_present(member, fields, writer, lambda member=member: _write_member(codec, member, fields, writer, walk))
     store_size(writer, begin, inside, where, codec.order)
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """Which members have come, a bit each: each once, and all that are not optional."""
+
+    writer: Writer
+    fields: Fields
+    members: tuple[Member, ...]
+    words: tuple[Local, ...]
+
+    @classmethod
+    def none(cls, writer: Writer, fields: Fields, members: tuple[Member, ...]) -> Seen:
+        """Before the first member."""
+        return cls(writer, fields, members, tuple(writer.var("seen", Const("u64", 0)) for _ in range(0, len(members), 64)))
+
+    def once(self, number: int) -> None:
+        """The member of that number comes now, and has not before."""
+        word, bit = self.words[number // 64], Const("u64", 1 << number % 64)
+        new = Compare("eq", Binary("and", word, bit), Const("u64", 0))
+        self.writer.expect(new, "tag", self.fields.where.members(self.members[number].path), "a member comes twice")
+        self.writer.assign(word, Binary("or", word, bit))
+
+    def complete(self) -> None:
+        """Behind the last member."""
+        for number, member in enumerate(self.members):
+            if not member.optional:
+                there = Compare("ne", Binary("and", self.words[number // 64], Const("u64", 1 << number % 64)), Const("u64", 0))
+                self.writer.expect(there, "missing", self.fields.where.members(member.path), "a member did not come")
 
 
 # --- reading -----------------------------------------------------------------------------------------------------------------
@@ -47,7 +77,7 @@ def members(codec: Members, fields: Fields, writer: Writer, walk: Walk) -> None:
 def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr) -> None:
     where = fields.where.members(codec.path)
     at = writer.var("at", writer.position)
-    seen = [writer.var("seen", Const("u64", 0)) for _ in range(0, len(codec.members), 64)]
+    seen = Seen.none(writer, fields, codec.members)
     with writer.nested() as body:
         writer.position = at
         leaves.align(writer, 4)
@@ -61,7 +91,7 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
         for number, member in enumerate(codec.members):
             with writer.nested() as one:
                 writer.position = start
-                _once(writer, seen[number // 64], 1 << number % 64, fields.where.members(member.path))
+                seen.once(number)
                 if member.optional:
                     fields.appear(member.path)
                 walk(member.value, fields, writer)
@@ -76,16 +106,7 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
     invariant = (Compare("ge", at, BEGIN), Compare("le", at, stop))
     writer.emit(While(Compare("lt", at, stop), block(body), invariant, at))
     writer.position = at
-    for number, member in enumerate(codec.members):
-        if not member.optional:
-            there = Compare("ne", Binary("and", seen[number // 64], Const("u64", 1 << number % 64)), Const("u64", 0))
-            writer.expect(there, "missing", fields.where.members(member.path), "a member did not come")
-
-
-def _once(writer: Writer, seen: Local, bit: int, where: Where) -> None:
-    new = Compare("eq", Binary("and", seen, Const("u64", bit)), Const("u64", 0))
-    writer.expect(new, "tag", where, "a member comes twice")
-    writer.assign(seen, Binary("or", seen, Const("u64", bit)))
+    seen.complete()
 
 
 def _extent(writer: Writer, codec: Members, head: Expr, where: Where) -> tuple[Expr, Expr]:
@@ -112,14 +133,15 @@ def _extent(writer: Writer, codec: Members, head: Expr, where: Where) -> tuple[E
 # --- writing -----------------------------------------------------------------------------------------------------------------
 
 
-def _write(codec: Members, member: Member, fields: Fields, writer: Writer, walk: Walk) -> None:
+def if_present(member: Member, fields: Fields, writer: Writer, write: Callable[[], None]) -> None:
+    """Write a member, or nothing where it is optional and absent."""
     if not member.optional:
-        _write_member(codec, member, fields, writer, walk)
+        write()
         return
     at = writer.cursor()
     with writer.nested() as there:
         writer.position = at
-        _write_member(codec, member, fields, writer, walk)
+        write()
         writer.settle()
         writer.assign(at, writer.position)
     writer.emit(If(fields.present(member.path), block(there)))

@@ -28,6 +28,7 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.members import members, store_size
+from rosetta_jit.lowering.parameters import parameter, parameters
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
 from rosetta_jit.wire.codec import (
     Align,
@@ -42,6 +43,8 @@ from rosetta_jit.wire.codec import (
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Recursion,
     Repeat,
     Seq,
@@ -82,6 +85,10 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
             _delimited(writer, fields, codec)
         case Members():
             members(codec, fields, writer, walk)
+        case Parameter():
+            parameter(codec, fields, writer, walk)
+        case Parameters():
+            parameters(codec, fields, writer, walk)
         case Tagged() | Varint() | Recursion():
             raise AssertionError(codec)  # `tagged`, `recursion` and `descent` read and write these
         case _:

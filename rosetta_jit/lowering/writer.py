@@ -107,6 +107,13 @@ class Writer:
             check()
         self.deferred = outer
 
+    @contextmanager
+    def origin_here(self) -> Generator[None]:
+        """Around what counts its alignment from its own begin."""
+        outer, self.origin = self.origin, self.let("origin", self.position)
+        yield
+        self.origin = outer
+
     def emit(self, *statements: Stmt) -> None:
         self.block.extend(statements)
 

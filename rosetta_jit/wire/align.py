@@ -24,6 +24,8 @@ from rosetta_jit.wire.codec import (
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Recursion,
     Repeat,
     Seq,
@@ -90,6 +92,11 @@ def settle(codec: Codec, phase: Phase) -> tuple[Codec, Phase]:
             return replace(codec, value=value), behind
         case Members():
             members = tuple(replace(each, value=settle(each.value, Phase(4, 0))[0]) for each in codec.members)
+            return replace(codec, members=members), ANYWHERE
+        case Parameter(member):
+            return replace(codec, member=replace(member, value=settle(member.value, ORIGIN)[0])), ANYWHERE
+        case Parameters():
+            members = tuple(replace(each, value=settle(each.value, ORIGIN)[0]) for each in codec.members)
             return replace(codec, members=members), ANYWHERE
         case Utf16() | Recursion() | Tagged() | Varint() | Choice():
             return codec, ANYWHERE

@@ -1,7 +1,7 @@
 r"""A codec: an invertible description of bytes, without a direction.
 
     Codec  = Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Seq | Repeat | Choice | Cases | Maybe
-           | Delimited | Members | Utf16 | Tagged | Recursion
+           | Delimited | Members | Parameter | Parameters | Utf16 | Tagged | Recursion
     Count  = how many elements or bytes follow: a number on the wire, perhaps one that the schema fixes or computes, or that alone
 
 A leaf names the field that it carries by a path relative to the element around it: the message, an element of a `Repeat`, or a message of
@@ -185,12 +185,12 @@ class Utf16:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member of a mutable struct: its id, its codec, and how its length is told (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2)."""
+    """A member with its id and its length before it; ``length_code`` is how XCDR2 tells that (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2)."""
 
     number: int
     path: Path
     value: Codec
-    length_code: int
+    length_code: int = 4
     optional: bool = False
     must_understand: bool = False
 
@@ -198,6 +198,23 @@ class Member:
 @dataclass(frozen=True, slots=True)
 class Members:
     """The number of bytes of what follows, then members with their ids in any order, unknown ones skipped (PL_CDR2)."""
+
+    path: Path
+    members: tuple[Member, ...]
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """An optional member as XCDR1 has it: its id, and its length, which is zero where it is absent. Alignment counts from its begin."""
+
+    member: Member
+    order: Order = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """Such members in any order up to a sentinel, absent ones left out, unknown ones skipped (PL_CDR)."""
 
     path: Path
     members: tuple[Member, ...]
@@ -275,10 +292,23 @@ Codec = (
     | Maybe
     | Delimited
     | Members
+    | Parameter
+    | Parameters
     | Utf16
     | Tagged
     | Recursion
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """Padding behind a message: the last two bits of its byte number ``told`` say how many bytes.
+
+    It is written up to a multiple of ``align`` bytes from the origin.
+    """
+
+    told: int
+    align: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,7 +317,8 @@ class Encoding:
 
     ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
-    ``origin`` is where alignment counts from, in bytes behind the begin of the message; ``spare`` bytes may be left over at its end.
+    ``origin`` is where alignment counts from, in bytes behind the begin of the message. At its end there is what ``ending`` says, and
+    ``spare`` bytes may be left over.
     """
 
     name: str
@@ -296,6 +327,7 @@ class Encoding:
     recursive: Mapping[str, Tagged] = field(default_factory=dict["str", "Tagged"])
     nested: tuple[Mapping[str, Codec], ...] = ()
     origin: int = 0
+    ending: Ending | None = None
     spare: int = 0
 
 
@@ -312,7 +344,32 @@ def recurses(codec: Codec) -> bool:
             return any(recurses(each) for _, each in cases)
         case Maybe(_, value) | Delimited(_, value):
             return recurses(value)
-        case Members(_, members):
+        case Parameter(member):
+            return recurses(member.value)
+        case Members(_, members) | Parameters(_, members):
             return any(recurses(each.value) for each in members)
         case _:
             return False
+
+
+MAX_OPEN_SIZES = 3
+"""So many sizes can be around a recursive struct within another; the message itself may have more."""
+
+
+def open_sizes(codec: Codec) -> int:
+    """How many sizes there are at most around a recursive struct, within a codec that reaches one."""
+    match codec:
+        case _ if not recurses(codec):
+            return 0
+        case Seq(items):
+            return max(map(open_sizes, items))
+        case Repeat(_, _, item):
+            return open_sizes(item)
+        case Cases(_, _, cases):
+            return max(open_sizes(each) for _, each in cases)
+        case Maybe(_, value):
+            return open_sizes(value)
+        case Delimited(_, value):
+            return 1 + open_sizes(value)
+        case _:
+            return 0

@@ -19,6 +19,8 @@ from rosetta_jit.wire.codec import (
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Recursion,
     Repeat,
     Seq,
@@ -31,7 +33,7 @@ from rosetta_jit.wire.codec import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.wire.codec import Encoding, Entry, Order, Path
+    from rosetta_jit.wire.codec import Encoding, Entry, Member, Order, Path
 
 
 def show_encoding(encoding: Encoding) -> str:
@@ -41,6 +43,9 @@ def show_encoding(encoding: Encoding) -> str:
         lines += [f"attempt {number}", *_lines(attempt, 1)]
     if encoding.written is not None and encoding.written not in encoding.attempts:
         lines += ["written", *_lines(encoding.written, 1)]
+    if encoding.ending is not None:
+        aligned = f", written up to a multiple of {encoding.ending.align} bytes" if encoding.ending.align > 1 else ""
+        lines.append(f"padding at the end, as much as the last two bits of byte {encoding.ending.told} say{aligned}")
     for messages in (encoding.recursive, *encoding.nested[:1]):
         for name, each in messages.items():
             lines += [f"message {name}", *_lines(each, 1)]
@@ -77,9 +82,12 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield from _lines(value, depth + 1)
         case Members(path, members, order):
             yield f"{indent}{_path(path)}: {_scalar('u32', order)} bytes of members"
-            for member in members:
-                yield f"{indent}  {member.number}{' optional' if member.optional else ''} {_path(member.path)}"
-                yield from _lines(member.value, depth + 2)
+            yield from _members(members, depth + 1)
+        case Parameter(member):
+            yield from _members((member,), depth)
+        case Parameters(path, members):
+            yield f"{indent}{_path(path)}: parameters up to a sentinel"
+            yield from _members(members, depth + 1)
         case Tagged(path, entries, required, delimited, group):
             kind = "delimited message" if delimited else "message" if group is None else f"group {group}"
             yield f"{indent}{_path(path)}: {kind}" + (f", required: {', '.join(required)}" if required else "")
@@ -87,6 +95,12 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
                 yield from _entry(entry, depth + 1)
         case _:
             yield indent + _leaf(codec)
+
+
+def _members(members: tuple[Member, ...], depth: int) -> Iterator[str]:
+    for member in members:
+        yield f"{'  ' * depth}{member.number}{' optional' if member.optional else ''} {_path(member.path)}"
+        yield from _lines(member.value, depth + 1)
 
 
 def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align | Blob | Utf16 | Recursion) -> str:

@@ -18,6 +18,8 @@ from rosetta_jit.wire.codec import (
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Recursion,
     Repeat,
     Seq,
@@ -63,6 +65,8 @@ def fixed_size(codec: Codec) -> int | None:
             | Maybe()
             | Delimited()
             | Members()
+            | Parameter()
+            | Parameters()
             | Utf16()
             | Tagged()
             | Recursion()
@@ -92,7 +96,7 @@ def minimum_size(codec: Codec) -> int:
             return 4 + minimum_size(value)
         case Align():
             return 0
-        case Members() | Utf16():
+        case Members() | Parameter() | Parameters() | Utf16():
             return 4
         case Varint() | Recursion():
             return 1

@@ -96,7 +96,7 @@ def there_and_back(framework, suffix, feature, probe, encoding, *, writes):
 def declared(framework, file, probe):
     files = {path: Source(path, text) for path, text in probe.files.items()}
     schema = framework.front_end(file)(Source(file, probe.text), files.get)
-    return next(each for each in schema.types if name_parts(each)[-1] == "Probe")
+    return next(each for each in schema.types if name_parts(each)[-1] == probe.declares)
 
 
 def test_what_is_lost_on_the_way_is_no_yes():

@@ -1,7 +1,7 @@
 """Common Data Representation, in which CORBA and DDS write a type.
 
 cdr-giop    CORBA 3.3 part 2, 9.3: no header, the byte order is told elsewhere
-cdr         DDS-XTypes 1.3, 7.4.1 (XCDR1 of final types), behind an encapsulation header of four bytes that says the byte order
+cdr         DDS-XTypes 1.3, 7.4.1 (XCDR1), behind an encapsulation header of four bytes that says the byte order
 cdr2        DDS-XTypes 1.3, 7.4.3 (XCDR2): nothing is aligned to more than four bytes, and what may change has its size before it
 
 Everything is written at a multiple of its size from the origin, behind the header: that rule is `_Rules.aligned`, and nowhere else.
@@ -18,6 +18,7 @@ from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
 from rosetta_jit.wire.codec import (
+    MAX_OPEN_SIZES,
     Align,
     Blob,
     Cases,
@@ -26,17 +27,21 @@ from rosetta_jit.wire.codec import (
     Count,
     Delimited,
     Encoding,
+    Ending,
     Maybe,
     Member,
     Members,
     Number,
     Padding,
+    Parameter,
+    Parameters,
     Path,
     Recursion,
     Repeat,
     Seq,
     Table,
     Utf16,
+    open_sizes,
     recurses,
 )
 from rosetta_jit.wire.size import WIDTH
@@ -47,9 +52,16 @@ if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Order
 
 HEADER_BYTES = 4
-EXTENSIBILITY = {"final": 0x06, "appendable": 0x08, "mutable": 0x0A}
-"""Representation identifiers of XCDR2 (DDS-XTypes 1.3, table 60), of the big-endian form; the little-endian one is one more."""
+IDENTIFIERS = {
+    "cdr": {"final": 0x00, "appendable": 0x00, "mutable": 0x02},
+    "cdr2": {"final": 0x06, "appendable": 0x08, "mutable": 0x0A},
+}
+"""Representation identifiers (DDS-XTypes 1.3, table 60), of the big-endian form; the little-endian one is one more."""
 PADDING_OF_PAYLOADS = 3
+OPTIONS = 3
+"""The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
+ENDINGS = {"cdr": Ending(OPTIONS), "cdr2": Ending(OPTIONS, align=4)}
+"""XCDR2 is written with the padding that the specification asks for; XCDR1 without any, as ROS 2 has it."""
 DUAL_USE = {1: 5, 4: 6, 8: 7}
 """Length codes of sequences whose count is also their length, by the size of their elements."""
 
@@ -60,15 +72,17 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     attempts: list[Codec] = []
     nested: list[dict[str, Codec]] = []
     recursive = recursive_structs(Ref(struct.name), schema)
-    if recursive and name == "cdr2":
-        raise SchemaError((words.no_recursion(struct.span, struct.name),))
     for order in orders[choices.byte_order]:
         rules = _Rules(schema, name, order, recursive, choices.lenient)
         attempts.append(rules.message(struct))
-        nested += [{each: rules.settled(rules.members(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
+        nested += [{each: rules.settled(rules.struct(_struct(schema, each), ()), ANYWHERE) for each in sorted(recursive)}]
+    for each in recursive:
+        if any(open_sizes(codecs[each]) > MAX_OPEN_SIZES for codecs in nested):
+            raise SchemaError((words.deep_recursion(_struct(schema, each).span, each, MAX_OPEN_SIZES),))
     origin = 0 if name == "cdr-giop" else HEADER_BYTES
     spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
-    return Encoding(name, tuple(attempts), attempts[0], nested=tuple(nested) if recursive else (), origin=origin, spare=spare)
+    recursion = tuple(nested) if recursive else ()
+    return Encoding(name, tuple(attempts), attempts[0], nested=recursion, origin=origin, ending=ENDINGS.get(name), spare=spare)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +107,8 @@ class _Rules:
         return settle(codec, phase)[0]
 
     def header(self, struct: Struct) -> tuple[Codec, ...]:
-        """The representation identifier, and two bytes of options that no reader needs."""
-        base = EXTENSIBILITY[_extensibility(struct)] if self.second else 0
+        """The representation identifier, and two bytes of options, of which the `Ending` is the last."""
+        base = IDENTIFIERS[self.encoding][_extensibility(struct)]
         return Constant((), bytes((0, base + (self.order == "<")))), Padding("u16", 0)
 
     def aligned(self, codec: Codec, size: int) -> Codec:
@@ -126,9 +140,7 @@ class _Rules:
             case Union() as union:
                 return self.union(union, own, struct)
             case Optional(value):
-                if not self.second:
-                    raise SchemaError((words.no_optionals(field.span, field.name),))
-                return Maybe(own, self.value(value, own, field))
+                return Maybe(own, self.value(value, own, field)) if self.second else self.optional(field, own, struct)
             case type_:
                 return self.value(type_, own, field)
 
@@ -138,11 +150,23 @@ class _Rules:
         cases = tuple((labels, self.field(case, path, struct)) for labels, case in zip(union.labels, union.cases, strict=True))
         return Cases(path, discriminator, cases, union.default)
 
+    def optional(self, field: Field, path: Path, struct: Struct) -> Codec:
+        if self.encoding == "cdr-giop":
+            raise SchemaError((words.no_optionals(field.span, field.name),))
+        member = self.member(field, struct.fields.index(field), path)
+        if recurses(member.value):
+            raise SchemaError((words.recursive_parameter(field.span, field.name),))
+        return self.aligned(Parameter(member, self.order), 4)
+
     def mutable(self, struct: Struct, path: Path) -> Codec:
-        if not self.second:
+        if self.encoding == "cdr-giop":
             raise SchemaError((words.no_mutables(struct.span, struct.name),))
         members = tuple(self.member(each, number, (*path, each.name)) for number, each in enumerate(struct.fields))
-        return self.aligned(Members(path, members, self.order), 4)
+        recursive = next((each for each, member in zip(struct.fields, members, strict=True) if recurses(member.value)), None)
+        if recursive is not None:
+            raise SchemaError((words.recursive_parameter(recursive.span, recursive.name),))
+        kind = Members if self.second else Parameters
+        return self.aligned(kind(path, members, self.order), 4)
 
     def member(self, field: Field, position: int, path: Path) -> Member:
         optional = isinstance(field.type, Optional)
@@ -196,13 +220,15 @@ class _Rules:
             case Enum():
                 return self.enumerator(type_, path)
             case String():
-                return self.string(type_, path, field)
+                return self.string(type_, path)
             case Bytes(_, length, maximum):
                 return Blob(path, Count(None, value=length)) if length is not None else self.counted(Blob(path, self.count(maximum)))
             case Array():
                 return self.array(type_, path, field)
             case Map(key, value, maximum):
                 entry = Seq(tuple(self.field(each, (), Struct("", ())) for each in map_entry(key, value).fields))
+                if recurses(entry):
+                    raise SchemaError((words.nested_recursion(field.span, field.name),))
                 repeat = self.counted(Repeat(path, self.count(maximum), entry, align=leading(entry)))
                 plain = self.primitive(key) is not None and self.primitive(value) is not None
                 return self.sized(repeat, path) if self.second and not plain else repeat
@@ -225,12 +251,21 @@ class _Rules:
         numbers = tuple((number, number) for number in sorted({number for _, number in enum.values}))
         return self.aligned(Table(path, scalar, numbers, self.order), size)
 
-    def string(self, string: String, path: Path, field: Field) -> Codec:
+    def string(self, string: String, path: Path) -> Codec:
         if string.encoding == "utf-16":
-            if self.encoding != "cdr-giop":
-                raise SchemaError((words.no_wide_strings(field.span, field.name),))
-            return self.counted(Utf16(path, replace(self.count(string.maximum), unit=2)))
+            return self.counted(self.wide_string(string, path))
         return self.counted(Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True))
+
+    def wide_string(self, string: String, path: Path) -> Codec:
+        """On DDS its bytes are counted, and there is no mark (DDS-XTypes 1.3, 7.4.1.1.2); what ROS 2 does instead is a leniency."""
+        counted = self.count(string.maximum)
+        if self.encoding == "cdr-giop":
+            return Utf16(path, replace(counted, unit=2))
+        unit = Number((), "u16", self.order)
+        if "wstring" not in self.lenient:
+            return Repeat(path, replace(counted, unit=2), unit)
+        halves = (unit, Constant((), 0, "u16", self.order))
+        return Repeat(path, counted, Seq(halves if self.order == "<" else halves[::-1]))
 
     def counted(self, codec: Codec) -> Codec:
         return self.aligned(codec, 4)

@@ -1,4 +1,4 @@
-"""What differs between the `.msg` files of ROS 1 and of ROS 2."""
+"""What differs between the `.msg`, `.srv` and `.action` files of ROS 1 and of ROS 2."""
 
 from __future__ import annotations
 
@@ -27,6 +27,22 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True)
+class Interface:
+    """What files declare that are not of one message each: services, actions. ``{}`` in names and texts is the file's own name.
+
+    Attributes
+    ----------
+    parts
+        The names of the messages in the text, between lines of ``---``.
+    added
+        The names and texts of messages that peers make for them.
+    """
+
+    parts: tuple[str, ...]
+    added: Mapping[str, str] = field(default_factory=dict[str, str])
+
+
+@dataclass(frozen=True, slots=True)
 class Dialect:
     """One of the two languages.
 
@@ -35,7 +51,7 @@ class Dialect:
     name
         Of the framework, and of the folder in which its definitions are shipped.
     qualified
-        The name of a message, made from ``package`` and ``name``.
+        The name of a message, made from ``package``, ``folder`` and ``name``.
     scalars
         What the builtin words mean.
     octets
@@ -50,6 +66,12 @@ class Dialect:
         The words for true and false, in lower case if case does not matter.
     extended
         Defaults, bounds, `@optional` and quoted strings; a string constant of the other language goes to the end of its line.
+    interfaces
+        What there is besides messages, by folder, which is also the suffix of the files.
+    dashes
+        A line between two messages of these.
+    foreign
+        The suffix of files of another IDL in which messages may be declared, too.
     empty
         The fields of a message without any: rosidl gives it one, which is on the wire and can hold anything.
     """
@@ -64,11 +86,14 @@ class Dialect:
     constants: Rule
     integers: re.Pattern[str]
     line_ends: re.Pattern[str]
+    dashes: re.Pattern[str]
     extended: bool
     structs: Mapping[str, Struct] = field(default_factory=dict[str, "Struct"])
     aliases: Mapping[str, str] = field(default_factory=dict[str, str])
+    interfaces: Mapping[str, Interface] = field(default_factory=dict[str, Interface])
+    foreign: str = ""
     empty: tuple[Field, ...] = ()
 
-    def message(self, package: str, name: str) -> str:
+    def message(self, package: str, name: str, folder: str = "msg") -> str:
         """The qualified name of a message; a package that is not known is left out."""
-        return self.qualified.format(package=package, name=name) if package else name
+        return self.qualified.format(package=package, folder=folder, name=name) if package else name

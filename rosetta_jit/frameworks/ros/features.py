@@ -1,8 +1,14 @@
-"""What `.msg` files of both dialects can say."""
+"""What `.msg`, `.srv` and `.action` files of both dialects can say."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 from rosetta_jit.frameworks.features import Probe
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 POINT = {"probe/Point.msg": "float64 x\nfloat64 y"}
 
@@ -22,5 +28,14 @@ PROBES: dict[str, str | Probe] = {
     "namespace": "int32 x",
     "import": Probe("Point x", POINT),
     "documentation": "int32 x # where it is",
-    "service": Probe("int32 question\n---\nint32 answer", file="probe/Probe.srv"),
 }
+
+
+def first_part(probes: Mapping[str, str | Probe], others: int, declares: str, added: Mapping[str, str]) -> dict[str, str | Probe]:
+    """The same in the first part of a service or an action, which has some others; ``added`` is what peers add needs."""
+    whole = {feature: each if isinstance(each, Probe) else Probe(each) for feature, each in probes.items()}
+    whole["service"] = Probe("int32 question")
+    return {
+        feature: replace(each, text=each.text + "\n---\n" * others, files={**added, **each.files}, declares=declares)
+        for feature, each in whole.items()
+    }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -11,13 +12,26 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros.dialect import Dialect
 
 SUFFIX = ".msg"
+KINDS = ("srv", "action")
+"""Folders of a package besides that of its messages."""
 
 
-def declared_in(file: str, dialect: Dialect) -> tuple[str, str]:
-    """The package and the name of the message of ``sensor_msgs/msg/Imu.msg`` or ``sensor_msgs/Imu.msg``; no package if none is told."""
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """What a file declares by its name: the package, which is empty if it is not told, the kind of interface, and the last part."""
+
+    package: str
+    folder: str
+    short: str
+
+
+def declared_in(file: str, dialect: Dialect) -> Declared:
+    """What ``sensor_msgs/msg/Imu.msg``, ``sensor_msgs/Imu.msg`` or ``std_srvs/srv/Empty.srv`` declares."""
     path = PurePosixPath(file.replace("\\", "/"))
+    inside = path.parent.name if path.parent.name in dialect.interfaces else "msg"
     package = _package_folder(path).name
-    return package if dialect.packages.allows(package) else "", path.name.removesuffix(SUFFIX)
+    folder = path.suffix[1:] if path.suffix[1:] in dialect.interfaces else inside
+    return Declared(package if dialect.packages.allows(package) else "", folder, path.stem)
 
 
 def split(name: str) -> tuple[str, str]:
@@ -33,7 +47,7 @@ def places(name: str, importer: str, dialect: Dialect) -> Iterator[str]:
     (``ros1-2012/std_msgs/Header.msg`` for a file of ``ros1-2012/nav_msgs``), then among the shipped ones.
     """
     package, short = split(name)
-    home = declared_in(importer, dialect)[0]
+    home = declared_in(importer, dialect).package
     if not package or package == home:
         yield f"{short}{SUFFIX}"
     if not package:
@@ -49,4 +63,6 @@ def places(name: str, importer: str, dialect: Dialect) -> Iterator[str]:
 
 
 def _package_folder(path: PurePosixPath) -> PurePosixPath:
-    return path.parent.parent if path.parent.name == "msg" else path.parent
+    inner = path.parent
+    is_kind = inner.name == "msg" or (inner.name in KINDS and inner.parent.name != "")
+    return inner.parent if is_kind else inner

@@ -19,8 +19,8 @@ MAX_FIELDS = 1 << 16
 
 
 def dependencies_first(found: Mapping[str, Definition], problems: list[Diagnostic]) -> tuple[Definition, ...]:
-    """The definitions in an order in which each comes after those of its fields."""
-    needs = {name: {each.type.base for each in _nested(definition)} for name, definition in found.items()}
+    """The definitions in an order in which each comes after those of its fields, as far as these are found."""
+    needs = {name: {each.type.base for each in _nested(definition)} & found.keys() for name, definition in found.items()}
     users: dict[str, list[str]] = {name: [] for name in found}
     for name, needed in needs.items():
         for each in needed:
@@ -60,7 +60,7 @@ def _measure(ordered: tuple[Definition, ...], problems: list[Diagnostic]) -> Non
     depths: dict[str, int] = {}
     sizes: dict[str, int] = {}
     for each in ordered:
-        inner = [field.type.base for field in _nested(each)]
+        inner = [field.type.base for field in _nested(each) if field.type.base in depths]
         depths[each.name] = 1 + max((depths[name] for name in inner), default=0)
         sizes[each.name] = len(each.fields) - len(inner) + sum(sizes[name] for name in inner)
         if depths[each.name] > MAX_DEPTH or sizes[each.name] > MAX_FIELDS:

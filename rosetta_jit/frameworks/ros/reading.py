@@ -58,7 +58,7 @@ class _Reader:
             at = match.end() if match else section.end
         if self.optional is not None:
             self.problems.append(say.optional_nothing(self.optional))
-        name = self.dialect.message(section.package, section.short)
+        name = self.dialect.message(section.package, section.short, section.folder)
         members = tuple(self.constants), tuple(self.fields)
         return Definition(name, section.package, section.source, section.named, section.text, *members, self.doc)
 
@@ -114,7 +114,7 @@ class _Reader:
         match = DECLARATION.fullmatch(rest.text)
         assert match is not None
         name, value = self._part(rest, 0, match.end(1)), self._part(rest, match.start(3))
-        type_ = type_name(first, self.section.package, self.dialect, self.problems)
+        type_ = type_name(first, self.section, self.dialect, self.problems)
         named = self._named(name, "field", self.dialect.fields)
         if value.text and not self.dialect.extended:
             self.problems.append(say.too_much(value.span))

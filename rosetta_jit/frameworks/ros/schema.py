@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros.gather import gather
-from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS
+from rosetta_jit.frameworks.ros.names import declared_in
+from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS, read
+from rosetta_jit.frameworks.ros.sections import sections
 from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.ros import tree
     from rosetta_jit.frameworks.ros.dialect import Dialect
+    from rosetta_jit.frameworks.ros.gather import Gathered
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Constant, Type
     from rosetta_jit.source import Source
@@ -25,8 +28,8 @@ if TYPE_CHECKING:
     Options = tuple[tuple[str, Constant], ...]
 
 
-def definitions_of(source: Source, load: Load, dialect: Dialect) -> tuple[tree.Definition, ...]:
-    """The definitions of a source and of all that it needs, those that others need first.
+def gathered(source: Source, load: Load, dialect: Dialect) -> Gathered:
+    """The definitions of a source and of all that it needs.
 
     Raises
     ------
@@ -34,10 +37,29 @@ def definitions_of(source: Source, load: Load, dialect: Dialect) -> tuple[tree.D
         With everything that is wrong in any of the texts.
     """
     problems: list[Diagnostic] = []
-    definitions = gather(source, load, dialect, problems)
+    found = gather(source, load, dialect, problems)
+    _refuse(problems)
+    return found
+
+
+def definition_of(source: Source, dialect: Dialect) -> tree.Definition:
+    """The first definition of a message's file, by itself.
+
+    Raises
+    ------
+    SchemaError
+        With everything that is wrong in it.
+    """
+    problems: list[Diagnostic] = []
+    found = sections(source, declared_in(source.name, dialect), dialect, problems)
+    definitions = [read(each, dialect, problems) for each in found[:1]]
+    _refuse(problems)
+    return definitions[0]
+
+
+def _refuse(problems: list[Diagnostic]) -> None:
     if problems:
         raise SchemaError(tuple(sorted(problems[:MAX_PROBLEMS], key=_place)))
-    return definitions
 
 
 def schema_of(

@@ -6,7 +6,7 @@ https://wiki.ros.org/Bags/Format/2.0 and https://mcap.dev/spec/registry#ros2msg
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
@@ -14,8 +14,11 @@ from rosetta_jit.frameworks.ros.names import split
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.ros.dialect import Dialect
+    from rosetta_jit.frameworks.ros.names import Declared
     from rosetta_jit.source import Source
 
 SEPARATOR = re.compile(r"^={3,}[ \t]*\r?(?:\n|\Z)", re.MULTILINE)
@@ -24,7 +27,10 @@ HEADER = re.compile(r"MSG:[ \t]*(\S*)[ \t]*\r?(?:\n|\Z)")
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The text of one definition: where it lies in its source, and the message that it defines."""
+    """The text of one definition: where it lies in its source, and the message that it defines.
+
+    ``local`` are the full names of what it may refer to by a last part alone, besides messages of its package.
+    """
 
     source: Source
     package: str
@@ -32,17 +38,19 @@ class Section:
     start: int
     end: int
     named: Span
+    folder: str = "msg"
+    local: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def text(self) -> str:
         return self.source.text[self.start : self.end]
 
 
-def sections(source: Source, package: str, short: str, dialect: Dialect, problems: list[Diagnostic]) -> list[Section]:
+def sections(source: Source, declared: Declared, dialect: Dialect, problems: list[Diagnostic]) -> list[Section]:
     """The definitions of a source; the first is that of the named message, unless nothing stands before the first line of `=`."""
     breaks = list(SEPARATOR.finditer(source.text))
     ends = [max(0, each.start() - 1) for each in breaks] + [len(source.text)]
-    first = Section(source, package, short, 0, ends[0], Span(source, 0, 0))
+    first = Section(source, declared.package, declared.short, 0, ends[0], Span(source, 0, 0), declared.folder)
     found = [] if breaks and not first.text.strip() else [first]
     for line, end in zip(breaks, ends[1:], strict=True):
         header = HEADER.match(source.text, line.end())

@@ -11,6 +11,7 @@ from rosetta_jit.frameworks.ros.tree import TypeName
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.ros.dialect import Dialect
+    from rosetta_jit.frameworks.ros.sections import Section
     from rosetta_jit.frameworks.ros.tree import Word
 
 TYPE = re.compile(r"(?P<base>[^\[\]<]+)(?P<bound><=(?P<text>[^\[\]]*))?(?P<array>\[(?P<most><=)?(?P<length>[^\[\]]*)\])?")
@@ -19,13 +20,13 @@ MAX_LENGTH = (1 << 32) - 1
 """Counts have 32 bits on the wire."""
 
 
-def type_name(word: Word, package: str, dialect: Dialect, problems: list[Diagnostic]) -> TypeName | None:
-    """What a word means as a type; None, and a problem, if nothing."""
+def type_name(word: Word, section: Section, dialect: Dialect, problems: list[Diagnostic]) -> TypeName | None:
+    """What a word of a section means as a type; None, and a problem, if nothing."""
     match = TYPE.fullmatch(word.text)
     if match is None or not _may_have_bounds(match, dialect):
         problems.append(say.not_a_type(word.span, word.text))
         return None
-    base = _base(match["base"], word.text, package, dialect)
+    base = _base(match["base"], word.text, section, dialect)
     if base is None:
         problems.append(say.not_a_type_name(word.span, match["base"], dialect.packages.words, dialect.messages.words))
         return None
@@ -47,16 +48,18 @@ def type_name(word: Word, package: str, dialect: Dialect, problems: list[Diagnos
     )
 
 
-def _base(word: str, written: str, package: str, dialect: Dialect) -> str | None:
+def _base(word: str, written: str, section: Section, dialect: Dialect) -> str | None:
     """The builtin word itself, or the qualified name of a message."""
     if word in dialect.scalars or word in dialect.structs:
         return word
     if written in dialect.aliases:
         return dialect.aliases[written]
+    if word in section.local:
+        return section.local[word]
     parts = word.split("/")
     if len(parts) > 2 or not dialect.messages.allows(parts[-1]) or (len(parts) == 2 and not dialect.packages.allows(parts[0])):
         return None
-    return dialect.message(parts[0] if len(parts) == 2 else package, parts[-1])
+    return dialect.message(parts[0] if len(parts) == 2 else section.package, parts[-1])
 
 
 def _may_have_bounds(match: re.Match[str], dialect: Dialect) -> bool:

@@ -1,15 +1,19 @@
-"""The front end of ROS 1: `.msg` files, and the concatenated definitions of a bag (https://wiki.ros.org/msg), as genmsg reads them."""
+"""The front end of ROS 1: `.msg`, `.srv` and `.action` files, and the concatenated definitions of a bag, as genmsg and actionlib read them.
+
+https://wiki.ros.org/msg, https://wiki.ros.org/srv, https://wiki.ros.org/actionlib
+"""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros import Dialect, Rule, definitions_of, schema_of
-from rosetta_jit.frameworks.ros1.md5 import md5_sums
+from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
+from rosetta_jit.frameworks.ros1.md5 import md5_sums, service_sums
 from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
 
 if TYPE_CHECKING:
+    from rosetta_jit.frameworks.ros import Definition
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
     from rosetta_jit.source import Source
@@ -33,6 +37,17 @@ SCALARS = {
     "byte": Int(8, spelling="byte"),
 }
 
+SERVICE = Interface(("{}Request", "{}Response"))
+ACTION = Interface(
+    ("{}Goal", "{}Result", "{}Feedback"),
+    {
+        "{}ActionGoal": "Header header\nactionlib_msgs/GoalID goal_id\n{}Goal goal",
+        "{}ActionResult": "Header header\nactionlib_msgs/GoalStatus status\n{}Result result",
+        "{}ActionFeedback": "Header header\nactionlib_msgs/GoalStatus status\n{}Feedback feedback",
+        "{}Action": "{0}ActionGoal action_goal\n{0}ActionResult action_result\n{0}ActionFeedback action_feedback",
+    },
+)
+
 IDENTIFIER = Rule(re.compile(r"[A-Za-z][A-Za-z0-9_]*"), "letters, digits and underscores, a letter first")
 
 ROS1 = Dialect(
@@ -46,24 +61,27 @@ ROS1 = Dialect(
     constants=IDENTIFIER,
     integers=re.compile(r"[+-]?[0-9]+"),
     line_ends=re.compile(r"\n"),
+    dashes=re.compile(r"^---[^\n]*(?:\n|\Z)", re.MULTILINE),
     extended=False,
     structs={
         "time": Struct("time", (Field("secs", UINT32), Field("nsecs", UINT32))),
         "duration": Struct("duration", (Field("secs", INT32), Field("nsecs", INT32))),
     },
     aliases={"Header": "std_msgs/Header"},
+    interfaces={"srv": SERVICE, "action": ACTION},
 )
 
 
 def parse(source: Source, load: Load) -> Schema:
-    """A `.msg` file and the messages that it needs, from the text itself where it has their definitions, else from the search path.
+    """The messages of a file and those that they need, from the text itself where it has their definitions, else from the search path.
 
-    The options of a struct are its ``definition``, the text without those of other messages, and its ``md5sum``.
+    The options of a struct are its ``definition``, the text without those of other messages, and its ``md5sum``; of a request or a response
+    also ``service_md5sum``.
 
     Parameters
     ----------
     source
-        The text, named after the message: ``sensor_msgs/Imu.msg``, ``sensor_msgs/msg/Imu.msg``.
+        The text, named after what it declares: ``sensor_msgs/Imu.msg``, ``std_srvs/srv/SetBool.srv``.
     load
         Finds the files of other messages.
 
@@ -72,6 +90,12 @@ def parse(source: Source, load: Load) -> Schema:
     SchemaError
         With everything that is wrong in any of the texts.
     """
-    definitions = definitions_of(source, load, ROS1)
+    definitions = gathered(source, load, ROS1).definitions
     sums = md5_sums(definitions)
-    return schema_of(definitions, ROS1, lambda each: (("definition", each.text), ("md5sum", sums[each.name])))
+    services = service_sums(definitions, sums) if source.name.endswith(".srv") else {}
+
+    def options(each: Definition) -> tuple[tuple[str, str], ...]:
+        own = (("definition", each.text), ("md5sum", sums[each.name]))
+        return (*own, ("service_md5sum", services[each.name])) if each.name in services else own
+
+    return schema_of(definitions, ROS1, options)

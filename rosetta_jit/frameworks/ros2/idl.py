@@ -1,4 +1,4 @@
-"""The front end of ROS 2's `.msg` files, and of the concatenated ones in an MCAP file, as rosidl_adapter reads them.
+"""The front end of ROS 2's `.msg`, `.srv` and `.action` files, and of the concatenated messages in an MCAP file, as rosidl reads them.
 
 https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
 """
@@ -8,13 +8,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.ros import Dialect, Rule, definitions_of, schema_of
+from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
+from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
+from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
 from rosetta_jit.model.types import Bool, Field, Float, Int, String
+from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
+    from rosetta_jit.frameworks.ros import Definition
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
-    from rosetta_jit.source import Source
 
 SCALARS = {
     "bool": Bool("bool"),
@@ -36,36 +39,71 @@ SCALARS = {
 
 DUMMY = "structure_needs_at_least_one_member"
 
+EVENT = "service_msgs/ServiceEventInfo info\n{0}_Request[<=1] request\n{0}_Response[<=1] response"
+DESCRIBED = "{0}_Request request_message\n{0}_Response response_message\n{0}_Event event_message"
+"""A service itself is no message; this is what its type hash is of (REP 2011)."""
+SERVICE = Interface(("{}_Request", "{}_Response"), {"{}_Event": EVENT, "{}": DESCRIBED})
+ACTION = Interface(
+    ("{}_Goal", "{}_Result", "{}_Feedback"),
+    {
+        "{}_SendGoal_Request": "unique_identifier_msgs/UUID goal_id\n{}_Goal goal",
+        "{}_SendGoal_Response": "bool accepted\nbuiltin_interfaces/Time stamp",
+        "{}_SendGoal_Event": EVENT.replace("{0}", "{0}_SendGoal"),
+        "{}_SendGoal": DESCRIBED.replace("{0}", "{0}_SendGoal"),
+        "{}_GetResult_Request": "unique_identifier_msgs/UUID goal_id",
+        "{}_GetResult_Response": "int8 status\n{}_Result result",
+        "{}_GetResult_Event": EVENT.replace("{0}", "{0}_GetResult"),
+        "{}_GetResult": DESCRIBED.replace("{0}", "{0}_GetResult"),
+        "{}_FeedbackMessage": "unique_identifier_msgs/UUID goal_id\n{}_Feedback feedback",
+        "{}": "{0}_Goal goal\n{0}_Result result\n{0}_Feedback feedback\n{0}_SendGoal send_goal_service\n"
+        "{0}_GetResult get_result_service\n{0}_FeedbackMessage feedback_message",
+    },
+)
+
 LOWER = Rule(re.compile(r"[a-z](?:_?[a-z0-9])*"), "lower-case letters, digits and single underscores, a letter first")
 
 ROS2 = Dialect(
     name="ros2",
-    qualified="{package}/msg/{name}",
+    qualified="{package}/{folder}/{name}",
     scalars=SCALARS,
     octets=frozenset({"uint8", "byte", "char"}),
     packages=LOWER,
     messages=Rule(
-        re.compile(r"(?:Sample_)?[A-Z][A-Za-z0-9]*(?:_(?:Request|Response|Goal|Result|Feedback))*"),
+        re.compile(
+            r"(?:Sample_)?[A-Z][A-Za-z0-9]*(?:_(?:Request|Response|Event|Goal|Result|Feedback|SendGoal|GetResult|FeedbackMessage))*"
+        ),
         "letters and digits, an upper-case one first",
     ),
     fields=LOWER,
     constants=Rule(re.compile(r"[A-Z](?:_?[A-Z0-9])*"), "upper-case letters, digits and single underscores, a letter first"),
     integers=re.compile(r"[+-]?(?:[0-9]+|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+)"),
     line_ends=re.compile(r"\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"),
+    dashes=re.compile(r"^---\r?(?:\n|\Z)", re.MULTILINE),
     extended=True,
+    foreign=".idl",
+    interfaces={"srv": SERVICE, "action": ACTION},
     empty=(Field(DUMMY, SCALARS["uint8"]),),
 )
 
 
-def parse(source: Source, load: Load) -> Schema:
-    """A `.msg` file and the messages that it needs, from the text itself where it has their definitions, else from the search path.
+def as_idl(definitions: tuple[Definition, ...], source: Source, load: Load) -> Schema:
+    """All messages as rosidl would write them in `.idl` files, so that those can include others."""
+    texts = {f"{each.name}.idl": idl_text(each, ROS2) for each in definitions}
+    root = Source(f"{source.name}.idl", "".join(f'#include "{name}"\n' for name in texts))
+    return parse_declarations(root, with_messages(load, ROS2, texts))
 
-    The default of a field is `Field.default`; that of an array other than bytes is its option ``default``, a list in JSON.
+
+def parse(source: Source, load: Load) -> Schema:
+    """The messages of a file and those that they need, from the text itself where it has their definitions, else from the search path.
+
+    Where one of these is declared in a `.idl` file, all are read as IDL, as rosidl does with every `.msg` file: then their names are
+    ``pkg::msg::Name``. The default of a field is `Field.default`; that of an array other than bytes is its option ``default``, a list in
+    JSON.
 
     Parameters
     ----------
     source
-        The text, named after the message: ``sensor_msgs/msg/Imu.msg``, ``sensor_msgs/Imu.msg``.
+        The text, named after what it declares: ``sensor_msgs/msg/Imu.msg``, ``sensor_msgs/Imu.msg``, ``std_srvs/srv/SetBool.srv``.
     load
         Finds the files of other messages.
 
@@ -74,4 +112,16 @@ def parse(source: Source, load: Load) -> Schema:
     SchemaError
         With everything that is wrong in any of the texts.
     """
-    return schema_of(definitions_of(source, load, ROS2), ROS2)
+    found = gathered(source, load, ROS2)
+    return schema_of(found.definitions, ROS2) if not found.foreign else as_idl(found.definitions, source, load)
+
+
+def parse_idl(source: Source, load: Load) -> Schema:
+    """The same of a `.idl` file, which may include the `.idl` files that rosidl would make of `.msg` files.
+
+    Raises
+    ------
+    SchemaError
+        With everything that is wrong.
+    """
+    return parse_declarations(source, with_messages(load, ROS2))

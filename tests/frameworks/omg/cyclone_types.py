@@ -33,7 +33,6 @@ class Types:
     """Declarations under way: ours by name, theirs by name, and how values are made."""
 
     random: Random
-    extended: bool
     ours: dict = field(default_factory=dict)
     theirs: dict = field(default_factory=dict)
 
@@ -41,11 +40,11 @@ class Types:
         """A struct; gives its name."""
         name = f"test::S{len(self.ours)}"
         self.ours[name] = None
-        kind = self.random.choice(list(EXTENSIBILITY)) if self.extended else "final"
+        kind = self.random.choice(list(EXTENSIBILITY))
         fields, members = [], {}
         for number in range(self.random.randint(1, 6)):
             type_, theirs = self.type(depth)
-            if self.extended and self.random.random() < 0.2:
+            if self.random.random() < 0.2:
                 type_, theirs = Optional(type_), typing.Union[theirs, None]  # noqa: UP007 - their classes know no other
             fields.append(Field(f"f{number}", type_, number=number))
             members[f"f{number}"] = theirs
@@ -157,8 +156,8 @@ class Types:
         return theirs(discriminator=label, value=value), {"_d": label, union.cases[number].name: plain}
 
 
-def random_types(seed, *, extended):
+def random_types(seed):
     """A schema of ours, the name of its message, and what makes values."""
-    made = Types(Random(seed), extended)
+    made = Types(Random(seed))
     name = made.struct()
     return Schema(made.ours), name, made
