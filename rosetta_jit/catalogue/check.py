@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import error, shorten, warning
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -70,6 +70,16 @@ def too_many_ways(span: Span | None, most: int) -> Diagnostic:
 def in_one_way(problem: Diagnostic) -> Diagnostic:
     """A mistake that not every way through the rules makes."""
     return replace(problem, notes=(*problem.notes, "in one way through the `when` blocks, not in all"))
+
+
+def never_read(span: Span | None, path: str) -> Diagnostic:
+    """A field whose value goes nowhere."""
+    return warning("never-read", f"no rule reads `{path}`: its value is lost", span, help_=f"say that it is meant: `ignore {path}`")
+
+
+def left_out(span: Span | None, path: str) -> Diagnostic:
+    """An optional field without a rule."""
+    return warning("left-out", f"no rule sets `{path}`", span, help_=f"say that it is meant: `default {path}`")
 
 
 def length_without_elements(span: Span | None, path: str) -> Diagnostic:

@@ -205,3 +205,13 @@ def rules_behind_reject(span: Span | None) -> Diagnostic:
     """Rules that no message gets to."""
     message = "what follows a `reject` without `when` is never reached"
     return error("unreachable", message, span, help_='write `reject "text" when condition`')
+
+
+def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:
+    """`same names` where there are none left."""
+    return error("no-same-names", f"`{shorten(target)}` and `{shorten(origin)}` have no other names in common", span, help_="remove it")
+
+
+def no_default(span: Span | None, found: str) -> Diagnostic:
+    """Elements that a message always has, left without a value."""
+    return error("no-default", f"the wire has no default for {found}: its elements are always there", span, help_="set each of them")

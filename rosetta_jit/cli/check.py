@@ -18,18 +18,20 @@ def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "check", "Report what is wrong with mappings and the schemas that they import.", run)
     add_mappings(command)
+    command.add_argument("--strict", action="store_true", help="warnings are errors")
     command.add_argument("--json", action="store_true", help="one JSON object a mapping, on stdout")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code 1 if any mapping has an error; warnings are shown and forgiven."""
+    """Exit code 1 if any mapping has an error; warnings are shown, and forgiven unless `--strict` is given."""
     reports = [(mapping, _diagnostics(mapping)) for mapping in cast("list[str]", arguments.mappings)]
     for mapping, diagnostics in reports:
         if arguments.json:
             print(json.dumps({"mapping": mapping, "diagnostics": [to_json(diagnostic) for diagnostic in diagnostics]}))
         for diagnostic in () if arguments.json else diagnostics:
             print(render(diagnostic), end="\n\n", file=sys.stderr)
-    return int(any(diagnostic.severity == "error" for _, diagnostics in reports for diagnostic in diagnostics))
+    counted = ("error", "warning") if arguments.strict else ("error",)
+    return int(any(diagnostic.severity in counted for _, diagnostics in reports for diagnostic in diagnostics))
 
 
 def _diagnostics(mapping: str) -> tuple[Diagnostic, ...]:

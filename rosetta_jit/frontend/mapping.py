@@ -35,6 +35,10 @@ NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", 
 """Rules of the grammar that one of their kind can stand in."""
 
 
+RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "SAME")
+"""Tokens that a rule begins with."""
+
+
 def parse(source: Source) -> Mapping:
     """Read a mapping file.
 
@@ -82,8 +86,8 @@ class _Tokens(PostLex):
 
 def _recovery() -> Recovery:
     statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
-    starts = {kind: kind for kind in statements} | dict.fromkeys(("START", "LEN", "FOR", "WHEN", "REJECT"), "FOR")
-    return Recovery(starts, frozenset({"START", "LEN", "WHEN", "REJECT"}), opens=frozenset({"FOR", "WHEN"}), closes="END")
+    starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
+    return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
 
 
 def _too_deep(tokens: list[Token], source: Source) -> Diagnostic | None:

@@ -14,7 +14,7 @@ from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
-from rosetta_jit.model.mapping import Assign, For, Reject, Relation, SetLength, When
+from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -61,6 +61,12 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
         case "when":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)
+        case "ignore":
+            return Ignore(_path(_trees(tree)[0], context.origin, context), span)
+        case "default":
+            return Default(_path(_trees(tree)[0], context.target, context), span)
+        case "same":
+            return SameNames(tuple(_path(each, context.target, context) for each in _trees(tree)), span)
         case "reject":
             return _reject(tree, context, span)
         case _:

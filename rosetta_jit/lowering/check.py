@@ -13,6 +13,7 @@ from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
+from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema
 
@@ -81,6 +82,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
     errors = [problem for problem in problems if problem.severity == "error"]
     if errors:
         raise MappingError(_sorted(problems))
+    problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, _sorted(problems))
 
@@ -140,11 +142,22 @@ def _directions(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
     if resolved.unpack is None and resolved.pack is None:
         return [words.no_rules(mapping.wire_span)]
     problems: list[Diagnostic] = []
+    holder, wire = resolved.holder, resolved.wire
     if mapping.unpack_rules and resolved.unpack is not None:
-        problems += check_complete(resolved.unpack, resolved.holder, "holder", mapping.holder_span)
+        problems += check_complete(resolved.unpack, holder, "holder", mapping.holder_span)
     if mapping.pack_rules and resolved.pack is not None:
-        problems += check_complete(resolved.pack, resolved.wire, "wire", mapping.wire_span)
+        problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
     return problems
+
+
+def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
+    """What rules without errors leave out."""
+    warnings: list[Diagnostic] = []
+    holder, wire = (resolved.holder, mapping.holder_span), (resolved.wire, mapping.wire_span)
+    for block, (source, read_at), (target, set_at) in ((resolved.unpack, wire, holder), (resolved.pack, holder, wire)):
+        if block is not None and block.rules:
+            warnings += left_out(block.rules, source, target, (read_at, set_at))
+    return warnings
 
 
 def _unused(imported: list[_Imported], mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:

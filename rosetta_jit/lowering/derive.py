@@ -1,7 +1,8 @@
 """Rules for both directions as rules for each.
 
 `.a <-> f(.b)` unpacks as `.a = f(.b)`, and packs as `.b = f⁻¹(.a)`. A relation whose wire side has no field, or only fields that other
-relations set, packs as a check. Where a loop's bounds or an index name fields of the wire, packing has what the relations say of them.
+relations set, packs as a check. Where a loop's bounds name fields of the wire, packing has what the relations say of them. `ignore .b`
+and `default .a` are each other's reverse.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.lowering.inverse import NoInverseError, fields_in, reads_in_index, replaced, solve
 from rosetta_jit.model.expr import Binary, Len, Path
-from rosetta_jit.model.mapping import Assign, For, Reject, Relation, SetLength, When
+from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -46,7 +47,7 @@ def _unpacked(rule: Rule) -> Rule:
         case For(body=body):
             return replace(rule, body=_unpacking(body))
         case _:
-            raise AssertionError(rule)
+            return rule
 
 
 @dataclass(slots=True)
@@ -91,6 +92,12 @@ class _Packing:
                 return (replace(rule, body=self.rules(body), **bounds),)
             case Relation():
                 return self.relation(rule)
+            case Ignore(place, span):
+                return (Default(place, span),)
+            case Default(place, span):
+                return (Ignore(place, span),)
+            case SameNames(but, span):
+                return (SameNames(tuple(replace(path, side="wire") for path in but), span),)
             case _:
                 raise AssertionError(rule)
 

@@ -16,7 +16,22 @@ from rosetta_jit.lowering.conversions import convert, describe, other_way, same,
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
-from rosetta_jit.lowering.typed import Access, Assign, Choice, Const, Convert, FieldStep, For, Local, Reject, SetLength, When
+from rosetta_jit.lowering.typed import (
+    Access,
+    Assign,
+    Choice,
+    Const,
+    Convert,
+    Default,
+    FieldStep,
+    For,
+    Ignore,
+    Local,
+    Reject,
+    SetLength,
+    When,
+)
+from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union
 
@@ -27,6 +42,10 @@ if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
+
+
+MAX_NESTED = 20
+"""Structs within each other that are looked into for what has no default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +106,22 @@ class _Block:
             if isinstance(rule, model.Reject):
                 scope.problems.append(words.rules_behind_reject(behind.span))
         typed = [self.rule(rule, scope) for rule in rules]
-        return tuple(rule for rule in typed if rule is not None)
+        found = tuple(rule for rule in typed if rule is not None)
+        same = [rule for rule in rules if isinstance(rule, model.SameNames)]
+        return found if not same else (*found, *self.same_names(same[0], found, scope))
+
+    def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
+        """Rules for the fields of the message that no other rule sets, and that the other side has too."""
+        origin, aim = (scope.messages[side].root for side in (_other(scope.target), scope.target))
+        names = {field.name for field in origin.fields}
+        excepted = [resolve_path(path, scope, type_index) for path in rule.but]
+        set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
+        taken = {fields[0] for fields in (*set_already, *self.broken) if fields}
+        wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
+        if not wanted:
+            scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
+        made = [self.assign(_same_name(name, scope.target, rule.span), scope) for name in wanted]
+        return [each for each in made if each is not None]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
         match rule:
@@ -101,10 +135,26 @@ class _Block:
                 return self.when(rule, scope)
             case model.Reject(text):
                 return Reject(text, rule.span)
+            case model.Ignore(path) | model.Default(path):
+                return self.left_alone(rule, path, scope)
+            case model.SameNames():
+                return None  # when all other rules of the block are known
             case model.Relation():
                 raise AssertionError(rule)
             case _:
                 assert_never(rule)
+
+    def left_alone(self, rule: model.Ignore | model.Default, path: expr.Path, scope: Scope) -> Rule | None:
+        place = resolve_path(path, scope, type_index)
+        if isinstance(place, Broken):
+            self.broken.append(place.fields)
+            return None
+        if isinstance(rule, model.Ignore):
+            return Ignore(place, rule.span)
+        if scope.target == "wire" and _has_fixed_array(place.type, scope.messages["wire"]):
+            scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            return None
+        return Default(place, rule.span)
 
     def when(self, rule: model.When, scope: Scope) -> When | None:
         condition = type_condition(rule.condition, scope, type_expr)
@@ -180,16 +230,36 @@ def places_in(rules: tuple[Rule, ...]) -> list[Place]:
 
 def _places(rule: Rule) -> list[Place]:
     match rule:
-        case Assign(place) | SetLength(place):
+        case Assign(place) | SetLength(place) | Default(place):
             return [place]
         case For():
             return places_in(rule.body)
         case When():
             return places_in((*rule.then, *rule.otherwise))
-        case Reject():
+        case Reject() | Ignore():
             return []
         case _:
             assert_never(rule)
+
+
+def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
+    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in (_other(target), target))
+    return model.Assign(here, there, span)
+
+
+def _has_fixed_array(type_: Type, message: Message, depth: int = 0) -> bool:
+    """Whether a type has elements that are there whatever their count: the wire has no default for them."""
+    match message.value_type(type_):
+        case Array(length=length, element=element):
+            return length is not None or _has_fixed_array(element, message, depth + 1)
+        case Bytes(length=int()):
+            return True
+        case Struct(fields=fields) if depth <= MAX_NESTED:
+            return any(_has_fixed_array(field.type, message, depth + 1) for field in fields)
+        case Struct():
+            return True
+        case _:
+            return False
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:

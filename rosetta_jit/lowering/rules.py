@@ -17,7 +17,7 @@ from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.values import constant, scalar_type
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,6 +50,8 @@ class Runner:
                     self.writer.emit(If(holds, self.branch(then, values), self.branch(otherwise, values)))
                 case typed.Reject(text):
                     here.reject(text)
+                case typed.Ignore() | typed.Default():
+                    pass
                 case _:
                     assert_never(rule)
 
@@ -140,7 +142,7 @@ class Supplies:
     values: Values
 
     def number(self, path: Path) -> Expr:
-        return self.decided(path, _zero(path, self.rules), lambda rule, here: here.of(_assigned(rule)))
+        return self.decided(path, _zero(path, self.rules), _given)
 
     def size(self, path: Path) -> Expr:
         return self.decided(path, index(0), self.sized)
@@ -189,6 +191,8 @@ class Supplies:
                 return index(len(text.encode()))
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
+            case typed.Default():
+                return index(0)
             case _:
                 raise AssertionError(rule)
 
@@ -211,6 +215,8 @@ def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
         match rule:
             case typed.Assign(place) | typed.SetLength(place) if wire_key(place) == (path, []):
                 return rule
+            case typed.Default(place) if wire_key(place) == (path[: len(place.steps)], []):
+                return rule
             case typed.When(_, then, otherwise) if _rule_for(path, (*then, *otherwise)) is not None:
                 return rule
             case _:
@@ -227,12 +233,21 @@ def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
         case typed.When(_, then, otherwise):
             return _zero(path, (*then, *otherwise))
         case _:
-            raise MappingError((unmappable_field(path),))
+            return index(0)
 
 
-def _assigned(rule: typed.Rule) -> typed.Expr:
-    assert isinstance(rule, typed.Assign)
-    return rule.value
+def _given(rule: typed.Rule, here: Values) -> Expr:
+    """The number that a rule gives a field; without one, the schema's default or 0."""
+    match rule:
+        case typed.Assign(_, value):
+            return here.of(value)
+        case typed.Default(place):
+            last = place.steps[-1]
+            default = last.field.default if isinstance(last, typed.FieldStep) else None
+            known = isinstance(place.type, Int | Float | Bool | Enum)
+            return constant(default if isinstance(default, int | float) else 0, scalar_type(place.type)) if known else index(0)
+        case _:
+            raise AssertionError(rule)
 
 
 def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Values) -> None:

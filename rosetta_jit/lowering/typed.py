@@ -3,7 +3,7 @@
     Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
-         | When(Expr of bool, Rule*, Rule*) | Reject(text)
+         | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
 
 Every change of a scalar type is a `Convert`; both operands of a `Binary` have one type, which is its own unless it compares.
 Only an `Assign` of a whole array, struct, string or blob (`Access` as the value) may have two types: elements are then widened,
@@ -212,4 +212,20 @@ class Reject:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For | When | Reject
+@dataclass(frozen=True, slots=True)
+class Ignore:
+    """Nothing reads this place, and that is meant."""
+
+    place: Place
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Default:
+    """Nothing sets this place, and that is meant: numbers are 0 or the schema's default, texts and arrays empty."""
+
+    place: Place
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject | Ignore | Default

@@ -11,7 +11,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
-from rosetta_jit.lowering.typed import Assign, For, Reject, SetLength, When
+from rosetta_jit.lowering.typed import Assign, Default, For, Ignore, Reject, SetLength, When
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -50,7 +50,7 @@ def ways(rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Ways:
 
 def _ways_of(rule: Rule, problems: list[Diagnostic]) -> Ways:
     match rule:
-        case Assign() | SetLength():
+        case Assign() | SetLength() | Default() | Ignore():
             return [(rule,)]
         case Reject():
             return []
@@ -68,8 +68,8 @@ def _set_by(way: tuple[Rule, ...]) -> list[tuple[bool, tuple[Step, ...]]]:
     found: list[tuple[bool, tuple[Step, ...]]] = []
     for rule in way:
         match rule:
-            case Assign(place) | SetLength(place):
-                found.append((isinstance(rule, Assign), place.steps))
+            case Assign(place) | SetLength(place) | Default(place):
+                found.append((isinstance(rule, SetLength), place.steps))
             case For(body=body):
                 found += _set_by(body)
             case _:

@@ -20,7 +20,7 @@ from rosetta_jit.lowering.polynomial import (
 )
 from rosetta_jit.lowering.resolve import field_names, places_in
 from rosetta_jit.lowering.tiling import Run
-from rosetta_jit.lowering.typed import Assign, FieldStep, For, Reject, SetLength, When
+from rosetta_jit.lowering.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -43,7 +43,7 @@ class Loop:
 class Write:
     """One rule's effect, seen from some place: the steps that remain below it and the loops not yet used by an index.
 
-    ``value`` is None where the rule sets a length; then ``length`` is that.
+    ``value`` is None where the rule sets a length, which is ``length`` then, or leaves the place alone.
     """
 
     steps: tuple[Field | Polynomial, ...]
@@ -67,6 +67,10 @@ def writes_of(
             match rule:
                 case Assign(place, value, span):
                     found.append(Write(_steps(place), loops, value, None, span))
+                case Default(place, span):
+                    found.append(Write(_steps(place), loops, None, None, span))
+                case Ignore():
+                    pass
                 case SetLength(place, value, span):
                     found.append(Write(_steps(place), loops, None, polynomial_of(value), span))
                 case For(variable, start, stop, body):

@@ -3,6 +3,7 @@
     Mapping = Import*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
             | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
+            | Ignore(Path) | Default(Path) | SameNames(Path*)
 
 In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's. Relations and loops of them stand in the rules for
 both directions alone, with the place on the holder's side.
@@ -83,7 +84,31 @@ class Relation:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For | When | Reject | Relation
+@dataclass(frozen=True, slots=True)
+class Ignore:
+    """``ignore .place``: it is meant that no rule reads it."""
+
+    place: Path
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Default:
+    """``default .place``: it is meant that no rule sets it, and it has the value that nothing was said of."""
+
+    place: Path
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SameNames:
+    """``same names except .a, .b``: a field that no other rule sets has the value of the field of its name."""
+
+    but: tuple[Path, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject | Relation | Ignore | Default | SameNames
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,122 @@
+"""What a mapping leaves out without saying so: fields that no rule reads, and optional ones that no rule sets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import check as words
+from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.resolve import field_names, places_in
+from rosetta_jit.model.types import Array, Optional, Struct, Union
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.scope import Message
+    from rosetta_jit.lowering.typed import Expr, Place, Rule
+    from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.source import Span
+
+Names = tuple[str, ...]
+
+
+def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None]) -> list[Diagnostic]:
+    """Warnings about one direction; ``spans`` are where the types of source and target are named."""
+    read = {field_names(place) for place in _read(rules)}
+    unread = _without(read, source, source.root, ())
+    written = {field_names(place) for place in places_in(rules)}
+    unset = [names for names in _without(written, target, target.root, ()) if _may_be_absent(names, target)]
+    return [
+        *(words.never_read(spans[0], _shown(names)) for names in unread),
+        *(words.left_out(spans[1], _shown(names)) for names in unset),
+    ]
+
+
+def _shown(names: Names) -> str:
+    return "".join(f".{name}" for name in names)
+
+
+def _without(touched: set[Names], message: Message, struct: Struct | Union, prefix: Names) -> list[Names]:
+    """Fields of which neither a part nor anything around is touched: the outermost of each."""
+    found: list[Names] = []
+    for each in struct.fields if isinstance(struct, Struct) else struct.cases:
+        names = (*prefix, each.name)
+        if each.constant is not None or names in touched:
+            continue
+        inner = _inside(message, each.type)
+        if not any(other[: len(names)] == names for other in touched):
+            found.append(names)
+        elif isinstance(inner, Struct | Union):
+            found += _without(touched, message, inner, names)
+    return found
+
+
+def _inside(message: Message, type_: Type) -> Type:
+    """The type of a value, or of an array's innermost element."""
+    value = message.value_type(type_)
+    return _inside(message, value.element) if isinstance(value, Array) else value
+
+
+def _may_be_absent(names: Names, message: Message) -> bool:
+    """Whether a field need not be set: that one must be is an error already."""
+    struct: Struct | Union = message.root
+    for name in names:
+        fields = struct.fields if isinstance(struct, Struct) else struct.cases
+        last: Field = next(each for each in fields if each.name == name)
+        inner = _inside(message, last.type)
+        if isinstance(inner, Struct | Union):
+            struct = inner
+        if isinstance(message.schema.resolve(last.type), Optional | Union):
+            return not last.required
+    return False
+
+
+# --- what is read ------------------------------------------------------------------------------------------------------
+
+
+def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
+    for rule in rules:
+        match rule:
+            case typed.Assign(place, value) | typed.SetLength(place, value):
+                yield from _in_indices(place)
+                yield from _in(value)
+            case typed.For(_, start, stop, body):
+                yield from _in(start)
+                yield from _in(stop)
+                yield from _read(body)
+            case typed.When(condition, then, otherwise):
+                yield from _in(condition)
+                yield from _read((*then, *otherwise))
+            case typed.Ignore(place):
+                yield place
+            case typed.Reject() | typed.Default():
+                pass
+
+
+def _in(value: Expr) -> Iterator[Place]:
+    match value:
+        case typed.Access(place) | typed.LenOf(place) | typed.IsText(place):
+            yield place
+            yield from _in_indices(place)
+        case typed.Unary(_, operand) | typed.Convert(operand):
+            yield from _in(operand)
+        case typed.Binary(_, left, right):
+            yield from _in(left)
+            yield from _in(right)
+        case typed.Call(_, arguments):
+            for argument in arguments:
+                yield from _in(argument)
+        case typed.Choice(cases, otherwise):
+            for part in (part for case in cases for part in case):
+                yield from _in(part)
+            if otherwise is not None:
+                yield from _in(otherwise)
+        case typed.Const() | typed.Local():
+            pass
+
+
+def _in_indices(place: Place) -> Iterator[Place]:
+    for step in place.steps:
+        if isinstance(step, typed.IndexStep):
+            yield from _in(step.index)
