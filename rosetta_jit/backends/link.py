@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 from llvmlite import binding, ir
 
 from rosetta_jit.backends import llvm
+from rosetta_jit.kernel.shape import is_large
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,7 +47,7 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: 
     kernels
         Verified kernels: one, or to encode the encoder and its size kernel.
     with_numba
-        Whether the first kernel is typed by numba on its way; the code does the same.
+        Whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more. The code does the same.
     """
     machine = target_machine()
     return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba))
@@ -74,7 +75,8 @@ def target_machine() -> binding.TargetMachine:
 
 def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, *, with_numba: bool) -> binding.ModuleRef:
     """The program's module after one run of LLVM's O3."""
-    module = _typed(kernels[0]) if with_numba else _emitted(kernels[0], FUNCTIONS[0])
+    typed = with_numba and not is_large(kernels[0])
+    module = _typed(kernels[0]) if typed else _emitted(kernels[0], FUNCTIONS[0])
     for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False):
         module.link_in(_emitted(kernel, name))
     module.link_in(binding.parse_assembly("\n".join(map(_template, TEMPLATES[entry]))))

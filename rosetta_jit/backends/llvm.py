@@ -8,20 +8,30 @@ after another, and what a failure and a success write to the holder's state.
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
 from rosetta_jit.backends import llvm_stmt
 from rosetta_jit.backends.base import counted_lanes, statements
-from rosetta_jit.backends.llvm_frame import I64, POINTER, Exit, Frame, Parameters, constant, state_word
-from rosetta_jit.kernel.ir import Block, Expect, Kernel, Require
+from rosetta_jit.backends.llvm_expr import expression
+from rosetta_jit.backends.llvm_frame import I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
+from rosetta_jit.kernel.ir import Block, Call, Expect, Kernel, Require
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, MAX_INDICES, USED, lane_word
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+
+    from rosetta_jit.kernel.ir import Expr, Routine, Stmt
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
+
+MANY = 64
+"""Calls of a routine from which on it stays a function: LLVM takes more than linear time on what it inlines."""
+
+SHORT = 24
+"""Statements of a routine up to which it is part of its callers, if they are not many."""
 
 
 def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
@@ -29,20 +39,66 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
     """
-    function = ir.Function(module, SIGNATURE, name)
-    function.attributes.add("nounwind")
-    function.args[0].add_attribute("noalias")  # the message and the lanes never overlap
-    function.args[3].add_attribute("noalias")
-    for argument, each in zip(function.args, ("buffer", "begin", "end", "state", "row"), strict=True):
-        argument.name = each
+    calls = Counter(each.routine for body in kernel.bodies for each in statements(body) if isinstance(each, Call))
+    routines: dict[str, ir.Function] = {}
+    for routine in kernel.routines:
+        routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
+        if calls[routine.name] >= MANY:
+            routines[routine.name].attributes.add("noinline")
+        elif sum(1 for _ in statements(routine.body)) <= SHORT:
+            routines[routine.name].attributes.add("alwaysinline")
+    function = _function(module, SIGNATURE, name, ("buffer", "begin", "end", "state", "row"))
     entry = ir.IRBuilder(function.append_basic_block("entry"))
     first = function.append_basic_block("body")
-    _attempts(entry, first, Parameters(*function.args), kernel)
+    _attempts(entry, first, Parameters(*function.args), kernel, routines)
     entry.branch(first)
     return function
 
 
-def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kernel: Kernel) -> None:
+def _function(module: ir.Module, signature: ir.FunctionType, name: str, arguments: Sequence[str]) -> ir.Function:
+    """An empty function whose first arguments are the message and the holder's state."""
+    function = ir.Function(module, signature, name)
+    function.attributes.add("nounwind")
+    function.args[0].add_attribute("noalias")  # the message and the lanes never overlap
+    function.args[3].add_attribute("noalias")
+    for argument, each in zip(function.args, arguments, strict=True):
+        argument.name = each
+    return function
+
+
+def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, routines: Mapping[str, ir.Function]) -> ir.Function:
+    """A routine as a function that returns 0 and the results, or the number of the failure and its offset."""
+    outcome = ir.LiteralStructType([I64] * (1 + max(1, len(routine.results))))
+    signature = ir.FunctionType(outcome, [POINTER, I64, I64, POINTER, *(LLVM_TYPES[each.type] for each in routine.parameters)])
+    function = _function(module, signature, name, ("buffer", "begin", "end", "state", *(each.name for each in routine.parameters)))
+    function.linkage = "internal"
+    entry = ir.IRBuilder(function.append_basic_block("entry"))
+    first = function.append_basic_block("body")
+    parameters = Parameters(*function.args[:4], row=constant(0))
+    done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
+    frame = Frame(module, entry, ir.IRBuilder(first), parameters, kernel.strides, {}, done, failed, kernel.direction == "decode", routines)
+    frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
+    frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
+    llvm_stmt.block(frame, routine.body)
+    frame.done.enter(frame.builder, [expression(frame, each) for each in routine.results])
+    entry.branch(first)
+    _give(frame.done, outcome, (constant(0), *frame.done.phis))
+    if frame.failed.is_reached:
+        _give(frame.failed, outcome, frame.failed.phis)
+    else:
+        _drop(frame.failed)
+    return function
+
+
+def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value]) -> None:
+    builder = ir.IRBuilder(target.block)
+    whole: ir.Value = ir.Constant(outcome, None)
+    for number, value in enumerate(values):
+        whole = builder.insert_value(whole, value, number)
+    builder.ret(whole)
+
+
+def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kernel: Kernel, routines: Mapping[str, ir.Function]) -> None:
     """Body after body; each failure but the last starts the next one."""
     builder = ir.IRBuilder(start)
     loaded: dict[tuple[int, int], ir.Value] = {}
@@ -51,7 +107,7 @@ def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kern
     for body in kernel.bodies:
         done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + width)
         decodes = kernel.direction == "decode"
-        frame = Frame(entry.module, entry, builder, parameters, kernel.strides, loaded, done, failed, decodes)
+        frame = Frame(entry.module, entry, builder, parameters, kernel.strides, loaded, done, failed, decodes, routines)
         frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
         llvm_stmt.block(frame, body)
         if not builder.block.is_terminated:
@@ -109,4 +165,14 @@ def _fail(builder: ir.IRBuilder, state: ir.Value, recorded: Sequence[ir.Value]) 
 
 def _index_count(body: Block) -> int:
     """The most indices that a failure of the body reports."""
-    return max((len(each.failure.indices) for each in statements(body) if isinstance(each, Require | Expect)), default=0)
+    return max((len(_indices(each)) for each in statements(body)), default=0)
+
+
+def _indices(statement: Stmt) -> Sequence[Expr]:
+    match statement:
+        case Require(_, _, failure) | Expect(_, failure):
+            return failure.indices
+        case Call():
+            return statement.indices
+        case _:
+            return ()

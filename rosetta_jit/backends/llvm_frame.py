@@ -1,7 +1,8 @@
 """What the printers of one kernel body share: its parameters, lanes, locals and the two ways out.
 
 A lane's address, capacity and used length are loaded in the function's entry block, at the first mention, and never again: nothing that a
-kernel stores can then make LLVM load them a second time.
+kernel stores can then make LLVM load them a second time. In a function of very many lanes they stay in memory instead: no machine has
+so many registers, and LLVM would spend minutes on finding that out.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from llvmlite import ir
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, USED, lane_word
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rosetta_jit.kernel.ir import Scalar
 
@@ -35,8 +36,15 @@ LLVM_TYPES: dict[str, ir.Type] = {
     "f64": F64,
 }
 
+CROWDED = 64
+"""Lanes from which on a function keeps what it knows of them in memory."""
+
 COLD = (1 << 20, 1)
 """Branch weights where the second edge is taken for a broken message only."""
+
+
+ESCAPED = ir.FunctionType(ir.VoidType(), [POINTER])
+"""The type of an instruction that does nothing with a slot, but takes its address: LLVM leaves the slot in memory."""
 
 
 def is_float(scalar: Scalar) -> bool:
@@ -104,6 +112,7 @@ class Frame:
     done: Exit
     failed: Exit
     decodes: bool
+    routines: Mapping[str, ir.Function]
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
 
@@ -118,13 +127,19 @@ class Frame:
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length; each body starts with what the state says, and decoding into row 0 with nothing."""
         if lane not in self.used:
-            start = self._word(lane, USED, I64, f"used{lane}")
+            start = self._load(self.entry, lane, USED, I64, f"used{lane}")
             if self.decodes and lane:
                 first = self.entry.icmp_signed("==", self.parameters.row, constant(0))
                 start = self.entry.select(first, constant(0), start)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
             self.entry.store(start, self.used[lane])
+            if self.is_crowded:
+                self.entry.asm(ESCAPED, "", "r", [self.used[lane]], side_effect=True)
         return self.used[lane]
+
+    @property
+    def is_crowded(self) -> bool:
+        return len(self.strides) >= CROWDED
 
     def variable(self, name: str, type_: ir.Type) -> Variable:
         """A stack slot in the entry block, so that a loop does not take more of them."""
@@ -136,12 +151,15 @@ class Frame:
         return self.builder.append_basic_block(name)
 
     def _word(self, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        if self.is_crowded:
+            return self._load(self.builder, lane, word, type_, name)
         key = (lane, word)
         if key not in self.loaded:
-            self.loaded[key] = self.entry.load(
-                state_word(self.entry, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name
-            )
+            self.loaded[key] = self._load(self.entry, lane, word, type_, name)
         return self.loaded[key]
+
+    def _load(self, builder: ir.IRBuilder, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        return builder.load(state_word(builder, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name)
 
 
 def state_word(builder: ir.IRBuilder, state: ir.Value, word: int) -> ir.Value:

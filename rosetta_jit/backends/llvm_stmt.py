@@ -28,6 +28,7 @@ from rosetta_jit.kernel.ir import (
     Assign,
     Binary,
     Block,
+    Call,
     Const,
     Copy,
     Expect,
@@ -100,6 +101,8 @@ def _statement(frame: Frame, statement: Stmt) -> None:  # noqa: C901 - one case 
             _switch(frame, expression(frame, value), cases, default)
         case Return(position):
             frame.done.enter(frame.builder, [expression(frame, position)])
+        case Call():
+            _call(frame, statement)
         case _:
             assert_never(statement)
 
@@ -125,14 +128,42 @@ def _is_behind_begin(at: Expr) -> bool:
 
 def _check(frame: Frame, holds: ir.Value, failure: Failure) -> None:
     """Go on where the condition holds."""
+    good = _cold(frame, holds)
+    _fail(frame, constant(failure.site), expression(frame, failure.at), failure.indices)
+    frame.builder.position_at_end(good)
+
+
+def _cold(frame: Frame, holds: ir.Value) -> ir.Block:
+    """Where to go on if the condition holds; the frame prints what to do else."""
     good, cold = frame.block("good"), frame.block("broken")
     frame.builder.cbranch(holds, good, cold).set_weights(COLD)
     frame.builder.position_at_end(cold)
-    indices = [expression(frame, each) for each in failure.indices]
-    missing = len(frame.failed.phis) - 2 - len(indices)
-    values = [constant(failure.site), expression(frame, failure.at), *indices, *[constant(0)] * missing]
-    frame.failed.enter(frame.builder, values)
-    frame.builder.position_at_end(good)
+    return good
+
+
+def _fail(frame: Frame, site: ir.Value, offset: ir.Value, indices: tuple[Expr, ...]) -> None:
+    values = [site, offset, *(expression(frame, each) for each in indices)]
+    frame.failed.enter(frame.builder, [*values, *[constant(0)] * (len(frame.failed.phis) - len(values))])
+
+
+def _call(frame: Frame, call: Call) -> None:
+    builder, parameters = frame.builder, frame.parameters
+    given = [expression(frame, each) for each in call.arguments]
+    outcome = builder.call(frame.routines[call.routine], [parameters.buffer, parameters.begin, parameters.end, parameters.state, *given])
+    number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
+    good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
+    _fail(frame, _site(builder, number, call.sites), first, call.indices)
+    builder.position_at_end(good)
+    for position, result in enumerate(call.results, 1):
+        frame.locals[result.name] = builder.extract_value(outcome, position)
+
+
+def _site(builder: ir.IRBuilder, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
+    """The caller's site for a routine's failure."""
+    found: ir.Value = constant(sites[-1]) if sites else constant(0)
+    for own, site in enumerate(sites[:-1], 1):
+        found = builder.select(builder.icmp_signed("==", number, constant(own)), constant(site), found)
+    return found
 
 
 def _assign(frame: Frame, name: str, value: Expr) -> None:

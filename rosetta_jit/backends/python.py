@@ -18,6 +18,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Block,
+    Call,
     Copy,
     Expect,
     Expr,
@@ -31,6 +32,7 @@ from rosetta_jit.kernel.ir import (
     Require,
     Reserve,
     Return,
+    Routine,
     SetField,
     Stmt,
     Store,
@@ -43,7 +45,7 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 IMPORTS = (
     "from struct import pack_into, unpack_from",
@@ -76,6 +78,10 @@ def python_text(kernel: Kernel) -> str:
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
     for line in IMPORTS:
         writer.line(line)
+    for routine in kernel.routines:
+        writer.line()
+        writer.line()
+        _RoutineBody(kernel, routine, writer).write()
     for number, body in enumerate(kernel.bodies):
         writer.line()
         writer.line()
@@ -92,7 +98,9 @@ def python_text(kernel: Kernel) -> str:
 def _reserved(kernel: Kernel) -> frozenset[str]:
     lanes = range(len(kernel.strides))
     words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
-    return frozenset(keyword.kwlist) | CALLED | words | set(PARAMETERS.split(", ")) | {"bool", "bytes", "min", "max", "range", "None"}
+    functions = {_function(routine.name) for routine in kernel.routines}
+    names = {"bool", "bytes", "indices", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
+    return frozenset(keyword.kwlist) | CALLED | words | functions | names
 
 
 class _Attempt:
@@ -114,6 +122,7 @@ class _Attempt:
         for lane in sorted(self.names.capacities):
             outer.line(f"capacity_{lane} = int(state[{lane_word(lane, CAPACITY)}])")
         outer.lines += self.writer.lines
+        self.writer = outer
 
     def _block(self, block: Block) -> None:
         for statement in block:
@@ -150,8 +159,18 @@ class _Attempt:
                 self.writer.line(f"return {self._text(position)}")
             case For() | While() | If() | Switch():
                 self._nested(statement)
+            case Call():
+                self._call(statement)
             case _:
                 assert_never(statement)
+
+    def _call(self, call: Call) -> None:
+        """Results are a tuple; what a failure reports goes in."""
+        bound = _items(self.names.locals.identifier(each.name) for each in call.results)
+        given = "".join(f", {self._text(each)}" for each in call.arguments)
+        sites = _items(map(self._site, call.sites))
+        reported = f"({sites}), {self._indices(call.indices)}"
+        self.writer.line(f"{bound} = {_function(call.routine)}(buffer, begin, end, state, lanes, {reported}{given})")
 
     def _nested(self, statement: For | While | If | Switch) -> None:
         match statement:
@@ -176,13 +195,19 @@ class _Attempt:
             self._block(body)
 
     def _fail_unless(self, condition: str, failure: Failure) -> None:
-        indices = "".join(f"{self._text(each)}, " for each in failure.indices)
         with self.writer.indented(f"if not {condition}:"):
-            self.writer.line(f"raise Failed({failure.site}, {self._text(failure.at)}, ({indices.rstrip()})){self._about(failure.site)}")
+            reported = f"{self._site(failure.site)}, {self._text(failure.at)}, {self._indices(failure.indices)}"
+            self.writer.line(f"raise Failed({reported})  # {ascii(self._about(failure.site))[1:-1]}")
+
+    def _site(self, number: int) -> str:
+        return str(number)
+
+    def _indices(self, indices: tuple[Expr, ...]) -> str:
+        return f"({_items(map(self._text, indices))})"
 
     def _about(self, number: int) -> str:
         site = self.kernel.sites[number]
-        return f"  # {ascii(f'{site.kind} {site.path}')[1:-1]}"
+        return f"{site.kind} {site.path}"
 
     def _set(self, address: Address, value: Expr, order: Order) -> None:
         type_ = type_of(value)
@@ -195,3 +220,39 @@ class _Attempt:
 
     def _text(self, expr: Expr) -> str:
         return expression(self.names, expr)
+
+
+class _RoutineBody(_Attempt):
+    """Prints a routine: it fails at the sites and with the indices that it is given."""
+
+    def __init__(self, kernel: Kernel, routine: Routine, writer: Writer) -> None:
+        super().__init__(kernel, routine.body, writer)
+        self.routine, self.counted = routine, []
+
+    def write(self) -> None:
+        """The function, to the return of its results."""
+        given = "".join(f", {self.names.locals.identifier(each.name)}" for each in self.routine.parameters)
+        with self.writer.indented(f"def {_function(self.routine.name)}(buffer, begin, end, state, lanes, sites, indices{given}):"):
+            super().write()
+            found = _items(self.names.locals.identifier(each.name) for each in self.routine.results)
+            self.writer.line(f"return ({found})")
+
+    def _site(self, number: int) -> str:
+        return f"sites[{number - 1}]"
+
+    def _indices(self, indices: tuple[Expr, ...]) -> str:  # noqa: ARG002 - a routine has the indices of its call
+        return "indices"
+
+    def _about(self, number: int) -> str:
+        site = self.routine.sites[number]
+        return f"{site.kind} {site.detail}"
+
+
+def _function(routine: str) -> str:
+    return f"routine_{routine}"
+
+
+def _items(texts: Iterable[str]) -> str:
+    """What stands in the parentheses of a tuple."""
+    listed = list(texts)
+    return f"{listed[0]}," if len(listed) == 1 else ", ".join(listed)

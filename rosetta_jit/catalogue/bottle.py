@@ -200,6 +200,11 @@ def path_not_integer(span: Span | None, path: str) -> Diagnostic:
     return _error("path-not-integer", f"`{_cut(path)}` is no integer", span, "here", "compute with :int fields")
 
 
+def path_not_counted(span: Span | None, path: str) -> Diagnostic:
+    """The length of something that has none."""
+    return _error("path-not-counted", f"`{_cut(path)}` has no length", span, "here", "lists, strings and blobs have one")
+
+
 def computed_in_list(span: Span | None) -> Diagnostic:
     """A computed constant within the elements of a list."""
     return _error(
@@ -214,6 +219,13 @@ def computed_in_list(span: Span | None) -> Diagnostic:
 def computed_cycle(span: Span | None, names: Iterable[str]) -> Diagnostic:
     """Computed constants of which none can be computed first."""
     return _error("computed-cycle", "constants that need each other", span, "one of them", "", "in turn: " + ", ".join(names))
+
+
+def too_many_terms(span: Span | None, limit: int) -> Diagnostic:
+    """A computed value that unfolds to a huge expression."""
+    return _error(
+        "too-many-terms", f"a value is computed from more than {limit} terms in all", span, "this one", "compute from plain fields"
+    )
 
 
 def rest_not_last(span: Span | None, name: str) -> Diagnostic:
@@ -264,4 +276,40 @@ def no_such_tag(span: Span | None, unit: str, dialect: str) -> Diagnostic:
     """A type that came later than the dialect, or went before it."""
     return _error(
         "no-such-tag", f"{dialect} has no {unit}", span, "no tag for this type", "choose a type that the dialect has, or another dialect"
+    )
+
+
+def packed_element(span: Span | None, name: str) -> Diagnostic:
+    """A packed struct where every element must say its type."""
+    return _error(
+        "packed-element",
+        f'"{_cut(name)}" is packed and has no code of its own',
+        span,
+        "in a bottle",
+        "put it into `(:blob ...)`, or say the code of its list: `(:code :double)`",
+    )
+
+
+def blob_of_any_size(span: Span | None, name: str) -> Diagnostic:
+    """A typed blob with strings or lists in it."""
+    return _error("blob-of-any-size", f'the content of the blob "{_cut(name)}" has no fixed size', span, "this one", "use numbers alone")
+
+
+def not_spread(span: Span | None, name: str) -> Diagnostic:
+    """A list marked `:spread` whose elements are no plain structs."""
+    why = "elements of a :spread list are bottles of plain fields"
+    return _error("not-spread", f'the elements of "{_cut(name)}" cannot lie in the list around', span, "this one", why)
+
+
+def misplaced_union(span: Span | None, name: str) -> Diagnostic:
+    """A union whose case would decide about what follows it."""
+    return _error(
+        "misplaced-union", f'the union "{_cut(name)}" is not the last field of a bottle', span, "this one", "give it a bottle of its own"
+    )
+
+
+def like_cases(span: Span | None, name: str) -> Diagnostic:
+    """Cases of a union that the wire cannot tell apart."""
+    return _error(
+        "like-cases", f'two cases of "{_cut(name)}" have one code', span, "in this union", "the code of an element tells its case"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
@@ -48,6 +49,27 @@ def constant(span: Span | None, path: str, value: str) -> Diagnostic:
         "another value",
         help_="remove the rule; the constant is written without one",
     )
+
+
+def uneven_rounds(span: Span | None) -> Diagnostic:
+    """A loop whose rounds set different places."""
+    return error(
+        "uneven-rounds",
+        "the blocks of a `when` in this loop do not set the same places",
+        span,
+        help_="set the same fields of the same element in each block, or put the `when` around the loop",
+    )
+
+
+def too_many_ways(span: Span | None, most: int) -> Diagnostic:
+    """More combinations of conditions than are looked at."""
+    message = f"there are more than {most} ways through these rules"
+    return error("too-many-ways", message, span, help_="choose among values: `x if c else y`")
+
+
+def in_one_way(problem: Diagnostic) -> Diagnostic:
+    """A mistake that not every way through the rules makes."""
+    return replace(problem, notes=(*problem.notes, "in one way through the `when` blocks, not in all"))
 
 
 def length_without_elements(span: Span | None, path: str) -> Diagnostic:

@@ -114,11 +114,6 @@ def name_too_long(span: Span | None, limit: int) -> Diagnostic:
     return _error("name-length", f"a name has more than {limit} characters", span, "too long")
 
 
-def edition(span: Span) -> Diagnostic:
-    """`edition = "2023"`."""
-    return _error("edition", "editions are not supported", span, "not supported", 'Use `syntax = "proto2";` or `syntax = "proto3";`.')
-
-
 def unknown_syntax(span: Span, value: str) -> Diagnostic:
     """A version of the language that does not exist."""
     return _error("syntax-version", f"there is no syntax {value!r}", span, "unknown", 'Use "proto2" or "proto3".')
@@ -167,8 +162,9 @@ def bad_descriptor(reason: str) -> Diagnostic:
 
 
 def unsupported_descriptor(file: str, syntax: str) -> Diagnostic:
-    """A descriptor of a file in an edition."""
-    return _error("edition", f"the file `{file}` is written in `{syntax}`; only proto2 and proto3 are supported", None, "")
+    """A descriptor of a file in a version of the language that is not known."""
+    known = "proto2, proto3 and the editions 2023 and 2024 are known"
+    return _error("edition", f"the file `{file[:100]}` is written in `{syntax[:40]}`; {known}", None, "")
 
 
 def repeated_name(name: Name, full: str, kind: str, first: Span | None) -> Diagnostic:
@@ -325,19 +321,25 @@ def lower_case_group(name: Name) -> Diagnostic:
 
 
 def closed_enum(name: Name, enum: str) -> Diagnostic:
-    """An enum of proto2 in a message of proto3."""
+    """A closed enum in a message of proto3."""
     return _error(
         "closed-enum",
-        f"a proto3 message cannot hold the proto2 enum `{enum}`",
+        f"a proto3 message cannot hold the closed enum `{enum}`",
         name.span,
         "its enum knows no other values",
-        "Declare the enum in a proto3 file.",
+        "Declare the enum in a proto3 file, or in an edition.",
     )
 
 
 def same_json_name(name: Name, first: Name, json: str) -> Diagnostic:
-    """Two fields of a proto3 message with one name in JSON."""
-    return _error("json-name", f"`{name.text}` and `{first.text}` are both `{json}` in JSON", name.span, "proto3 refuses that")
+    """Two fields of a message with one name in JSON."""
+    message = f"`{name.text}` and `{first.text}` are both `{json[:60]}` in JSON"
+    return _error("json-name", message, name.span, "JSON cannot tell them apart", "Choose another name with `json_name`.")
+
+
+def json_name_of_extension(span: Span | None) -> Diagnostic:
+    """An extension that chooses a name in JSON."""
+    return _error("json-name", "an extension has no other name in JSON", span, "not here")
 
 
 def cannot_pack(name: Name) -> Diagnostic:
@@ -371,8 +373,8 @@ def empty_enum(name: Name) -> Diagnostic:
 
 
 def first_not_zero(span: Span | None, number: int) -> Diagnostic:
-    """A proto3 enum that does not start with 0."""
-    return _error("enum", f"the first value of an enum is 0 in proto3, not {number}", span, "must be 0")
+    """An open enum that does not start with 0."""
+    return _error("enum", f"the first value of an open enum is 0, not {number}", span, "must be 0")
 
 
 def value_out_of_range(span: Span | None, number: int) -> Diagnostic:
@@ -399,7 +401,7 @@ def idle_alias_option(name: Name) -> Diagnostic:
 def same_stripped_name(name: Name, first: Name) -> Diagnostic:
     """Two values that differ in the enum's prefix or in case alone."""
     message = f"`{name.text}` and `{first.text}` are one name where the enum's own and case are left out"
-    return _error("enum", message, name.span, "proto3 refuses that")
+    return _error("enum", message, name.span, "languages that leave them out cannot tell them apart")
 
 
 def empty_extend(span: Span) -> Diagnostic:

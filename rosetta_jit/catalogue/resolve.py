@@ -177,3 +177,31 @@ def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic
 def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
     """A loop that is known to end below its start."""
     return error("loop-range", f"the loop ends at {stop}, below its start {start}", span, help_="`to` is exclusive and not below `from`")
+
+
+def condition_needed(span: Span | None, found: str) -> Diagnostic:
+    """A number or a text where true or false is meant."""
+    return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_="compare it: `!= 0`")
+
+
+def not_comparable(span: Span | None, operator: str, left: str, right: str) -> Diagnostic:
+    """Two values that no comparison relates."""
+    hint = "texts are compared with a text in quotes, by `==` or `!=`" if "text" in {left, right} else "convert one of them first"
+    return error("not-comparable", f"`{operator}` does not compare {left} with {right}", span, help_=hint)
+
+
+def long_text(span: Span | None, most: int) -> Diagnostic:
+    """A text too long to compare with."""
+    return error("long-text", f"a field is compared with at most {most} bytes of text", span)
+
+
+def mixed_choice(span: Span | None, kinds: Collection[str]) -> Diagnostic:
+    """A choice among values of several types."""
+    listed = ", ".join(kinds)
+    return error("mixed-choice", "the values of a choice have no type in common", span, help_=f"convert them to one of: {listed}")
+
+
+def rules_behind_reject(span: Span | None) -> Diagnostic:
+    """Rules that no message gets to."""
+    message = "what follows a `reject` without `when` is never reached"
+    return error("unreachable", message, span, help_='write `reject "text" when condition`')

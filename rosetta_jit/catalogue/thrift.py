@@ -58,6 +58,35 @@ def endless(span: Span | None, name: str) -> Diagnostic:
     return Diagnostic("error", "endless", f"`{name}` contains itself", span, why, help="break the circle")
 
 
+def only_in_lists(span: Span | None, name: str) -> Diagnostic:
+    """A struct that contains itself in a map, or in lists of lists, or in a struct that it contains."""
+    why = "as a `list` of it alone does that have an end"
+    return Diagnostic("error", "only-in-lists", f"`{name}` contains itself, and not in a list of its own", span, why, help="use a `list`")
+
+
+def union(span: Span) -> Diagnostic:
+    """A union, for which YARP's compiler writes nothing that would say which case is there."""
+    why = "yarpidl_thrift has no unions"
+    return Diagnostic("error", "union", "YARP's wire cannot say which case of a union is there", span, why, help="declare a struct")
+
+
+def unknown_service(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
+    """A service that extends what nothing declares."""
+    near = get_close_matches(name, list(known), 1)
+    help_ = f"did you mean `{near[0]}`?" if near else "declare it, or include the file that does"
+    return Diagnostic("error", "unknown-service", f"there is no service `{name}`", span, "not declared", help=help_)
+
+
+def endless_service(span: Span, name: str) -> Diagnostic:
+    """Services that extend each other in a circle, or very many in a row."""
+    return Diagnostic("error", "endless-service", f"`{name}` extends itself, or too many others", span, "in this one", help="extend fewer")
+
+
+def too_many_functions(span: Span, most: int) -> Diagnostic:
+    """Services that inherit functions by the thousand."""
+    return Diagnostic("error", "too-many-functions", f"there are more than {most} functions in all", span, "here", help="split the file")
+
+
 def no_wire(span: Span, what: str) -> Diagnostic:
     """What YARP's compiler takes, and has no bytes for."""
     return Diagnostic("error", "no-wire", f"{what} has no form on YARP's wire", span, "cannot be sent")

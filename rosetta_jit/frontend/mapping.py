@@ -29,7 +29,10 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Source
 
 MAX_NESTING = 64
-"""Brackets, loops, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
+"""Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
+
+NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "loop", "when"))
+"""Rules of the grammar that one of their kind can stand in."""
 
 
 def parse(source: Source) -> Mapping:
@@ -57,34 +60,39 @@ def _grammar() -> Lark:
         text,
         parser="lalr",
         lexer="basic",
-        postlex=_AlsoUnused(),
+        postlex=_Tokens(),
         propagate_positions=True,
         maybe_placeholders=False,
     )
 
 
-class _AlsoUnused(PostLex):
-    """Makes lark keep the tokens that no rule uses, those that stand for mistakes."""
+class _Tokens(PostLex):
+    """Tells the `when` of a rejection from one that begins a block, and makes lark keep the tokens that stand for mistakes."""
 
     always_accept = ("UNCLOSED", "STRANGE")
 
     def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        return stream
+        kinds = ("", "")
+        for token in stream:
+            if token.type == "WHEN" and kinds == ("REJECT", "STRING"):
+                token.type = "GUARD"
+            kinds = kinds[1], token.type
+            yield token
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "UNPACK_RULES", "PACK_RULES", "END")
-    starts = {kind: kind for kind in statements} | {"START": "FOR", "LEN": "FOR", "FOR": "FOR"}
-    return Recovery(starts, frozenset({"START", "LEN"}), opens="FOR", closes="END")
+    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    starts = {kind: kind for kind in statements} | dict.fromkeys(("START", "LEN", "FOR", "WHEN", "REJECT"), "FOR")
+    return Recovery(starts, frozenset({"START", "LEN", "WHEN", "REJECT"}), opens=frozenset({"FOR", "WHEN"}), closes="END")
 
 
 def _too_deep(tokens: list[Token], source: Source) -> Diagnostic | None:
     """The token at which brackets and loops nest too deeply, before the parser's stack grows with them."""
     depth = 0
     for token in tokens:
-        if token.type in {"LPAR", "LSQB", "FOR"}:
+        if token.type in {"LPAR", "LSQB", "LBRACE", "FOR", "WHEN"}:
             depth += 1
-        elif token.type in {"RPAR", "RSQB", "END"}:
+        elif token.type in {"RPAR", "RSQB", "RBRACE", "END"}:
             depth = max(0, depth - 1)
         if depth > MAX_NESTING:
             return words.nesting(Span(source, token.start_pos or 0, token.end_pos or 0), MAX_NESTING)
@@ -108,6 +116,7 @@ class _Reader:
             tuple(self._import(child) for child in statements if child.data == "import_file"),
             holder,
             wire,
+            self._rules(statements, "", Context(self.source, "holder", "wire", self.problems)),
             self._rules(statements, "unpack", Context(self.source, "holder", "wire", self.problems)),
             self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
             holder_span,
@@ -125,7 +134,7 @@ class _Reader:
             if depth > MAX_NESTING or (node.data == "path" and len(node.children) > MAX_NESTING):
                 raise MappingError((words.nesting(self._span(node), MAX_NESTING),))
             # Statements, rules and blocks are already bounded by the nesting of `for` … `end`.
-            inner = depth + 1 if node.data in {"binary", "negative", "group", "call", "index", "loop"} else depth
+            inner = depth + 1 if node.data in NESTING else depth
             pending += [(child, inner) for child in node.children if isinstance(child, Tree)]
 
     def _import(self, tree: Tree[Token]) -> Import:
@@ -142,7 +151,7 @@ class _Reader:
         return name, self._token_span(token)
 
     def _rules(self, statements: list[Tree[Token]], direction: str, context: Context) -> tuple[Rule, ...] | None:
-        block = self._only(statements, f"{direction}_rules", f"{direction}-rules")
+        block = self._only(statements, f"{direction}_rules".lstrip("_"), f"{direction}-rules".lstrip("-"))
         if block is None:
             return None
         return tuple(read_rule(child, context) for child in block.children if isinstance(child, Tree))

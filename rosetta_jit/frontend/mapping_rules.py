@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, cast
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.model.expr import Binary, Call, Index, Len, Literal, Member, Name, Path, Unary
-from rosetta_jit.model.mapping import Assign, For, SetLength
+from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
+from rosetta_jit.model.mapping import Assign, For, Reject, Relation, SetLength, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -54,11 +54,37 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
         case "set_length":
             place, value = _trees(tree)
             return SetLength(_path(place, context.target, context), _expr(value, context), span)
+        case "relation" | "length_relation":
+            left, right = _trees(tree)
+            place = _path(left, context.target, context)
+            return Relation(place if tree.data == "relation" else Len(place, place.span), _expr(right, context), span)
+        case "when":
+            condition, *body = _trees(tree)
+            return _when(_expr(condition, context), body, context, span)
+        case "reject":
+            return _reject(tree, context, span)
         case _:
             start, stop, *body = _trees(tree)
             variable = str(_tokens(tree)[0])
             rules = tuple(read_rule(rule, context) for rule in body)
             return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+
+
+def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:
+    then = tuple(read_rule(rule, context) for rule in body if rule.data != "otherwise")
+    others = (rule for block in body if block.data == "otherwise" for rule in _trees(block))
+    return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
+
+
+def _reject(tree: Tree[Token], context: Context, span: Span) -> Rule:
+    rejection = Reject(_text(tree, context), span)
+    for condition in _trees(tree):
+        return When(_expr(condition, context), (rejection,), (), span)
+    return rejection
+
+
+def _text(tree: Tree[Token], context: Context) -> str:
+    return read_string(_tokens(tree)[0], context.source, context.problems)
 
 
 def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str:
@@ -81,7 +107,7 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
         case "real":
             return Literal(_real(_tokens(tree)[0], context), span)
         case "string":
-            return Literal(read_string(_tokens(tree)[0], context.source, context.problems), span)
+            return Literal(_text(tree, context), span)
         case "true" | "false":
             return Literal(str(tree.data) == "true", span)
         case "name":
@@ -90,8 +116,13 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
             return _path(tree, context.origin, context)
         case "length":
             return Len(_path(_trees(tree)[0], context.origin, context), span)
-        case "negative":
-            return Unary("-", _expr(_trees(tree)[0], context), span)
+        case "negative" | "inversion":
+            return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
+        case "conditional":
+            then, condition, other = (_expr(part, context) for part in _trees(tree))
+            return Choice(((condition, then),), other, span=span)
+        case "table":
+            return _table(tree, context, span)
         case "binary":
             left, right = (_expr(operand, context) for operand in _trees(tree))
             return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
@@ -100,6 +131,23 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
         case _:
             arguments = tuple(_expr(argument, context) for argument in _trees(tree))
             return Call(str(_tokens(tree)[0]), arguments, span)
+
+
+def _table(tree: Tree[Token], context: Context, span: Span) -> Choice:
+    """A table, as a choice among comparisons of its subject."""
+    subject, *entries = _trees(tree)
+    compared = _expr(subject, context)
+    cases: list[tuple[Expr, Expr]] = []
+    otherwise, reason = None, "the table has no entry for it"
+    for entry in entries:
+        values = [_expr(part, context) for part in _trees(entry)]
+        if entry.data == "entry":
+            cases.append((Binary("==", compared, values[0], context.span(entry)), values[1]))
+        elif values:
+            otherwise = values[0]
+        else:
+            reason = _text(entry, context)
+    return Choice(tuple(cases), otherwise, reason, span)
 
 
 def _path(tree: Tree[Token], side: Side, context: Context) -> Path:

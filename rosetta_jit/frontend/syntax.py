@@ -36,7 +36,7 @@ class Recovery:
 
     starts: Mapping[str, str]
     only_first_in_line: frozenset[str]
-    opens: str
+    opens: frozenset[str]
     closes: str
 
 
@@ -119,7 +119,7 @@ def _starts(tokens: list[Token], position: int, recovery: Recovery, source: Sour
     return "\n" in between
 
 
-def _rewind(parser: Any, kind: str, opens: str) -> int | None:
+def _rewind(parser: Any, kind: str, opens: frozenset[str]) -> int | None:
     """Drop what is open until a token of this kind fits; how many blocks were dropped, or None if it never would."""
     state = parser.parser_state
     table: dict[int, dict[str, tuple[object, int]]] = state.parse_conf.parse_table.states
@@ -130,4 +130,4 @@ def _rewind(parser: Any, kind: str, opens: str) -> int | None:
         return None
     dropped: list[object] = state.value_stack[kept - 1 :]
     del state.state_stack[kept:], state.value_stack[kept - 1 :]
-    return sum(isinstance(value, Token) and value.type == opens for value in dropped)
+    return sum(isinstance(value, Token) and value.type in opens for value in dropped)

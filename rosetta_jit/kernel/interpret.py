@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Call,
     Capacity,
     Compare,
     Const,
@@ -50,10 +51,10 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.state import CAPACITY, ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, USED, lane_word
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rosetta_jit.kernel.arithmetic import Value
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Routine, Stmt
 
     Memory = bytes | bytearray | memoryview
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
@@ -89,6 +90,7 @@ class _Machine:
     lanes: list[memoryview]
     capacities: list[int]
     used: list[int]
+    routines: Mapping[str, Routine]
     locals: dict[str, Value]
 
 
@@ -125,10 +127,11 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
     capacities = [int(state[lane_word(k, CAPACITY)]) for k in range(len(views))]
     starts_empty = kernel.direction == "decode" and row == 0
     used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in range(len(views))]
+    routines = {routine.name: routine for routine in kernel.routines}
     worst: _Failed | None = None
     for body in kernel.bodies:
         parameters: dict[str, Value] = {"begin": begin, "end": end, "row": row}
-        machine = _Machine(kernel.strides, message, views, capacities, list(used), parameters)
+        machine = _Machine(kernel.strides, message, views, capacities, list(used), routines, parameters)
         with np.errstate(all="ignore"):
             outcome = _block(machine, body)
         match outcome:
@@ -192,8 +195,25 @@ def _statement(machine: _Machine, stmt: Stmt) -> _Outcome:
             return _effect(machine, stmt)
         case For() | While() | If() | Switch():
             return _nested(machine, stmt)
+        case Call():
+            return _call(machine, stmt)
         case _:
             assert_never(stmt)
+
+
+def _call(machine: _Machine, call: Call) -> _Outcome:
+    routine = machine.routines[call.routine]
+    names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
+    values = (_value(machine, expr) for expr in (BEGIN, END, *call.arguments))
+    inner = replace(machine, locals=dict(zip(names, values, strict=True)))
+    demand(all(_value(inner, required) for required in routine.requires), "a call that asks for what is not there")
+    outcome = _block(inner, routine.body)
+    if isinstance(outcome, _Failed):
+        return _Failed(outcome.offset, call.sites[outcome.site - 1], tuple(_integer(machine, i) for i in call.indices))
+    demand(all(_value(inner, ensured) for ensured in routine.ensures), "a routine that breaks its promise")
+    for local, result in zip(call.results, routine.results, strict=True):
+        machine.locals[local.name] = inner.locals[result.name]
+    return outcome
 
 
 def _effect(machine: _Machine, stmt: Store | SetField | Copy | Fill) -> None:

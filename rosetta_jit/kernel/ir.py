@@ -1,6 +1,6 @@
 r"""The kernel: one small typed function from a message to a holder, or back. This page is its grammar and its meaning.
 
-    Kernel = name, direction, strides of the lanes, Body+, Site*
+    Kernel = name, direction, strides of the lanes, Routine*, Body+, Site*
     Body   = Stmt*                                        an attempt; the first that succeeds is the result
     Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
            | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
@@ -8,6 +8,8 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
            | For(variable, count, Stmt*) | While(condition, Stmt*, invariant, measure)
            | If(condition, Stmt*, Stmt*)
            | Switch(value, {int: Stmt*}, Stmt*) | Return(position)
+           | Call(routine, arguments, results)
+    Routine = name, parameters, results, Stmt*, requires, ensures, Site*
     Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane)
            | Unary | Binary | Compare | Fits | Convert | Select
            | IsText(address, size)
@@ -27,6 +29,11 @@ space.
 **Locals.** Every name is bound once in a kernel's text, by Let (immutable), Var (changed by Assign) or For. A local is visible
 until the end of the block that binds it.
 
+**Routines** are statements that many places share. A routine sees `begin`, `end` and its parameters; its results are locals of its
+body, read at the end of it. It holds no Return, Reserve, Advance or Used, and calls only routines before it. Calling it demands what
+it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of the caller fails, at
+the site that the call names for the routine's own, and with the call's indices.
+
 **Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the
 width: these are obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an
 i64 operation stays in range. `div` and `rem` truncate toward zero. Float arithmetic is IEEE 754, round to nearest. `and or xor`
@@ -44,8 +51,8 @@ stride multiples of the width. Copy, Fill and IsText may run on from a place int
 Advance take a count that is proven >= 0. A Failure is evaluated on the failing path only, under the same obligations.
 Expressions nest at most 100 deep, blocks 100.
 
-**Failing.** Require, Expect and Reserve are the only statements that can fail. A failing Require or Expect ends the body: the
-next body starts afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that
+**Failing.** Require, Expect, Reserve and what a Call runs are the only statements that can fail. A failing Require or Expect ends the
+body: the next body starts afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that
 failure, among those of all bodies, whose offset is greatest (the earliest of equals), and leaves its offset and indices in the
 holder's state. A failing Reserve returns -1 at once, having left lane and missing rows there: the runtime grows the lane and
 calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
@@ -339,7 +346,20 @@ class Return:
     position: Expr
 
 
-Stmt = Require | Expect | Let | Var | Assign | Store | SetField | Reserve | Advance | Copy | Fill | For | While | If | Switch | Return
+@dataclass(frozen=True, slots=True)
+class Call:
+    """Run a routine and bind its results. ``sites`` stand for the routine's own, from its number 1 on, and ``indices`` belong to them."""
+
+    routine: str
+    arguments: tuple[Expr, ...]
+    results: tuple[Local, ...]
+    sites: tuple[int, ...]
+    indices: tuple[Expr, ...] = ()
+
+
+Effect = Store | SetField | Copy | Fill
+Nest = For | While | If | Switch
+Stmt = Require | Expect | Let | Var | Assign | Effect | Reserve | Advance | Nest | Return | Call
 Block = tuple[Stmt, ...]
 
 # --- the whole ---------------------------------------------------------------------------------------------------------
@@ -374,6 +394,19 @@ class Site:
 
 
 @dataclass(frozen=True, slots=True)
+class Routine:
+    """Statements that many calls share. Results are integers of 64 bits; ``sites`` count from 1 as a kernel's do."""
+
+    name: str
+    parameters: tuple[Local, ...]
+    results: tuple[Local, ...]
+    body: Block
+    requires: tuple[Expr, ...]
+    ensures: tuple[Expr, ...]
+    sites: tuple[Site, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Kernel:
     """``sites[0]`` stands for a lane that must grow, so that real sites count from 1."""
 
@@ -382,6 +415,7 @@ class Kernel:
     strides: tuple[int, ...]
     bodies: tuple[Block, ...]
     sites: tuple[Site, ...]
+    routines: tuple[Routine, ...] = ()
 
 
 # --- small constructors ------------------------------------------------------------------------------------------------

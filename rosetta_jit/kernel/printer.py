@@ -11,6 +11,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Call,
     Capacity,
     Compare,
     Const,
@@ -44,7 +45,7 @@ from rosetta_jit.kernel.ir import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Part, Site, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Part, Routine, Site, Stmt
 
 SYMBOL = {
     "add": "+",
@@ -79,9 +80,11 @@ def to_text(kernel: Kernel) -> str:
     Returns
     -------
     str
-        Lines that end in a newline: the head, each body, the sites.
+        Lines that end in a newline: the head, each routine and body, the sites.
     """
     lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}"]
+    for routine in kernel.routines:
+        lines.extend(_routine(routine))
     for number, body in enumerate(kernel.bodies):
         lines.append(f"body {number}:")
         lines.extend(_block(body, 1))
@@ -155,6 +158,11 @@ def _statement(stmt: Stmt, depth: int) -> Iterator[str]:
             yield f"fill {_address(target)}, {expression_text(size)}, {byte}"
         case Return(position):
             yield f"return {expression_text(position)}"
+        case Call(routine, arguments, results, sites, indices):
+            bound = ", ".join(map(expression_text, results))
+            given = ", ".join(map(expression_text, arguments))
+            within = "".join(f"[{expression_text(i)}]" for i in indices)
+            yield f"let {bound} = call {_name(routine)}({given}) else {list(sites)}{within}"
         case For() | While() | If() | Switch():
             yield from _nested(stmt, depth)
         case _:
@@ -184,6 +192,17 @@ def _nested(stmt: For | While | If | Switch, depth: int) -> Iterator[str]:
                 yield from _block(block, depth + 1)
             yield f"{indent}default:"
             yield from _block(default, depth + 1)
+
+
+def _routine(routine: Routine) -> Iterator[str]:
+    given, found = (", ".join(map(expression_text, some)) for some in (routine.parameters, routine.results))
+    yield f"routine {_name(routine.name)}({given}) gives {found}:"
+    yield from (f"  requires {expression_text(each)}" for each in routine.requires)
+    yield from (f"  ensures {expression_text(each)}" for each in routine.ensures)
+    yield from _block(routine.body, 1)
+    yield "  sites:"
+    for number, site in enumerate(routine.sites):
+        yield from (f"  {line}" for line in _site(number, site))
 
 
 def _block(block: Block, depth: int) -> Iterator[str]:

@@ -10,6 +10,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Call,
     Capacity,
     Compare,
     Const,
@@ -106,6 +107,8 @@ def with_expressions(stmt: Stmt, change: Callable[[Expr], Expr]) -> Stmt:
             return Switch(change(value), cases, default)
         case Return(position):
             return Return(change(position))
+        case Call():
+            return replace(stmt, arguments=tuple(map(change, stmt.arguments)), indices=tuple(map(change, stmt.indices)))
         case _:
             assert_never(stmt)
 

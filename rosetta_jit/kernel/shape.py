@@ -11,6 +11,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Call,
     Capacity,
     Compare,
     Const,
@@ -43,12 +44,15 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.state import MAX_INDICES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Routine, Stmt
 
 MAX_BLOCKS = 100
 MAX_EXPRESSION = 100
+
+LARGE = 4_000
+"""Statements of a kernel from which on work that is done twice takes seconds."""
 
 
 def blocks_of(stmt: Stmt) -> tuple[Block, ...]:
@@ -72,6 +76,11 @@ def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
         yield stmt, depth
         inner = [(s, depth + 1) for part in blocks_of(stmt) for s in part]
         stack.extend(reversed(inner))
+
+
+def is_large(kernel: Kernel) -> bool:
+    """Whether a kernel is so large that it is not worth while to improve it again and again."""
+    return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
 
 
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
@@ -101,6 +110,8 @@ def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
             return (value,)
         case Return(position):
             return (position,)
+        case Call(_, arguments, _, _, indices):
+            return (*arguments, *indices)
         case _:
             assert_never(stmt)
 
@@ -135,43 +146,87 @@ def subexpressions(expr: Expr) -> Iterator[tuple[Expr, int]]:
         stack.extend((operand, depth + 1) for operand in operands(part))
 
 
-def bound_name(stmt: Stmt) -> str | None:
-    """The name that a statement binds."""
+def bound_names(stmt: Stmt) -> tuple[str, ...]:
+    """The names that a statement binds."""
     match stmt:
         case Let(name, _) | Var(name, _) | For(name, _, _):
-            return name
+            return (name,)
+        case Call(_, _, results, _, _):
+            return tuple(result.name for result in results)
         case _:
-            return None
+            return ()
 
 
 def shape_error(kernel: Kernel) -> str | None:
     """What is wrong with a kernel's text, if anything is."""
-    bound = {BEGIN.name, END.name, ROW.name}
     if not kernel.bodies:
         return "a kernel without bodies"
-    for stmt, depth in (pair for body in kernel.bodies for pair in statements(body)):
-        name = bound_name(stmt)
-        if name in bound:
-            return f"{name} is bound twice"
-        if name is not None:
+    for number, routine in enumerate(kernel.routines):
+        problem = _routine_error(routine, kernel.routines[:number])
+        if problem is not None:
+            return f"routine {routine.name}: {problem}"
+    inner = (pair for body in kernel.bodies for pair in statements(body))
+    return _statements_error(inner, (BEGIN.name, END.name, ROW.name), len(kernel.sites), kernel.routines)
+
+
+def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
+    if any(routine.name == other.name for other in before):
+        return "a name that another one has"
+    if any(result.type not in ("i64", "u64") for result in routine.results):
+        return "a result that is no integer of 64 bits"
+    inside = list(statements(routine.body))
+    if any(isinstance(stmt, Return | Reserve | Advance) or any(map(_counts, expressions_of(stmt))) for stmt, _ in inside):
+        return "something that only a body can do"
+    names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
+    if len(set(names)) < len(names):
+        return "a parameter that is named twice"
+    return _statements_error(inside, names, len(routine.sites), before)
+
+
+def _counts(expr: Expr) -> bool:
+    """Whether an expression asks for a used length."""
+    return any(isinstance(part, Used) for part, _ in subexpressions(expr))
+
+
+def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[Routine, ...]) -> str | None:
+    bound = set(names)
+    known = {routine.name: routine for routine in routines}
+    for stmt, depth in inside:
+        for name in bound_names(stmt):
+            if name in bound:
+                return f"{name} is bound twice"
             bound.add(name)
-        problem = _statement_error(kernel, stmt, depth)
+        problem = _statement_error(stmt, depth, sites, known)
         if problem is not None:
             return problem
     return None
 
 
-def _statement_error(kernel: Kernel, stmt: Stmt, depth: int) -> str | None:
+def _statement_error(stmt: Stmt, depth: int, sites: int, routines: Mapping[str, Routine]) -> str | None:
     if depth > MAX_BLOCKS:
         return "blocks are nested too deep"
     if any(_too_deep(expr) for expr in expressions_of(stmt)):
         return "an expression is nested too deep"
-    if isinstance(stmt, Require | Expect):
-        if not 1 <= stmt.failure.site < len(kernel.sites):
-            return f"no site {stmt.failure.site}"
-        if len(stmt.failure.indices) > MAX_INDICES:
-            return "too many indices"
-    return None
+    match stmt:
+        case Require(_, _, failure) | Expect(_, failure):
+            return _failing_error((failure.site,), failure.indices, sites)
+        case Call(name, arguments, results, named, indices):
+            routine = routines.get(name)
+            if routine is None:
+                return f"no routine {name} before"
+            counts = len(arguments), len(results), 1 + len(named)
+            if counts != (len(routine.parameters), len(routine.results), len(routine.sites)):
+                return f"a call that does not fit {name}"
+            return _failing_error(named, indices, sites)
+        case _:
+            return None
+
+
+def _failing_error(named: tuple[int, ...], indices: tuple[Expr, ...], sites: int) -> str | None:
+    missing = [site for site in named if not 1 <= site < sites]
+    if missing:
+        return f"no site {missing[0]}"
+    return "too many indices" if len(indices) > MAX_INDICES else None
 
 
 def _too_deep(expr: Expr) -> bool:

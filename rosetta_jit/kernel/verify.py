@@ -1,7 +1,7 @@
 """The proof that a kernel is safe, for every message and every holder: a symbolic run over all its paths.
 
 Where the obligations come from: `symbolic` (accesses and arithmetic in expressions), this module (statements), `paths` (what
-survives where paths meet), `shape` (the text). A failed proof is a bug of ours, never a user's mistake.
+survives where paths meet), `contracts` (routines), `shape` (the text). A failed proof is a bug of ours, never a user's mistake.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel import paths
+from rosetta_jit.kernel import contracts, paths
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Advance,
     Assign,
+    Call,
     Copy,
     Expect,
     Fill,
@@ -55,9 +56,9 @@ from rosetta_jit.kernel.symbolic import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
-    from rosetta_jit.kernel.ir import Block, Expr, Failure, Kernel, Stmt
+    from rosetta_jit.kernel.ir import Block, Expr, Failure, Kernel, Routine, Stmt
     from rosetta_jit.kernel.loops import Guess
     from rosetta_jit.kernel.prove import Formula
     from rosetta_jit.kernel.symbolic import Typed
@@ -75,6 +76,7 @@ class _Walk:
     """One body's walk: where it is, and what it has found out about loops and checks, by the ids of their statements."""
 
     scope: Scope
+    routines: Mapping[str, Routine]
     notes: bool = False
     loops: int = 0
     variables: set[str] = field(default_factory=set[str])
@@ -91,8 +93,9 @@ def verify(kernel: Kernel) -> None:
     VerificationError
         Something in it cannot be shown to be safe; the message names the statement.
     """
-    for body in _checked(kernel).bodies:
-        _body(_Walk(entry(kernel)), kernel, body)
+    routines = _proven_routines(kernel)
+    for body in kernel.bodies:
+        _body(_Walk(entry(kernel), routines), kernel, body)
 
 
 def settled(kernel: Kernel) -> frozenset[int]:
@@ -105,19 +108,33 @@ def settled(kernel: Kernel) -> frozenset[int]:
     """
     found: set[int] = set()
     needed: set[int] = set()
-    for body in _checked(kernel).bodies:
-        walk = _Walk(entry(kernel), notes=True)
+    routines = _proven_routines(kernel)
+    for body in kernel.bodies:
+        walk = _Walk(entry(kernel), routines, notes=True)
         _body(walk, kernel, body)
         found |= walk.seen.keys()
         needed |= walk.needed
     return frozenset(found - needed)
 
 
-def _checked(kernel: Kernel) -> Kernel:
+def _proven_routines(kernel: Kernel) -> Mapping[str, Routine]:
+    """The routines of a kernel of sound shape, proven."""
     problem = shape_error(kernel)
     if problem is not None:
         raise VerificationError(f"kernel {kernel.name}: {problem}")
-    return kernel
+    routines = {routine.name: routine for routine in kernel.routines}
+    for routine in kernel.routines:
+        _routine(kernel, routine, routines)
+    return routines
+
+
+def _routine(kernel: Kernel, routine: Routine, routines: Mapping[str, Routine]) -> None:
+    try:
+        walk = _Walk(contracts.inside(kernel, routine), routines)
+        _block(walk, routine.body)
+        contracts.keep(walk.scope, routine)
+    except UnprovenError as error:
+        raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
 
 
 def _body(walk: _Walk, kernel: Kernel, body: Block) -> None:
@@ -177,6 +194,10 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             _rows(scope, stmt)
         case For() | While() | If() | Switch():
             return _nested(walk, stmt)
+        case Call(routine, _, _, _, indices):
+            for position in indices:
+                integer(scope, position)
+            contracts.bind(scope, walk.routines[routine], stmt)
         case _:
             assert_never(stmt)
     return False

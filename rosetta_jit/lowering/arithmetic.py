@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Select, add, index, mul, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Comparison, Const, Expr, Select, add, index, mul, type_of
 
 if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Arithmetic
     from rosetta_jit.lowering.writer import Where, Writer
     from rosetta_jit.model.expr import Operator
 
-_OPS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "%": "rem"}
+_OPS: dict[str, Arithmetic] = {"+": "add", "-": "sub", "*": "mul", "/": "div", "%": "rem"}
+_BITS: dict[str, Arithmetic] = {"&": "and", "|": "or", "^": "xor", "and": "and", "or": "or", "<<": "shl", ">>": "shr"}
+WORD = 64
+"""Bits of an int64."""
+
+COMPARISONS: dict[str, Comparison] = {"==": "eq", "!=": "ne", "<": "lt", "<=": "le", ">": "gt", ">=": "ge"}
 
 
 def binary(writer: Writer, operator: Operator, left: Expr, right: Expr, where: Where, line: str = "") -> Expr:
     """``left operator right`` of two int64 or two floats of one size. Integers are checked: they never wrap, never divide by zero."""
     if type_of(left) in ("f32", "f64"):
-        match _OPS[operator]:
-            case "add" | "sub" | "mul" | "div" | "rem" as op:
-                return Binary(op, left, right)
-            case _:
-                raise AssertionError(operator)
+        return Binary(_OPS[operator], left, right)
     match operator:
+        case "&" | "|" | "^" | "and" | "or":
+            return Binary(_BITS[operator], left, right)
+        case "<<" | ">>":
+            return _shift(writer, operator, left, right, where, line)
         case "+" | "*" if isinstance(left, Const) and isinstance(right, Const):
             return add(left, right) if operator == "+" else mul(left, right)
         case "+":
@@ -33,7 +39,16 @@ def binary(writer: Writer, operator: Operator, left: Expr, right: Expr, where: W
         case "/" | "%":
             return _division(writer, operator, left, right, where, line)
         case _:
-            assert_never(operator)
+            raise AssertionError(operator)
+
+
+def _shift(writer: Writer, operator: str, left: Expr, right: Expr, where: Where, line: str) -> Expr:
+    """By 0 to 63 bits; bits that leave at the top are lost."""
+    if not (isinstance(right, Const) and 0 <= right.value < WORD):
+        right = writer.let("bits", right)
+        usable = Binary("and", Compare("ge", right, index(0)), Compare("lt", right, index(WORD)))
+        writer.expect(usable, "range", where, f"a shift by less than 0 or more than {WORD - 1} bits", line=line)
+    return Binary(_BITS[operator], left, right)
 
 
 def _division(writer: Writer, operator: str, left: Expr, right: Expr, where: Where, line: str) -> Expr:
@@ -42,6 +57,15 @@ def _division(writer: Writer, operator: str, left: Expr, right: Expr, where: Whe
         usable = Binary("or", Compare("gt", right, index(0)), Compare("lt", right, index(-1)))
         writer.expect(usable, "range", where, "division by 0 or -1", line=line)
     return Binary("div" if operator == "/" else "rem", left, right)
+
+
+def divided(writer: Writer, left: Expr, right: Expr, where: Where, line: str = "") -> Expr:
+    """``left / right``; of integers only where nothing remains."""
+    if type_of(left) in ("f32", "f64"):
+        return Binary("div", left, right)
+    over = binary(writer, "%", left, right, where, line)
+    writer.expect(Compare("eq", over, index(0)), "range", where, "the division leaves a remainder", line=line)
+    return Binary("div", left, right)
 
 
 def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str = "") -> Expr:

@@ -170,12 +170,12 @@ class WireFields:
             case Seq(items):
                 for item in items:
                     self.declare(item, prefix)
-            case Choice(_, _, alternatives, _, _):
+            case Choice(_, _, alternatives):
                 for _, each in alternatives:
                     self.declare(each, prefix)
             case Number(path, scalar, _) | Computed(path, scalar, _, _):
                 self.variable(prefix + path, "value", Const(scalar_name(scalar), 0))
-            case Table(path, _, _, _):
+            case Table(path):
                 self.variable(prefix + path, "value", index(0))
             case Blob(path, _, _, _):
                 self.variable(prefix + path, "count", index(0))

@@ -3,7 +3,7 @@
 int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate])     of a float
 float32 float64 (x)   bool (x)   enum.name (x)
-radians degrees sqrt (x) of float64   floor ceil (x)   abs (x)   min max (x, y, …)   align (n, quantum)
+radians degrees sqrt (x) of float64   floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide (x, y)
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
 FLOATS = ("float32", "float64")
-FUNCTIONS = ("radians", "degrees", "sqrt", "floor", "ceil", "abs", "min", "max", "align")
+FUNCTIONS = ("radians", "degrees", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide")
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -67,7 +67,7 @@ def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExp
     value = type_expr(expr.arguments[0], scope)
     if value is None:
         return None
-    rules = _rules(value.type, target)
+    rules = rules_between(value.type, target)
     if not rules:
         scope.problems.append(words.type_clash(value.span, describe(value.type), describe(target)))
         return None
@@ -75,7 +75,7 @@ def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExp
     return None if rule is None else _converted(value, target, rule, expr, scope)
 
 
-def _rules(source: Type, target: Type) -> tuple[ConversionRule, ...]:
+def rules_between(source: Type, target: Type) -> tuple[ConversionRule, ...]:
     """The rules by which one scalar may become the other; the first one holds where none is named."""
     match source, target:
         case Int(), Int():
@@ -122,8 +122,8 @@ def _arity(expr: model.Call, scope: Scope) -> bool:
     match expr.function:
         case "min" | "max":
             fits, expected = found >= 2, "two or more values"
-        case "align":
-            fits, expected = found == 2, "a number and a quantum"
+        case "align" | "divide":
+            fits, expected = found == 2, "a number and a quantum" if expr.function == "align" else "two numbers"
         case _:
             fits, expected = found == 1, "one value"
     if not fits:
@@ -148,9 +148,9 @@ def _candidates(function: str) -> tuple[Int | Float, ...]:
     match function:
         case "align":
             return (INT64,)
-        case "abs" | "min" | "max":
+        case "abs" | "min" | "max" | "divide":
             return (INT64, Float(32), FLOAT64)
-        case "floor" | "ceil":
+        case "floor" | "ceil" | "round":
             return (Float(32), FLOAT64)
         case _:
             return (FLOAT64,)
@@ -169,7 +169,7 @@ def _narrows(arguments: list[Expr], target: Int | Float, targets: tuple[Int | Fl
 def _folded(expr: model.Call, arguments: list[Expr], target: Int | Float) -> Expr:
     function = cast("Function", expr.function)
     numbers = [argument.value for argument in arguments if isinstance(argument, Const) and isinstance(argument.value, int)]
-    if isinstance(target, Int) and len(numbers) == len(arguments):
+    if isinstance(target, Int) and len(numbers) == len(arguments) and function != "divide":
         known = _of_integers(function, numbers)
         if conversions.holds(target, known):
             return Const(known, target, expr.span)

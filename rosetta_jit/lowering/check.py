@@ -12,6 +12,7 @@ from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.completeness import check_complete
+from rosetta_jit.lowering.derive import derive
 from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema
 
@@ -67,6 +68,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
+    mapping = derive(mapping, problems)
     imported = _imports(mapping, _Imports(mapping.source, front_ends, search, reading or Reading()), problems)
     complete = len(imported) == len({statement.path for statement in mapping.imports})
     schema = _merged(imported, problems)

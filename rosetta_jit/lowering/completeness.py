@@ -6,6 +6,7 @@ its length and all of its elements. Fields that the schema fixes need no rule.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ from rosetta_jit.lowering.coverage import coverage
 from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.lowering.scope import element_type
 from rosetta_jit.lowering.typed import Const
+from rosetta_jit.lowering.ways import MAX_WAYS, TooManyWaysError, ways
 from rosetta_jit.lowering.writes import Write, enter, writes_of
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Struct, Union
@@ -24,18 +26,30 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.resolve import TypedRules
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.tiling import Run
+    from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.types import Field, Type
     from rosetta_jit.source import Span
 
 
 def check_complete(rules: TypedRules, target: Message, side: str, span: Span | None) -> list[Diagnostic]:
     """What is wrong with a block as a whole; ``span`` is where missing rules are reported."""
+    shared: list[Diagnostic] = []
+    try:
+        found = [_check_way(way, rules, target, side, span) for way in ways(rules.rules, shared)]
+    except TooManyWaysError as error:
+        return [words.too_many_ways(error.span, MAX_WAYS)]
+    ways_with = Counter(problem for problems in found for problem in dict.fromkeys(problems))
+    return [*shared, *(problem if count == len(found) else words.in_one_way(problem) for problem, count in ways_with.items())]
+
+
+def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, side: str, span: Span | None) -> list[Diagnostic]:
+    """What is wrong with one way through a block."""
     problems: list[Diagnostic] = []
     broken = set(rules.broken)
-    writes = writes_of(rules.rules, problems, broken)
+    writes = writes_of(way, problems, broken)
     checker = _Checker(target, side, span, broken, problems)
     checker.struct(_Where("", (), 0), target.root, writes)
-    return list(dict.fromkeys(problems))
+    return problems
 
 
 @dataclass(frozen=True, slots=True)

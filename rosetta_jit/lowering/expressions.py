@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
+from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
 from rosetta_jit.model import expr as model
@@ -37,12 +38,20 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return None if isinstance(place, Broken) else Access(place, place.type, expr.span)
         case model.Len():
             return _length(expr, scope)
+        case model.Unary("not"):
+            return type_not(expr, scope, type_expr)
         case model.Unary():
             return _negative(expr, scope)
+        case model.Binary(operator) if operator in model.COMPARISONS:
+            return type_comparison(expr, scope, type_expr)
+        case model.Binary(operator) if operator in model.LOGIC:
+            return type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
         case model.Call():
             return type_call(expr, scope, type_expr)
+        case model.Choice():
+            return type_choice(expr, scope, type_expr)
         case _:
             assert_never(expr)
 
@@ -122,7 +131,8 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
         return None
     match left, right:
         case Const(value=int() | float() as x, type=Int() | Float()), Const(value=int() | float() as y, type=Int() | Float()):
-            return _constant(_compute(expr.operator, x, y), expr.span, scope)
+            if expr.operator not in model.BITWISE:
+                return _constant(_compute(expr.operator, x, y), expr.span, scope)
         case _:
             pass
     numbers = _computable(left, expr.operator, scope), _computable(right, expr.operator, scope)
@@ -135,7 +145,7 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
 def _computable(operand: Expr, operator: str, scope: Scope) -> Expr | None:
     """A number that can be computed with; uint64 cannot, as its values do not fit int64."""
     match operand.type:
-        case Float():
+        case Float() if operator not in model.BITWISE:
             return operand
         case Int() as type_ if type_.signed or type_.bits < 64:
             return operand
@@ -180,6 +190,8 @@ def _compute(operator: model.Operator, x: float, y: float) -> float | None:
                 return _quotient(int(x), int(y)) if whole else x / y
             case "%":
                 return int(x) - int(y) * _quotient(int(x), int(y)) if whole else math.fmod(x, y)
+            case _:
+                raise AssertionError(operator)
     except OverflowError:
         return None
 

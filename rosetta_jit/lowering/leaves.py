@@ -90,6 +90,9 @@ def _number(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scala
 
 
 def _table(writer: Writer, fields: Fields, table: Table) -> None:
+    if table.scalar is None:
+        _implied(writer, fields, table)
+        return
     where, scalar = fields.where.members(table.path), scalar_name(table.scalar)
     if writer.direction == "decode":
         at = writer.position
@@ -106,6 +109,12 @@ def _table(writer: Writer, fields: Fields, table: Table) -> None:
     known, wire = _translated(writer.let("code", integer(value)), [(value, number) for number, value in table.pairs])
     writer.expect(known, "range", where, "the wire has no word for this value")
     writer.store(_as(scalar, wire), where, table.order)
+
+
+def _implied(writer: Writer, fields: Fields, table: Table) -> None:
+    """A value that takes no bytes. What chooses this codec when encoding has looked at it."""
+    if writer.direction == "decode":
+        fields.put(table.path, index(table.pairs[0][1]))
 
 
 def _translated(word: Expr, pairs: list[tuple[int, int]]) -> tuple[Expr, Expr]:
@@ -205,7 +214,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
         writer.advance(total)
         return
     stored = fields.stored(blob.path)
-    write_count(writer, fields, blob.count, stored.size, where, extra=extra)
+    write_count(writer, fields, blob.count, stored.size, where, "length", extra=extra)
     writer.require(stored.size, where, "no room for the message")
     if writer.direction == "encode":
         fields.copy_bytes(blob.path, stored)
@@ -233,7 +242,7 @@ def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
     stored = fields.stored(text.path)
     writer.expect(Compare("lt", stored.size, index(1 << 30)), "range", where, "too many for the wire")
     marks = writer.let("marks", Convert("i64", Compare("gt", stored.size, index(0))))
-    write_count(writer, fields, text.count, writer.let("units", Binary("add", stored.size, marks)), where)
+    write_count(writer, fields, text.count, writer.let("units", Binary("add", stored.size, marks)), where, "length")
     writer.require(mul(add(stored.size, marks), 2), where, "no room for the message")
     begin = writer.position
     if writer.direction == "encode":
@@ -282,7 +291,7 @@ def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:
 def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
     """A count that has come: not negative, and what the schema says it must be. ``least`` are counted, but are not of the value."""
     where, at = fields.where.members(path), writer.position
-    found = _told(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where)
+    found = _told(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where, least)
     if count.maximum is not None:
         writer.expect(Compare("le", found, index(count.maximum + least)), kind, where, f"at most {count.maximum}", at=at)
     if isinstance(count.value, int):
@@ -298,15 +307,22 @@ def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Cou
     return found
 
 
-def _counted(writer: Writer, count: Count, where: Where) -> Expr:
-    """A count on the wire, of elements."""
+def _counted(writer: Writer, count: Count, where: Where, least: int) -> Expr:
+    """A count on the wire, of elements and of the ``least`` that are counted with them."""
     at = writer.position
     found = writer.let("count", integer(writer.load(scalar_name(count.scalar or ""), where, count.order)))
     if count.unit == 1:
         return found
-    whole = Compare("eq", Binary("rem", found, index(count.unit)), index(0))
-    writer.expect(whole, "length", where, f"must be a multiple of {count.unit}", at=at)
-    return writer.let("elements", Binary("div", found, index(count.unit)))
+    units = add(found, -least)
+    whole = Compare("eq", Binary("rem", units, index(count.unit)), index(0))
+    writer.expect(
+        whole,
+        "length",
+        where,
+        f"must be {least} more than a multiple of {count.unit}" if least else f"must be a multiple of {count.unit}",
+        at=at,
+    )
+    return writer.let("elements", add(Binary("div", units, index(count.unit)), least))
 
 
 def _told(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
@@ -315,24 +331,24 @@ def _told(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
     return index(count.value) if isinstance(count.value, int) else writer.let("count", evaluate(count.value, fields.scope, writer, where))
 
 
-def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where: Where, *, extra: int = 0) -> None:
-    """A count to be written, ``extra`` more than the value has; one that the schema fixes, or another field tells, must be that one."""
+def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where: Where, kind: str = "count", *, extra: int = 0) -> None:
+    """A count to be written, ``extra`` more than the value has; one that the schema fixes, or other fields tell, must be that one."""
     if count.maximum is not None:
-        writer.expect(Compare("le", value, index(count.maximum)), "count", where, f"at most {count.maximum}")
+        writer.expect(Compare("le", value, index(count.maximum)), kind, where, f"at most {count.maximum}")
+    if count.value is not None and not isinstance(count.value, int):
+        agrees = Compare("eq", value, _told(writer, fields, count, where))
+        writer.expect(agrees, kind, where, "must agree with the fields that determine it")
     value = add(value, extra)
     if isinstance(count.value, int):
-        writer.expect(Compare("eq", value, index(count.value)), "count", where, f"must be {count.value}")
+        writer.expect(Compare("eq", value, index(count.value)), kind, where, f"must be {count.value}")
     if count.scalar is None:
-        if not isinstance(count.value, int):
-            agrees = Compare("eq", value, _told(writer, fields, count, where))
-            writer.expect(agrees, "count", where, "must agree with the field that tells it")
         return
     scalar = scalar_name(count.scalar)
     if scalar in LIMITS:
         writer.expect(Compare("lt", value, index(-(-LIMITS[scalar] // count.unit))), "range", where, "too many for the wire")
     if count.unit != 1:
         writer.expect(Compare("le", value, index(MAX_SIZE // count.unit)), "range", where, "too many for the wire")
-    writer.store(_as(scalar, mul(value, count.unit)), where, count.order)
+    writer.store(_as(scalar, add(mul(add(value, -extra), count.unit), extra)), where, count.order)
 
 
 # --- small things -----------------------------------------------------------------------------------------------------------

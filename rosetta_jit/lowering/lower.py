@@ -57,7 +57,7 @@ def lower(
     attempts = encoding.attempts if direction == "decode" else (encoding.written,)
     bodies = [_body(writer, encoding, attempt, layout, rules, borrow=borrow) for attempt in attempts if attempt is not None]
     strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
-    return Kernel(name, direction, strides, tuple(bodies), tuple(writer.sites))
+    return Kernel(name, direction, strides, tuple(bodies), tuple(writer.sites), tuple(writer.routines.values()))
 
 
 def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, rules: tuple[Rule, ...] | None, *, borrow: bool) -> Block:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Const, Convert, FieldStep, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, IsText, LenOf, Local, Unary
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
@@ -144,6 +144,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return _field_value(place)
         case LenOf(place):
             return atom(f"len({_path_shape(place)})", *_indices(place))
+        case Unary("not", operand):
+            return atom("not", polynomial_of(operand))
         case Unary(operand=operand):
             return subtract(number(0), polynomial_of(operand))
         case Binary(operator, left, right):
@@ -153,6 +155,11 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
         case Call(function, arguments):
             return atom(function, *(polynomial_of(argument) for argument in arguments))
+        case IsText(place, text):
+            return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
+        case Choice(cases, otherwise):
+            parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
+            return atom("choice", *map(polynomial_of, parts))
         case Const(value=value):
             return atom(repr(value))
         case _:

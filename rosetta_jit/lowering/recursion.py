@@ -76,7 +76,7 @@ def read_recursive(message: Message, entry: Entry, recursion: Recursion, where: 
 
 
 def _piece(message: Message, recursion: Recursion, where: Where) -> tuple[Expr, Expr]:
-    """Where a message begins and ends; the position is moved behind it. That of a group includes its end tag."""
+    """Where a message begins and ends; the position is moved behind it, and behind the end tag of a group."""
     writer = message.writer
     if recursion.group is None:
         size = read_length(writer, where, message.stop)
@@ -85,8 +85,7 @@ def _piece(message: Message, recursion: Recursion, where: Where) -> tuple[Expr, 
         return begin, writer.position
     begin = writer.let("begin_of_message", writer.position)
     tag = writer.let("tag", index(recursion.group << 3 | 3))
-    skip(writer, len(message.fields.layout.lanes), tag, message.stop, where)
-    return begin, writer.position
+    return begin, skip(writer, len(message.fields.layout.lanes), tag, message.stop, where)
 
 
 def _new_row(message: Message, lane: int, begin: Expr, end: Expr, where: Where) -> Expr:

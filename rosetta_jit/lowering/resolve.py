@@ -7,13 +7,16 @@ the checks that follow do not report the same mistake in other words.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
+from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
-from rosetta_jit.lowering.typed import Access, Assign, Const, FieldStep, For, Local, SetLength
+from rosetta_jit.lowering.typed import Access, Assign, Choice, Const, Convert, FieldStep, For, Local, Reject, SetLength, When
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union
 
@@ -80,6 +83,9 @@ class _Block:
     broken: list[tuple[str, ...]] = field(default_factory=list[tuple[str, ...]])
 
     def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+        for rule, behind in pairwise(rules):
+            if isinstance(rule, model.Reject):
+                scope.problems.append(words.rules_behind_reject(behind.span))
         typed = [self.rule(rule, scope) for rule in rules]
         return tuple(rule for rule in typed if rule is not None)
 
@@ -91,19 +97,35 @@ class _Block:
                 return self.set_length(rule, scope)
             case model.For():
                 return self.loop(rule, scope)
+            case model.When():
+                return self.when(rule, scope)
+            case model.Reject(text):
+                return Reject(text, rule.span)
+            case model.Relation():
+                raise AssertionError(rule)
             case _:
                 assert_never(rule)
 
-    def assign(self, rule: model.Assign, scope: Scope) -> Assign | None:
+    def when(self, rule: model.When, scope: Scope) -> When | None:
+        condition = type_condition(rule.condition, scope, type_expr)
+        then, otherwise = self.rules(rule.then, scope), self.rules(rule.otherwise, scope)
+        if condition is None:
+            self.broken.extend(field_names(place) for place in places_in((*then, *otherwise)))
+            return None
+        return When(condition, then, otherwise, rule.span)
+
+    def assign(self, rule: model.Assign, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
         value = type_expr(rule.value, scope)
         if place is None:
             return None
+        if value is not None and rule.fits:
+            value = _fitted(value, place.type)
         fitting = None if value is None else _fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
             return None
-        return Assign(place, fitting, rule.span)
+        return _by_case(place, fitting, rule.span)
 
     def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
         place = self.place(rule, scope)
@@ -152,13 +174,45 @@ def field_names(place: Place) -> tuple[str, ...]:
 
 
 def places_in(rules: tuple[Rule, ...]) -> list[Place]:
-    """All places that rules set, those within loops included."""
-    return [place for rule in rules for place in (places_in(rule.body) if isinstance(rule, For) else [rule.place])]
+    """All places that rules set, those within blocks included."""
+    return [place for rule in rules for place in _places(rule)]
+
+
+def _places(rule: Rule) -> list[Place]:
+    match rule:
+        case Assign(place) | SetLength(place):
+            return [place]
+        case For():
+            return places_in(rule.body)
+        case When():
+            return places_in((*rule.then, *rule.otherwise))
+        case Reject():
+            return []
+        case _:
+            assert_never(rule)
+
+
+def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
+    """A choice among texts as one rule a text: numbers alone are chosen in an expression."""
+    if not (isinstance(value, Choice) and isinstance(place.type, String | Bytes)):
+        return Assign(place, value, span)
+    rest: tuple[Rule, ...] = (Reject(value.reason, span),) if value.otherwise is None else (_by_case(place, value.otherwise, span),)
+    for condition, chosen in reversed(value.cases):
+        rest = (When(condition, (_by_case(place, chosen, span),), rest, span),)
+    return rest[0]
+
+
+def _fitted(value: Expr, target: Type) -> Expr:
+    """A number as the type of its place, by a check where it may not fit."""
+    rules = rules_between(value.type, target)
+    return Convert(value, target, rules[0], value.span) if rules and convert(value, target) is None else value
 
 
 def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     """The value as the type of the place, reported where that takes a word or cannot be."""
     target = place.type
+    if isinstance(value, Choice) and isinstance(target, String | Bytes):
+        return _fit_choice(value, place, scope)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
@@ -166,6 +220,16 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if fitting is None:
         scope.problems.append(_mismatch(value, target))
     return fitting
+
+
+def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
+    """Each text of a choice as the type of the place."""
+    cases = [(condition, _fit(chosen, place, scope)) for condition, chosen in value.cases]
+    otherwise = None if value.otherwise is None else _fit(value.otherwise, place, scope)
+    known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
+    if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
+        return None
+    return replace(value, cases=known, otherwise=otherwise, type=place.type)
 
 
 def _whole(source: Type, target: Type, scope: Scope) -> bool:

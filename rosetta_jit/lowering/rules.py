@@ -11,14 +11,18 @@ from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.catalogue.pipeline import unmappable_field, unmappable_place
 from rosetta_jit.errors import MappingError
-from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, IsText, Local, Place, Wire, add, index
+from rosetta_jit.kernel.ir import Compare, Const, Copy, Expr, For, If, IsText, Local, Place, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
+from rosetta_jit.lowering.values import constant, scalar_type
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.values import Values
     from rosetta_jit.wire.codec import Path
 
@@ -41,8 +45,21 @@ class Runner:
                     self.target.set_length(place, self.count(here.of(value)), here)
                 case typed.For():
                     self.loop(rule, here)
+                case typed.When(condition, then, otherwise):
+                    holds = here.of(condition)
+                    self.writer.emit(If(holds, self.branch(then, values), self.branch(otherwise, values)))
+                case typed.Reject(text):
+                    here.reject(text)
                 case _:
                     assert_never(rule)
+
+    def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
+        """Rules that run or not; what is looked up within them is forgotten behind them."""
+        known = dict(self.holder.arrays)
+        with self.writer.nested() as body:
+            self.run(rules, values)
+        self.holder.arrays = known
+        return block(body)
 
     def count(self, value: Expr) -> Expr:
         """A length that is used more than once."""
@@ -83,13 +100,13 @@ class Runner:
             self.target.set_byte(place, number, byte, values)
 
     def assign_bytes(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
-        """A string or bytes as a whole. To the wire, the walk has copied it."""
-        if isinstance(self.target, WireSide):
+        """A string or bytes as a whole. To the wire, the walk may have copied it."""
+        if isinstance(self.target, WireSide) and not self.target.is_open(place):
             return
         size, source = self.source.count(origin, values), self.source.address(origin, values)
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             self.writer.expect(IsText(source, size), "text", values.where, "not valid UTF-8", line=values.line)
-        if isinstance(source, Wire) and isinstance(place.type, Bytes) and self.target.borrows:
+        if isinstance(source, Wire) and isinstance(place.type, Bytes) and isinstance(self.target, HolderSide) and self.target.borrows:
             self.target.borrow(place, source.at, size, values)
             return
         self.target.set_length(place, size, values)
@@ -123,16 +140,49 @@ class Supplies:
     values: Values
 
     def number(self, path: Path) -> Expr:
-        rule = self.rule(path)
-        assert isinstance(rule, typed.Assign), path
-        return self.values.writer.let("_".join(path), self.here(rule).of(rule.value))
+        return self.decided(path, _zero(path, self.rules), lambda rule, here: here.of(_assigned(rule)))
 
     def size(self, path: Path) -> Expr:
-        rule = self.rule(path)
-        here = self.here(rule)
+        return self.decided(path, index(0), self.sized)
+
+    def decided(self, path: Path, zero: Const, value: Callable[[typed.Rule, Values], Expr]) -> Expr:
+        """What the rule for a field gives; one in a `when` sets a variable."""
+        writer, rule = self.values.writer, _rule_for(path, self.rules)
+        match rule:
+            case None:
+                raise MappingError((unmappable_field(path),))
+            case typed.When():
+                found = writer.var("_".join(path), zero)
+                self.decide(found, path, self.rules, value)
+                return found
+            case _:
+                found = value(rule, self.here(rule))
+                return found if isinstance(found, Const) else writer.let("_".join(path), found)
+
+    def decide(self, found: Local, path: Path, rules: tuple[typed.Rule, ...], value: Callable[[typed.Rule, Values], Expr]) -> None:
+        """Set a variable where the rules set the field; where they do not, they are going to reject the message."""
+        writer, rule = self.values.writer, _rule_for(path, rules)
+        match rule:
+            case None:
+                pass
+            case typed.When(condition, then, otherwise):
+                holds = self.here(rule).of(condition)
+                known = dict(self.source.arrays)
+                with writer.nested() as yes:
+                    self.decide(found, path, then, value)
+                self.source.arrays = dict(known)
+                with writer.nested() as no:
+                    self.decide(found, path, otherwise, value)
+                self.source.arrays = known
+                writer.emit(If(holds, block(yes), block(no)))
+            case _:
+                writer.assign(found, value(rule, self.here(rule)))
+
+    def sized(self, rule: typed.Rule, here: Values) -> Expr:
+        """The count that a rule gives its array or text."""
         match rule:
             case typed.SetLength(_, value):
-                size = here.writer.let("_".join((*path, "length")), here.of(value))
+                size = here.writer.let("length", here.of(value))
                 here.writer.expect(Compare("ge", size, index(0)), "count", here.where, "a length must not be negative", line=here.line)
                 return size
             case typed.Assign(_, typed.Const(str(text))):
@@ -140,25 +190,49 @@ class Supplies:
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
             case _:
-                raise AssertionError(path)
+                raise AssertionError(rule)
 
     def bytes_at(self, path: Path) -> Place | None:
-        match self.rule(path):
-            case typed.Assign(_, typed.Access(origin)) as rule:
+        rule = _rule_for(path, self.rules)
+        match rule:
+            case typed.Assign(_, typed.Access(origin)):
                 address = self.source.address(origin, self.here(rule))
                 return address if isinstance(address, Place) else None
             case _:
                 return None
 
-    def rule(self, path: Path) -> typed.Rule:
-        """The rule that sets a field, or its length."""
-        for rule in self.rules:
-            if isinstance(rule, typed.Assign | typed.SetLength) and wire_key(rule.place) == (path, []):
-                return rule
-        raise MappingError((unmappable_field(path),))
-
     def here(self, rule: typed.Rule) -> Values:
         return replace(self.values, where=Where(_shown(rule))).at_rule(rule.span)
+
+
+def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
+    """The rule that sets a field of the wire, or its length, or a `when` that has it in one of its blocks."""
+    for rule in rules:
+        match rule:
+            case typed.Assign(place) | typed.SetLength(place) if wire_key(place) == (path, []):
+                return rule
+            case typed.When(_, then, otherwise) if _rule_for(path, (*then, *otherwise)) is not None:
+                return rule
+            case _:
+                pass
+    return None
+
+
+def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
+    """A number of the type of a field that rules set."""
+    rule = _rule_for(path, rules)
+    match rule:
+        case typed.Assign(place):
+            return constant(0, scalar_type(place.type))
+        case typed.When(_, then, otherwise):
+            return _zero(path, (*then, *otherwise))
+        case _:
+            raise MappingError((unmappable_field(path),))
+
+
+def _assigned(rule: typed.Rule) -> typed.Expr:
+    assert isinstance(rule, typed.Assign)
+    return rule.value
 
 
 def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Values) -> None:
@@ -179,6 +253,12 @@ def _array_places(node: object) -> list[typed.Place]:
             return _array_places(value)
         case typed.For(_, start, stop, body):
             return _array_places((start, stop, *body))
+        case typed.When(condition, then, otherwise):
+            return _array_places((condition, *then, *otherwise))
+        case typed.IsText(place):
+            return [place]
+        case typed.Choice(cases, otherwise):
+            return _array_places((*cases, otherwise))
         case typed.LenOf(place):
             return [place]
         case typed.Access(place):
@@ -202,7 +282,7 @@ def _indexed(place: typed.Place) -> list[typed.Place]:
 
 def _shown(rule: typed.Rule) -> str:
     """The field that a rule sets, as the path of its errors."""
-    if isinstance(rule, typed.For):
+    if not isinstance(rule, typed.Assign | typed.SetLength):
         return ""
     text = ""
     for step in rule.place.steps:

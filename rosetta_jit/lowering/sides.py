@@ -200,6 +200,10 @@ class WireSide:
             region, at = self.element(key, indices, values, place.span)
             self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
 
+    def is_open(self, place: typed.Place) -> bool:
+        """Whether the walk has left room for the bytes of a field, and not copied them."""
+        return (*wire_key(place)[0], EACH) in self.root.found.regions
+
     def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
         """The walk has asked for it."""
 

@@ -1,12 +1,13 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
+         | When(Expr of bool, Rule*, Rule*) | Reject(text)
 
-Every change of a scalar type is a `Convert`; both operands of a `Binary` have its type. Only an `Assign` of a whole array,
-struct, string or blob (`Access` as the value) may have two types: elements are then widened, text is checked, and a
-length that the target fixes is checked.
+Every change of a scalar type is a `Convert`; both operands of a `Binary` have one type, which is its own unless it compares.
+Only an `Assign` of a whole array, struct, string or blob (`Access` as the value) may have two types: elements are then widened,
+text is checked, and a length that the target fixes is checked.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
-from rosetta_jit.model.types import Int
+from rosetta_jit.model.types import Bool, Int
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Operator, Side
@@ -23,12 +24,13 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 INT64 = Int(64)
+BOOL = Bool()
 
 ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate", "nearest"]
 """``widen`` cannot fail; ``exact``, ``round`` (half to even) and ``truncate`` (toward zero) are a range error where the
 target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
 
-Function = OneOf["radians", "degrees", "sqrt", "floor", "ceil", "abs", "min", "max", "align"]
+Function = OneOf["radians", "degrees", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +99,9 @@ class LenOf:
 
 @dataclass(frozen=True, slots=True)
 class Unary:
-    """``-operand``, of int64 or a float."""
+    """``-operand``, of int64 or a float; ``not operand``, of a bool."""
 
-    operator: OneOf["-"]
+    operator: OneOf["-", "not"]
     operand: Expr
     type: Type
     span: Span | None = field(default=None, compare=False, repr=False)
@@ -107,7 +109,7 @@ class Unary:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """Arithmetic of two int64, or of two floats of one size."""
+    """Arithmetic of two int64, or of two floats of one size; comparisons of two scalars of one type; logic of two bools."""
 
     operator: Operator
     left: Expr
@@ -136,7 +138,31 @@ class Call:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call
+@dataclass(frozen=True, slots=True)
+class IsText:
+    """Whether a string or bytes field holds a text that the mapping writes down."""
+
+    place: Place
+    text: str
+    type: Type = BOOL
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
+
+    All values have ``type``. A choice among texts stands only as the whole value of an `Assign`.
+    """
+
+    cases: tuple[tuple[Expr, Expr], ...]
+    otherwise: Expr | None
+    reason: str
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,4 +194,22 @@ class For:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For
+@dataclass(frozen=True, slots=True)
+class When:
+    """One block or the other."""
+
+    condition: Expr
+    then: tuple[Rule, ...]
+    otherwise: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """The message is refused, with this text."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
@@ -9,6 +10,7 @@ from rosetta_jit.kernel.ir import (
     END,
     Assign,
     Binary,
+    Capacity,
     Compare,
     Const,
     Convert,
@@ -26,7 +28,7 @@ from rosetta_jit.kernel.ir import (
     index,
 )
 from rosetta_jit.lowering.varint import read_varint
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block, Local
@@ -75,16 +77,24 @@ def _refused(writer: Writer, where: Where) -> Block:
     return (Expect(Const("bool", value=False), failure),)
 
 
-def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> None:
-    """Skip the value behind a tag: of a group all its fields, and its end tag.
+def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> Local:
+    """Skip the value behind a tag: of a group all its fields, and its end tag. Where that tag begins is the result.
 
     The numbers of the groups that are open lie in the scratch lane, which is the stack of this loop.
     """
     writer.emit(Reserve(scratch, index(MAX_NESTING)))
-    base = writer.let("base", Used(scratch))
+    arguments = (writer.position, tag, stop, Used(scratch))
+    writer.position, last_tag = writer.call("skip", partial(_skip, scratch=scratch), arguments, where)
+    return last_tag
+
+
+def _skip(writer: Writer, scratch: int) -> Contract:
+    start, tag, stop, base = (writer.parameter(name, "i64") for name in ("start", "first", "stop", "base"))
+    where = MESSAGE
     limit = writer.let("limit", add(Binary("sub", END, BEGIN), 2))
-    at, depth, rounds = writer.var("at", writer.position), writer.var("depth", index(0)), writer.var("rounds", index(0))
+    at, depth, rounds = writer.var("at", start), writer.var("depth", index(0)), writer.var("rounds", index(0))
     current, goes_on = writer.var("tag", tag), writer.var("goes_on", Const("bool", value=True))
+    last_tag = writer.var("last_tag", at)
     with writer.nested() as body:
         writer.position = at
         _expect_tag(writer, current, where)
@@ -96,16 +106,18 @@ def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> 
         writer.expect(within, "nesting", where, f"more than {MAX_NESTING} groups within each other")
         writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
         writer.assign(at, after)
+        _expect_position(writer, at, where)
         with writer.nested() as inner:
+            writer.assign(last_tag, at)
             writer.position = at
             writer.assign(current, Convert("i64", read_varint(writer, where)))
             writer.assign(at, writer.position)
         writer.emit(If(Compare("gt", depth, index(0)), block(inner), (Assign(goes_on.name, Const("bool", value=False)),)))
-        _expect_position(writer, at, where)
         writer.assign(rounds, add(rounds, 1))
     invariant = (
-        Compare("ge", at, BEGIN),
-        Compare("le", at, END),
+        *writer.within(at),
+        Compare("ge", at, start),
+        *writer.within(last_tag),
         Compare("ge", depth, index(0)),
         Compare("le", depth, index(MAX_NESTING)),
         Compare("ge", rounds, index(0)),
@@ -114,6 +126,9 @@ def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> 
     writer.emit(While(Binary("and", goes_on, Compare("lt", rounds, limit)), block(body), invariant, rounds))
     writer.position = at
     writer.expect(Compare("eq", depth, index(0)), "truncated", where, "the group has no end")
+    has_stack = Compare("ge", base, index(0)), Compare("le", base, Binary("sub", Capacity(scratch), index(MAX_NESTING)))
+    ensured = *writer.within(at), Compare("ge", at, start), *writer.within(last_tag)
+    return Contract((start, tag, stop, base), (at, last_tag), (*writer.within(start), *writer.within(stop), *has_stack), ensured)
 
 
 def _group_cases(writer: Writer, scratch: int, base: Local, depth: Local, tag: Local, where: Where) -> tuple[tuple[int, Block], ...]:
@@ -133,4 +148,4 @@ def _group_cases(writer: Writer, scratch: int, base: Local, depth: Local, tag: L
 
 def _expect_position(writer: Writer, at: Local, where: Where) -> None:
     """True anyway; said for the proof, which does not follow the position through branches."""
-    writer.expect(Binary("and", Compare("ge", at, BEGIN), Compare("le", at, END)), "truncated", where, "a field goes beyond its message")
+    writer.expect(Binary("and", *writer.within(at)), "truncated", where, "a field goes beyond its message")

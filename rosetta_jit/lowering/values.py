@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Local, Scalar, Unary, index, type_of
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import align, binary
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
 from rosetta_jit.lowering.fields import scalar_name
-from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
+from rosetta_jit.lowering.texts import is_text
+from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
@@ -31,6 +32,10 @@ class Source(Protocol):
 
     def count(self, place: typed.Place, values: Values) -> Expr:
         """The number of elements at a place, int64."""
+        ...
+
+    def address(self, place: typed.Place, values: Values) -> Address:
+        """Where the bytes of a string or bytes field begin."""
         ...
 
 
@@ -55,16 +60,47 @@ class Values:
                 return self.source.number(place, self)
             case typed.LenOf(place):
                 return self.source.count(place, self)
+            case typed.Unary("not", operand):
+                return Unary("not", self.of(operand))
             case typed.Unary(_, operand):
                 return self.negative(self.of(operand))
+            case typed.Binary(operator, left, right) if operator in COMPARISONS:
+                return Compare(COMPARISONS[operator], self.of(left), self.of(right))
             case typed.Binary(operator, left, right):
                 return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
             case typed.Convert(operand, type_, rule):
                 return self.convert(self.of(operand), scalar_type(type_), rule)
             case typed.Call(function, arguments, _):
                 return self.call(function, [self.of(argument) for argument in arguments])
+            case typed.IsText(place, text):
+                return is_text(self, place, text.encode())
+            case typed.Choice():
+                return self.choice(value)
             case _:
                 assert_never(value)
+
+    def choice(self, choice: typed.Choice) -> Expr:
+        """Only the value that is chosen is computed: another may not have one."""
+        first = self.writer.var("chosen", constant(0, scalar_type(choice.type)))
+        with self.writer.nested() as other:
+            if choice.otherwise is None:
+                self.reject(choice.reason)
+            else:
+                self.writer.assign(first, self.of(choice.otherwise))
+        rest = block(other)
+        for condition, chosen in reversed(choice.cases):
+            with self.writer.nested() as step:
+                holds = self.of(condition)
+                with self.writer.nested() as then:
+                    self.writer.assign(first, self.of(chosen))
+                self.writer.emit(If(holds, block(then), rest))
+            rest = block(step)
+        self.writer.emit(*rest)
+        return first
+
+    def reject(self, reason: str) -> None:
+        """Refuse the message."""
+        self.writer.expect(Const("bool", value=False), "rejected", self.where, reason, line=self.line)
 
     def at_rule(self, span: Span | None) -> Values:
         """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""
@@ -83,6 +119,8 @@ class Values:
             case "radians" | "degrees":
                 factor = math.pi / 180 if function == "radians" else 180 / math.pi
                 return Binary("mul", arguments[0], Const(type_of(arguments[0]), factor))
+            case "round":
+                return Unary("rint", arguments[0])
             case "sqrt" | "floor" | "ceil" | "abs":
                 if function == "abs" and type_of(arguments[0]) == "i64":
                     return Binary("max", arguments[0], self.negative(arguments[0]))
@@ -92,6 +130,8 @@ class Values:
                 for argument in arguments[1:]:
                     result = Binary(function, result, argument)
                 return result
+            case "divide":
+                return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:

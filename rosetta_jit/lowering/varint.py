@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import BEGIN, END, Assign, Binary, Compare, Const, Convert, Expr, If, Local, Select, While, add, index, type_of
-from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.kernel.ir import BEGIN, END, Binary, Compare, Const, Convert, Expr, If, Local, Select, While, add, index, type_of
+from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 
 if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Varint
 
 SEVEN_BITS = Const("u64", 0x7F)
 ONE, ZERO = Const("u64", 1), Const("u64", 0)
+MAX_BYTES = 10
+"""Of a varint."""
 
 
 def read_varint(writer: Writer, where: Where) -> Local:
-    """The next varint as a u64. One byte is the common case; at most ten are read, and bits above the 64th are dropped."""
+    """The next varint as a u64."""
+    value, writer.position = writer.call("read_varint", _read, (writer.position,), where)
+    return value
+
+
+def _read(writer: Writer) -> Contract:
+    """One byte is the common case; at most ten are read, and bits above the 64th are dropped."""
+    at, where = writer.parameter("at", "i64"), MESSAGE
+    writer.position = at
     first = writer.let("byte", writer.load("u8", where))
     value, after = writer.var("varint", Convert("u64", first)), writer.var("next", writer.position)
     with writer.nested() as more:
@@ -38,8 +48,7 @@ def read_varint(writer: Writer, where: Where) -> Local:
         writer.emit(While(Binary("and", unfinished, Compare("lt", shift, index(64))), block(body), invariant, shift))
         writer.expect(Compare("lt", byte, Const("u8", 128)), "varint", where, "an integer of more than ten bytes")
     writer.emit(If(Compare("ge", first, Const("u8", 128)), block(more)))
-    writer.position = after
-    return value
+    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
 def write_varint(writer: Writer, value: Expr, where: Where) -> None:
@@ -47,23 +56,49 @@ def write_varint(writer: Writer, value: Expr, where: Where) -> None:
     if isinstance(value, Const):
         for byte in varint_bytes(int(value.value)):
             writer.store(Const("u8", byte), where)
-        return
-    rest, after = writer.var("rest", value), writer.cursor()
-    written = writer.var("written", index(0))
+    elif writer.direction == "size":
+        (size,) = writer.call("varint_size", _size, (value,), where)
+        writer.advance(size)
+    else:
+        (writer.position,) = writer.call("write_varint", _write, (writer.position, value), where)
+
+
+def _write(writer: Writer) -> Contract:
+    at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
+    after, rest, count = writer.var("next", at), writer.var("rest", value), writer.var("count", index(0))
     with writer.nested() as body:
         writer.position = after
-        writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), where)
-        writer.settle()
-        writer.emit(
-            Assign(after.name, writer.position),
-            Assign(rest.name, Binary("shr", rest, Const("u64", 7))),
-            Assign(written.name, add(written, 1)),
-        )
-    again = Binary("and", Compare("ge", rest, Const("u64", 128)), Compare("lt", written, index(9)))
-    invariant = (*writer.position_invariant(after), Compare("ge", written, index(0)), Compare("le", written, index(9)))
-    writer.emit(While(again, block(body), invariant, written))
+        writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), MESSAGE)
+        writer.assign(after, writer.position)
+        writer.assign(rest, Binary("shr", rest, Const("u64", 7)))
+        writer.assign(count, add(count, 1))
+    invariant = (
+        *writer.within(after),
+        Compare("ge", after, at),
+        Compare("ge", count, index(0)),
+        Compare("le", count, index(MAX_BYTES - 1)),
+    )
+    writer.emit(While(_more(rest, count), block(body), invariant, count))
     writer.position = after
-    writer.store(Convert("u8", rest), where)
+    writer.store(Convert("u8", rest), MESSAGE)
+    end = writer.let("end_of_varint", writer.position)
+    return Contract((at, value), (end,), writer.within(at), writer.behind(at, end))
+
+
+def _size(writer: Writer) -> Contract:
+    value = writer.parameter("value", "u64")
+    rest, size = writer.var("rest", value), writer.var("size", index(1))
+    with writer.nested() as body:
+        writer.assign(rest, Binary("shr", rest, Const("u64", 7)))
+        writer.assign(size, add(size, 1))
+    bounds = Compare("ge", size, index(1)), Compare("le", size, index(MAX_BYTES))
+    writer.emit(While(_more(rest, add(size, -1)), block(body), bounds, size))
+    return Contract((value,), (size,), (), bounds)
+
+
+def _more(rest: Expr, written: Expr) -> Expr:
+    """Whether another byte follows the one at hand."""
+    return Binary("and", Compare("ge", rest, Const("u64", 128)), Compare("lt", written, index(MAX_BYTES - 1)))
 
 
 def varint_bytes(value: int) -> bytes:

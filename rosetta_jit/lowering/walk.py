@@ -189,6 +189,9 @@ def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
 
 def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
     where = fields.where.members(choice.path)
+    if choice.labels:
+        _write_labelled(writer, fields, choice, where)
+        return
     if not choice.when_empty:
         _written_alternative(writer, fields, choice, 0, where)
         return
@@ -202,6 +205,21 @@ def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
             writer.emit(Assign(at.name, writer.position))
         branches.append(block(body))
     writer.emit(If(empty, *branches))
+    writer.position = at
+
+
+def _write_labelled(writer: Writer, fields: Fields, choice: Choice, where: Where) -> None:
+    label = integer(_required(fields.get(choice.path)))
+    fields.branch(choice)
+    at = writer.var("next", writer.position)
+    blocks: list[Block] = []
+    for number in range(len(choice.alternatives)):
+        with writer.nested() as body:
+            _written_alternative(writer, fields, choice, number, where)
+            writer.emit(Assign(at.name, writer.position))
+        blocks.append(block(body))
+    *known, other = blocks
+    writer.emit(Switch(writer.let("label", label), tuple(zip(choice.labels, known, strict=True)), other))
     writer.position = at
 
 
@@ -259,7 +277,7 @@ def _first_label(writer: Writer, cases: Cases, value: Expr) -> Expr:
 def discriminator_path(codec: Codec) -> tuple[str, ...]:
     """The field that a discriminator carries."""
     match codec:
-        case Number(path) | Table(path):
+        case Number(path) | Table(path) | Choice(path):
             return path
         case Seq(items):
             return discriminator_path(items[-1])

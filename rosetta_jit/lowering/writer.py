@@ -14,6 +14,7 @@ from rosetta_jit.kernel.ir import (
     Assign,
     Binary,
     Block,
+    Call,
     Compare,
     Const,
     Convert,
@@ -26,6 +27,7 @@ from rosetta_jit.kernel.ir import (
     Load,
     Local,
     Require,
+    Routine,
     Scalar,
     Site,
     Stmt,
@@ -72,6 +74,16 @@ MESSAGE = Where()
 """The message as a whole."""
 
 
+@dataclass(frozen=True, slots=True)
+class Contract:
+    """What a routine is given and gives, and what holds of it: see `kernel.ir.Routine`."""
+
+    parameters: tuple[Local, ...]
+    results: tuple[Local, ...]
+    requires: tuple[Expr, ...]
+    ensures: tuple[Expr, ...]
+
+
 @dataclass(slots=True)
 class Writer:
     """Collects statements. ``position`` is always a local plus a constant; alignment counts from ``origin``."""
@@ -80,9 +92,11 @@ class Writer:
     block: list[Stmt] = field(default_factory=list[Stmt])
     position: Expr = BEGIN
     origin: Expr = BEGIN
-    sites: list[Site] = field(default_factory=lambda: [Site("grow", "", "a lane is too small")])
+    sites: dict[Site, int] = field(default_factory=lambda: {Site("grow", "", "a lane is too small"): 0})
     names: set[str] = field(default_factory=set[str])
+    stems: dict[str, int] = field(default_factory=dict[str, int])
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
+    routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
 
     @contextmanager
     def whole(self) -> Generator[None]:
@@ -105,10 +119,10 @@ class Writer:
 
     def fresh(self, stem: str) -> str:
         """A name not used before in this kernel."""
-        name, number = stem, 1
+        name = stem
         while name in self.names:
-            number += 1
-            name = f"{stem}_{number}"
+            self.stems[stem] = self.stems.get(stem, 1) + 1
+            name = f"{stem}_{self.stems[stem]}"
         self.names.add(name)
         return name
 
@@ -139,9 +153,7 @@ class Writer:
 
     def failure(self, kind: str, where: Where, detail: str, *, at: Expr | None = None, line: str = "") -> Failure:
         site = Site(kind, where.path, detail, line)
-        if site not in self.sites:
-            self.sites.append(site)
-        return Failure(self.sites.index(site), self.position if at is None else at, where.indices)
+        return Failure(self.sites.setdefault(site, len(self.sites)), self.position if at is None else at, where.indices)
 
     def expect(self, condition: Expr, kind: str, where: Where, detail: str, *, at: Expr | None = None, line: str = "") -> None:
         self.emit(Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
@@ -153,6 +165,34 @@ class Writer:
         kind = "truncated" if self.direction == "decode" else "length"
         if self.direction != "size":
             self.emit(Require(place, size, self.failure(kind, where, detail, at=place)))
+
+    # --- routines ----------------------------------------------------------------------------------------------------
+
+    def parameter(self, name: str, type_: Scalar) -> Local:
+        """A parameter of the routine that is being written."""
+        return Local(type_, self.fresh(name))
+
+    def within(self, at: Expr) -> tuple[Expr, Expr]:
+        """That a place is one of the message."""
+        return Compare("ge", at, BEGIN), Compare("le", at, END)
+
+    def behind(self, at: Expr, after: Expr) -> tuple[Expr, ...]:
+        """That one place of the message lies behind another."""
+        return *self.within(after), Compare("gt", after, at)
+
+    def call(self, name: str, make: Callable[[Writer], Contract], arguments: tuple[Expr, ...], where: Where) -> tuple[Local, ...]:
+        """The results of a routine, which is made, with a writer of its own, where it is first called."""
+        if name not in self.routines:
+            inner = Writer(self.direction, routines=self.routines, names={BEGIN.name, END.name})
+            made = make(inner)
+            self.routines[name] = Routine(
+                name, made.parameters, made.results, block(inner.block), made.requires, made.ensures, tuple(inner.sites)
+            )
+        routine = self.routines[name]
+        sites = tuple(self.failure(site.kind, where, site.detail).site for site in routine.sites[1:])
+        results = tuple(Local(each.type, self.fresh(each.name)) for each in routine.results)
+        self.emit(Call(name, arguments, results, sites, where.indices))
+        return results
 
     # --- moving on ---------------------------------------------------------------------------------------------------
 

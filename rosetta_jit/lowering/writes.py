@@ -20,7 +20,7 @@ from rosetta_jit.lowering.polynomial import (
 )
 from rosetta_jit.lowering.resolve import field_names, places_in
 from rosetta_jit.lowering.tiling import Run
-from rosetta_jit.lowering.typed import Assign, FieldStep, For, SetLength
+from rosetta_jit.lowering.typed import Assign, FieldStep, For, Reject, SetLength, When
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -60,7 +60,7 @@ class Write:
 def writes_of(
     rules: tuple[Rule, ...], problems: list[Diagnostic], broken: set[tuple[str, ...]], loops: tuple[Loop, ...] = ()
 ) -> list[Write]:
-    """All writes of a block, in order; a rule that is too complex is reported, and what it sets is ``broken``."""
+    """All writes of a block without `when`s, in order; a rule that is too complex is reported, and what it sets is ``broken``."""
     found: list[Write] = []
     for rule in rules:
         try:
@@ -73,6 +73,8 @@ def writes_of(
                     first = polynomial_of(start)
                     loop = Loop(variable.name, first, subtract(polynomial_of(stop), first))
                     found += writes_of(body, problems, broken, (*loops, loop))
+                case When() | Reject():
+                    raise AssertionError(rule)
                 case _:
                     assert_never(rule)
         except TooComplexError:

@@ -1,6 +1,6 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
-    Expr = Literal | Name | Path | Len | Unary | Binary | Call
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice
     Path = Root, Step*         Step = Member(name) | Index(Expr)
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
@@ -17,8 +17,12 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 Side = OneOf["holder", "wire"]
-Operator = OneOf["+", "-", "*", "/", "%"]
+Operator = OneOf["+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "==", "!=", "<", "<=", ">", ">=", "and", "or"]
 """`/` and `%` of two integers truncate toward zero, as in C; of anything else they are floating."""
+
+COMPARISONS: frozenset[str] = frozenset(("==", "!=", "<", "<=", ">", ">="))
+LOGIC: frozenset[str] = frozenset(("and", "or"))
+BITWISE: frozenset[str] = frozenset(("&", "|", "^", "<<", ">>"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +79,9 @@ class Len:
 
 @dataclass(frozen=True, slots=True)
 class Unary:
-    """``-operand``"""
+    """``-operand``, ``not operand``"""
 
-    operator: OneOf["-"]
+    operator: OneOf["-", "not"]
     operand: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
 
@@ -101,4 +105,17 @@ class Call:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Literal | Name | Path | Len | Unary | Binary | Call
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The value of the first case whose condition holds, else ``otherwise``; None rejects the message, with ``reason``.
+
+    ``a if condition else b`` is one; so is ``table(subject) { key = value, … }``, whose conditions compare the subject with the keys.
+    """
+
+    cases: tuple[tuple[Expr, Expr], ...]
+    otherwise: Expr | None
+    reason: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice

@@ -1,9 +1,11 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
-    Mapping = Import*, holder type, wire type, Rule* to unpack, Rule* to pack
+    Mapping = Import*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
+            | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
 
-In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's.
+In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's. Relations and loops of them stand in the rules for
+both directions alone, with the place on the holder's side.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Expr, Path
+    from rosetta_jit.model.expr import Expr, Len, Path
     from rosetta_jit.source import Source, Span
 
 
@@ -26,11 +28,12 @@ class Import:
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """``.place = value``"""
+    """``.place = value``; where it ``fits``, a value that the place cannot hold is an error when it comes, and needs no word before."""
 
     place: Path
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
+    fits: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +56,34 @@ class For:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For
+@dataclass(frozen=True, slots=True)
+class When:
+    """``when condition ... else ... end``"""
+
+    condition: Expr
+    then: tuple[Rule, ...]
+    otherwise: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """``reject "text"``: the message is refused, whatever else it holds."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """``.place <-> value``, ``len(.place) <-> value``: what `lowering.derive` makes rules for both directions of."""
+
+    place: Path | Len
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject | Relation
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +94,7 @@ class Mapping:
     imports: tuple[Import, ...]
     holder_type: str
     wire_type: str
+    rules: tuple[Rule, ...] | None
     unpack_rules: tuple[Rule, ...] | None
     pack_rules: tuple[Rule, ...] | None
     holder_span: Span | None = field(default=None, compare=False, repr=False)

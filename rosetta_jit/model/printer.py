@@ -66,6 +66,9 @@ def show_expr(value: expr.Expr) -> str:
             return f"({show_expr(left)} {operator} {show_expr(right)})"
         case expr.Call(function, arguments):
             return f"{function}({', '.join(map(show_expr, arguments))})"
+        case expr.Choice(cases, otherwise, reason):
+            last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
+            return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
         case _:
             assert_never(value)
 

@@ -140,6 +140,8 @@ def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
             return ["binary", operator, _plain_expr(left), _plain_expr(right)]
         case expr.Call(function, arguments):
             return ["call", function, [_plain_expr(each) for each in arguments]]
+        case expr.Choice(cases, otherwise, reason):
+            return ["choice", [[_plain_expr(part) for part in case] for case in cases], _plain_expr(otherwise), reason]
         case _:
             assert_never(value)
 
@@ -165,6 +167,9 @@ def _expr(plain: Any, depth: int) -> Any:
             return expr.Binary(operator, _expr(left, depth + 1), _expr(right, depth + 1))
         case ["call", function, arguments]:
             return expr.Call(function, tuple(_expr(each, depth + 1) for each in arguments))
+        case ["choice", cases, otherwise, reason]:
+            pairs = tuple((_expr(condition, depth + 1), _expr(value, depth + 1)) for condition, value in cases)
+            return expr.Choice(pairs, None if otherwise is None else _expr(otherwise, depth + 1), reason)
         case _:
             raise ValueError(f"not an expression: {plain!r:.80}")
 

@@ -33,10 +33,13 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A fixed-width number on the wire that stands for a value of the field: pairs of wire number and value. Others are refused."""
+    """A fixed-width number on the wire that stands for a value of the field: pairs of wire number and value. Others are refused.
+
+    Without a ``scalar`` nothing is on the wire, and the field has the value of the one pair.
+    """
 
     path: Path
-    scalar: str
+    scalar: str | None
     pairs: tuple[tuple[int, int], ...]
     order: Order = "<"
 
@@ -84,7 +87,7 @@ class Count:
     """A number of elements or bytes before them: of a scalar type or a varint. ``value`` fixes or computes it.
 
     Without a ``scalar`` nothing is on the wire, and ``value`` tells it: an expression reads fields of the struct around the array that
-    have come before. ``maximum`` bounds it. Each element counts as ``unit``.
+    have come before. ``maximum`` bounds it. Each element counts as ``unit``, and what is counted with the elements as one.
     """
 
     scalar: str | Literal["varint"] | None
@@ -135,7 +138,8 @@ class Repeat:
 class Choice:
     """A number that says which of several codecs of the same fields follows. Any is read.
 
-    The first is written, or the one numbered ``when_empty`` where the array at ``path`` has no elements.
+    The first is written, or the one numbered ``when_empty`` where the array at ``path`` has no elements. Where there are ``labels``, the
+    discriminator at ``path`` tells: each alternative but the last is written for its label, the last for any other.
     """
 
     path: Path
@@ -143,6 +147,7 @@ class Choice:
     alternatives: tuple[tuple[int, Codec], ...]
     when_empty: int = 0
     order: Order = "<"
+    labels: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

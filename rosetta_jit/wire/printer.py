@@ -63,10 +63,10 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield f"{indent}{_path(path)}: {_count(count)} elements{aligned}" + (f", {extra} fields among them:" if extra else ", each:")
             for each in (*head, item):
                 yield from _lines(each, depth + 1)
-        case Choice(path, scalar, alternatives, _, order):
+        case Choice(path, scalar, alternatives, _, order, labels):
             yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
-            for value, each in alternatives:
-                yield f"{indent}{value}:"
+            for number, (value, each) in enumerate(alternatives):
+                yield f"{indent}{value}{f', written for {labels[number]}' if number < len(labels) else ''}:"
                 yield from _lines(each, depth + 1)
         case Cases(path, discriminator, cases, default):
             yield from _lines(discriminator, depth)
@@ -108,6 +108,8 @@ def _leaf(codec: Number | Table | Varint | Constant | Computed | Padding | Align
         case Number(path, scalar, order):
             return f"{_path(path)}: {_scalar(scalar, order)}"
         case Table(path, scalar, pairs, order):
+            if scalar is None:
+                return f"{_path(path)}: {pairs[0][1]}, without a byte"
             return f"{_path(path)}: {_scalar(scalar, order)}, {', '.join(f'{wire} for {value}' for wire, value in pairs)}"
         case Varint(path, zigzag):
             return f"{_path(path)}: {'zigzag ' if zigzag else ''}varint"
@@ -146,6 +148,7 @@ def _scalar(scalar: str, order: Order) -> str:
 
 def _count(count: Count) -> str:
     bound = "" if count.maximum is None else f" at most {count.maximum}"
+    bound += "" if count.unit == 1 else f" {count.unit} each"
     if count.scalar is None:
         return f"{count.value if isinstance(count.value, int) else show_expr(count.value) if count.value else ''}{bound}"
     match count.value:

@@ -41,7 +41,9 @@ def count_width(count: Count) -> int:
 def fixed_size(codec: Codec) -> int | None:
     """The size in bytes where it does not depend on values, else None."""
     match codec:
-        case Number(_, scalar, _) | Table(_, scalar, _, _) | Computed(_, scalar, _, _) | Padding(scalar, _, _):
+        case Table(_, scalar):
+            return 0 if scalar is None else WIDTH[scalar]
+        case Number(_, scalar) | Computed(_, scalar) | Padding(scalar):
             return WIDTH[scalar]
         case Constant(_, value, scalar, _, _):
             return len(value) if isinstance(value, bytes) else WIDTH[scalar]
@@ -82,7 +84,7 @@ def minimum_size(codec: Codec) -> int:
         case Repeat(_, count, item, head, extra):
             elements = count.value - extra if isinstance(count.value, int) else 0
             return count_width(count) + minimum_size(Seq(head)) + elements * minimum_size(item)
-        case Choice(_, scalar, alternatives, _, _):
+        case Choice(_, scalar, alternatives):
             return WIDTH[scalar] + min(minimum_size(each) for _, each in alternatives)
         case Blob(_, count, _, terminated):
             return count_width(count) + (count.value if isinstance(count.value, int) else terminated)

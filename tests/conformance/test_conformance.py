@@ -34,10 +34,11 @@ def vectors():
 
 
 @pytest.mark.campaign
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
 @pytest.mark.parametrize("version", [2, 3])
-def test_all_that_the_runner_asked(version):
+def test_all_that_the_runner_asked(version, backend):
     cases = [case for case in vectors()["cases"] if case[0] == version]
-    options = {"schema": bytes.fromhex(vectors()["descriptors"][str(version)]), "backend": "interpreter"}
+    options = {"schema": bytes.fromhex(vectors()["descriptors"][str(version)]), "backend": backend}
     name = f"protobuf_test_messages.proto{version}.TestAllTypesProto{version}"
     decode, encode = rj.Decoder.of(name, **options), rj.Encoder.of(name, **options)
     for _, request, accepted in cases:
@@ -53,14 +54,15 @@ def test_no_case_is_missing():
 
 
 @pytest.mark.campaign
-def test_the_runner_itself(tmp_path):
+@pytest.mark.parametrize("backend", ["numba", "interpreter"])
+def test_the_runner_itself(tmp_path, backend):
     if RUNNER is None:
         pytest.skip("conformance_test_runner is not installed")
     program = tmp_path / "testee"
     testee = Path(__file__).resolve().parent / "testee.py"
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{testee}"\n')
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
-    environment = {"CONFORMANCE_BACKEND": "interpreter", **os.environ}
+    environment = {**os.environ, "CONFORMANCE_BACKEND": backend}
     done = subprocess.run([RUNNER, program], env=environment, capture_output=True, text=True, check=False)
     summaries = re.findall(r"CONFORMANCE SUITE \w+: (\d+) successes, \d+ skipped, \d+ expected failures, (\d+) unexpected", done.stderr)
     assert summaries[0] == (str(CASES), "0")

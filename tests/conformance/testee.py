@@ -16,7 +16,7 @@ from pathlib import Path
 
 import rosetta_jit as rj
 
-BACKEND = os.environ.get("CONFORMANCE_BACKEND", "llvm")
+BACKEND = os.environ.get("CONFORMANCE_BACKEND", "numba")
 FILES = {
     "protobuf_test_messages.proto2.TestAllTypesProto2": "google/protobuf/test_messages_proto2.proto",
     "protobuf_test_messages.proto3.TestAllTypesProto3": "google/protobuf/test_messages_proto3.proto",

@@ -52,7 +52,7 @@ def from_message_class(cls: type[Message]) -> Schema:
     Raises
     ------
     SchemaError
-        Where the file is of an edition.
+        Where the file is of an edition that is not known.
     """
     from google.protobuf.descriptor_pb2 import FileDescriptorProto
 

@@ -1,4 +1,4 @@
-"""What `.proto` files can say."""
+"""What `.proto` files can say; the features of editions say the same as older versions in other words."""
 
 from __future__ import annotations
 

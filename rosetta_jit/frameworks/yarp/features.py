@@ -26,7 +26,7 @@ def young(text: str) -> Probe:
 
 
 WORDS = {"int32": ":int", "float64": ":double"}
-YOUNG = {"int8": ":int8", "int16": ":int16", "int64": ":int64", "float32": ":float32"}
+YOUNG = {"int8": ":int8", "uint8": ":uint8", "int16": ":int16", "int64": ":int64", "float32": ":float32"}
 THRIFT_WORDS = {"boolean": "bool", "int32": "i32", "float64": "double"}
 YOUNG_THRIFT = {"int8": "byte", "int16": "i16", "int64": "i64"}
 UNSIGNED = {8: "byte", 16: "i16", 64: "i64"}
@@ -48,6 +48,7 @@ PROBES: dict[str, dict[str, str | Probe]] = {
         "array of arrays": schema('("x" (:list (:list :double)))'),
         "struct": schema('("p" (:bottle ("x" :double) ("y" :int)))'),
         "default": schema('("x" :int (:default 5))'),
+        "union with a discriminator": schema('("x" (:union ("i" :int) ("d" :double)))'),
         "map": schema('("x" (:dict :double))'),
         "constant": schema('("x" :int 5)', '("y" :int)'),
         "recursion": schema('("x" (:list "probe.Probe"))'),

@@ -163,6 +163,8 @@ class BottleMessage(Holder):
         ------
         EncodeError
             If the message cannot be written.
+        DecodeError
+            If what YARP writes for it is no bottle (a point cloud).
         """
         return Bottle(read(encoded(self), YARP4))
 

@@ -1,23 +1,34 @@
 """The front end of bottle schemas: `.bottle-schema` files into the meta-model.
 
-    File     = { Import | "type.name" ( [(:documentation "...")] Field* ) }        Import = (:import "path")
+    File     = { Import | "type.name" ( Body ) }        Import = (:import "path")
+    Body     = [:packed | :bare] [(:documentation "...")] Field*
     Field    = ("name" Type [Constant] Option*)
-    Type     = :int8 :int16 :int32 (:int) :int64 :float32 :float64 (:double) :vocab32 (:vocab) :vocab64 :string :blob :bool
+    Type     = :int8 :uint8 :int16 :int32 (:int) :int64 :float32 :float64 (:double) :vocab32 (:vocab) :vocab64 :string :blob :bool
              | :quantum                       the quantum word of an image, whose bytes differ by dialect
+             | :blob-size                     the length of a blob whose bytes are elsewhere
              | (:vocab :|set|)                a vocab32 that is always this one
              | (:list Type [(:length 16)])    elements of one type
-             | (:bottle Field*)               a nested list with a place for each field
+             | (:bottle Body)                 a nested list with a place for each field
+             | (:blob (:bottle Body))         a blob whose bytes are that, or a declared type: (:blob "type.name")
              | (:dict Type) | (:dict Field*)  a dict element: any keys with values of one type, or these keys
+             | (:union Field*)                the last element of a bottle, whose code says which of these it is
              | "type.name"                    a nested list of a declared type
     Constant = number | "text" | :|set| | true | false | Expr
-    Expr     = integer | field.field | (+ Expr Expr) and - * / | (align Expr Expr)
-    Option   = (:unit :degree) | (:documentation "...") | (:default 0) | (:length Expr) | :rest | :vector | (:key "...")
+    Expr     = integer | field.field | (+ Expr Expr) and - * / | (align Expr Expr) | (length field.field)
+    Option   = (:unit :degree) | (:documentation "...") | (:default 0) | (:length Expr) | :rest | :spread | :vector | (:key "...")
+             | (:code :double) | (:padding 4) | (:since :yarp4)
+
+YARP writes some types by hand, and not as bottles. The fields of a `:packed` struct are values without codes, one behind the other, and
+nothing says how many; a `:bare` one has the code and the count of a list before such values. A list in one is complete, with its code: that
+of its elements, or what `(:code :double)` says. `(:padding 4)` are bytes behind a value that mean nothing. A field that is there
+`(:since :yarp4)` is an empty list for older dialects.
 
 How it becomes the model: scalars carry their spelling as in `tags`; a string is `String("octets", "string")`. A field marked
-`:rest` has the option ``rest``: the elements of its list lie in the enclosing bottle itself, after the fields before it. One
-marked `:vector` keeps the type of its elements when it has none, as sig::Vector writes it and a Bottle does not. A
-`(:dict Type)` is a `Map`; a `(:dict Field*)` is a `Struct` all of whose fields have the option ``key``, the key on the wire.
-An anonymous struct is named ``type.field``. Paths of computed constants start at the declaration that they stand in.
+`:rest` has the option ``rest``: the elements of its list lie in the enclosing bottle itself, after the fields before it; with
+`:spread`, so do the fields of each element. One marked `:vector` keeps the type of its elements when it has none, as sig::Vector writes it
+and a Bottle does not. A `(:dict Type)` is a `Map`; a `(:dict Field*)` is a `Struct` all of whose fields have the option ``key``, the key on
+the wire. A `(:union Field*)` is a struct of its own (`forms`). An anonymous struct is named ``type.field``. Paths of computed constants
+start at the declaration that they stand in.
 """
 
 from __future__ import annotations

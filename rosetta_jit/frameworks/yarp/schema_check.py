@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
-from rosetta_jit.model.expr import Binary, Call, Len, Literal, Member, Name, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Member, Name, Path, Unary
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -17,9 +17,16 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.source import Span
 
 MAX_FIELDS = 1 << 16
 """Fields of a type with all that it contains; kernels grow with it, and declarations can double it line by line."""
+
+MAX_TERMS = 256
+"""Terms of a computed value with all that it is computed from; fields can double them line by line."""
+
+Place = tuple[str, str]
+"""A field: the declaration that it stands in, and its path from there."""
 
 Members = dict[int, dict[str, "Type"]]
 """The fields of each struct by name, so that many paths into a large one are found in linear time; keys are identities."""
@@ -32,7 +39,7 @@ def check(structs: Mapping[str, Struct], limit: int) -> list[Diagnostic]:
         return problems
     members = {id(struct): {field.name: field.type for field in struct.fields} for struct in _structs(structs)}
     found = (problem for struct in structs.values() for problem in _check_computed(struct, structs, members))
-    return list(islice(found, limit))
+    return list(islice(found, limit)) or list(islice(_check_terms(structs, members), limit))
 
 
 def _check_names(structs: Mapping[str, Struct]) -> Iterator[Diagnostic]:
@@ -54,6 +61,8 @@ def _structs(structs: Mapping[str, Struct]) -> Iterator[Struct]:
             case Struct(_, fields) as struct:
                 yield struct
                 pending += [field.type for field in fields]
+            case Union(_, cases):
+                pending += [case.type for case in cases]
             case Array(inner) | Map(_, inner):
                 pending.append(inner)
             case _:
@@ -118,11 +127,12 @@ def _check_computed(root: Struct, structs: Mapping[str, Struct], members: Member
     needs: dict[str, set[str]] = {}
     places: dict[str, Field] = {}
     for name, field, in_list in _fields(root, "", in_list=False):
-        paths = [*_paths(field.constant), *_paths(field.length)]
-        if paths and in_list:
+        paths, lists = [*_paths(field.constant), *_paths(field.length)], [*_lengths(field.constant), *_lengths(field.length)]
+        if (paths or lists) and in_list:
             yield catalogue.computed_in_list(field.span)
-        elif paths:
+        elif paths or lists:
             yield from (found for path in paths if (found := _check_path(path, root, structs, members)) is not None)
+            yield from (found for path in lists if (found := _check_path(path, root, structs, members, counted=True)) is not None)
             needs[name] = {_dotted(path) for path in _paths(field.constant)}
             places[name] = field
     try:
@@ -130,6 +140,36 @@ def _check_computed(root: Struct, structs: Mapping[str, Struct], members: Member
     except CycleError as error:
         names: list[str] = error.args[1]
         yield catalogue.computed_cycle(places[names[0]].span, names)
+
+
+def _check_terms(structs: Mapping[str, Struct], members: Members) -> Iterator[Diagnostic]:
+    """What is computed from computed values is bounded: an encoding puts them in."""
+    own: dict[Place, int] = {}
+    needs: dict[Place, list[Place]] = {}
+    spans: dict[Place, Span | None] = {}
+    for root in structs.values():
+        for name, field, _ in _fields(root, "", in_list=False):
+            for place, value in (((root.name, name), field.constant), ((root.name, f"{name}:length"), field.length)):
+                own[place], spans[place] = len([*_parts(value)]), field.span
+                needs[place] = [_home(path, root, structs, members) for path in _paths(value)]
+    for place in TopologicalSorter(needs).static_order():
+        own[place] = own.get(place, 1) + sum(own[each] for each in needs.get(place, ()))
+        if own[place] > MAX_TERMS:
+            yield catalogue.too_many_terms(spans.get(place), MAX_TERMS)
+            return
+
+
+def _home(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members) -> Place:
+    """The field that a path leads to, seen from the last declaration on its way."""
+    owner, names = root, list[str]()
+    for step in path.steps:
+        assert isinstance(step, Member)
+        type_ = members[id(owner)][step.name]
+        names.append(step.name)
+        if isinstance(type_, Ref) and step is not path.steps[-1]:
+            root, names = structs[type_.name], []
+        owner = structs[type_.name] if isinstance(type_, Ref) else type_ if isinstance(type_, Struct) else owner
+    return root.name, ".".join(names)
 
 
 def _fields(type_: Type, prefix: str, *, in_list: bool) -> Iterator[tuple[str, Field, bool]]:
@@ -141,32 +181,52 @@ def _fields(type_: Type, prefix: str, *, in_list: bool) -> Iterator[tuple[str, F
                 yield from _fields(field.type, f"{prefix}{field.name}.", in_list=in_list)
         case Array(inner) | Map(_, inner):
             yield from _fields(inner, prefix, in_list=True)
+        case Union(_, cases):
+            for case in cases:
+                yield prefix + case.name, case, True
+                yield from _fields(case.type, f"{prefix}{case.name}.", in_list=True)
         case _:
             return
 
 
 def _paths(expr: Expr | None) -> Iterator[Path]:
+    """The fields whose values an expression uses."""
+    return (part for part in _parts(expr) if isinstance(part, Path))
+
+
+def _lengths(expr: Expr | None) -> Iterator[Path]:
+    """The fields whose lengths an expression uses."""
+    return (part.path for part in _parts(expr) if isinstance(part, Len))
+
+
+def _parts(expr: Expr | None) -> Iterator[Expr]:
+    """An expression and what it is made of, without the paths of lengths."""
     match expr:
-        case None | Literal() | Name():
+        case None:
             return
-        case Path():
+        case Literal() | Name() | Path() | Len():
             yield expr
-        case Len(path):
-            yield path
         case Unary(_, operand):
-            yield from _paths(operand)
+            yield expr
+            yield from _parts(operand)
         case Binary(_, left, right):
-            yield from _paths(left)
-            yield from _paths(right)
+            yield expr
+            yield from _parts(left)
+            yield from _parts(right)
         case Call(_, arguments):
+            yield expr
             for argument in arguments:
-                yield from _paths(argument)
+                yield from _parts(argument)
+        case Choice(cases, otherwise):
+            yield expr
+            for part in (*(part for case in cases for part in case), otherwise):
+                yield from _parts(part)
         case _:
             assert_never(expr)
 
 
-def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members) -> Diagnostic | None:
-    """The path must lead, through structs alone, to an integer."""
+def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members: Members, *, counted: bool = False) -> Diagnostic | None:
+    """The path must lead, through structs alone, to an integer, or to what is ``counted``."""
     type_: Type = root
     for step in path.steps:
         type_ = structs[type_.name] if isinstance(type_, Ref) else type_
@@ -180,6 +240,8 @@ def _check_path(path: Path, root: Struct, structs: Mapping[str, Struct], members
                 return catalogue.path_through_list(path.span, _dotted(path))
             case _:
                 return catalogue.unknown_path(path.span, _dotted(path), ())
+    if counted:
+        return None if isinstance(type_, Array | String | Bytes) else catalogue.path_not_counted(path.span, _dotted(path))
     return None if isinstance(type_, Int) else catalogue.path_not_integer(path.span, _dotted(path))
 
 

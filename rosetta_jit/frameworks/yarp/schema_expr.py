@@ -9,7 +9,7 @@ from typing import Literal as OneOf
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word
 from rosetta_jit.frameworks.yarp.tags import vocab
-from rosetta_jit.model.expr import Binary, Call, Literal, Member, Path
+from rosetta_jit.model.expr import Binary, Call, Len, Literal, Member, Path
 from rosetta_jit.model.types import Bool, Float, Int, String
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 OPERATORS = ("+", "-", "*", "/", "align")
+"""What two operands can have between them; `length` has one, a list, string or blob."""
 
 MAX_FLOAT32 = (2 - 2**-23) * 2.0**127
 MAX_FLOAT64 = float_info.max
@@ -52,6 +53,8 @@ def read_expr(node: Node, problems: list[Diagnostic]) -> Expr | None:
             return Literal(value, span)
         case Word(path, span) if all(name.isidentifier() for name in path.split(".")):
             return Path("wire", tuple(Member(name) for name in path.split(".")), span)
+        case Form((Word("length"), Word(path, span))) if all(name.isidentifier() for name in path.split(".")):
+            return Len(Path("wire", tuple(Member(name) for name in path.split(".")), span), span)
         case Form((Word(operator), left, right), span) if operator in OPERATORS:
             operands = read_expr(left, problems), read_expr(right, problems)
             return _combine(operator, operands, span)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Source
 
 MAX_FILES = 200
+MAX_ANCESTORS, MAX_FUNCTIONS = 32, 1 << 14
 VOCAB_LETTERS = 4
 """Words of a function's name that are longer are texts."""
 
@@ -81,9 +82,11 @@ class _Reading:
     names: dict[str, tuple[tree.File, tree.Struct | tree.Enum]] = field(
         default_factory=dict[str, "tuple[tree.File, tree.Struct | tree.Enum]"]
     )
+    services: dict[str, tuple[tree.File, tree.Service]] = field(default_factory=dict[str, "tuple[tree.File, tree.Service]"])
     types: dict[str, Declaration] = field(default_factory=dict[str, "Declaration"])
     constants: dict[str, NamedConstant] = field(default_factory=dict[str, "NamedConstant"])
     making: set[str] = field(default_factory=set[str])
+    functions: int = 0
 
     def read(self, source: Source) -> None:
         """A file, after those that it includes."""
@@ -104,6 +107,7 @@ class _Reading:
         for _, file in reversed(self.files):
             for each in file.declared:
                 if isinstance(each, tree.Service):
+                    self.services[each.name] = file, each
                     continue
                 if each.name in self.names:
                     self.problems.append(say.repeated(each.span, each.name))
@@ -118,8 +122,7 @@ class _Reading:
                     case tree.Struct() | tree.Enum():
                         self.named(each.name)
                     case tree.Service():
-                        for function in each.functions:
-                            self.function(file, each, function)
+                        self.service(file, each)
                     case _:
                         assert_never(each)
 
@@ -195,8 +198,34 @@ class _Reading:
             return None
         return Ref(self.named(short), type_.span)
 
-    def function(self, file: tree.File, service: tree.Service, function: tree.Function) -> None:
-        name = f"{qualified(file, service.name)}.{function.name}"
+    def service(self, file: tree.File, service: tree.Service) -> None:
+        """The functions of a service, then those that it inherits and does not have itself."""
+        functions: dict[str, tuple[tree.File, tree.Function]] = {}
+        for declaring, each in self.lineage(file, service):
+            for function in each.functions:
+                functions.setdefault(function.name, (declaring, function))
+        self.functions += len(functions)
+        if self.functions > MAX_FUNCTIONS:
+            self.problems = [say.too_many_functions(service.span, MAX_FUNCTIONS)]
+            return
+        for declaring, function in functions.values():
+            self.function(declaring, f"{qualified(file, service.name)}.{function.name}", function)
+
+    def lineage(self, file: tree.File, service: tree.Service) -> list[tuple[tree.File, tree.Service]]:
+        """A service and those that it extends, each with its file."""
+        found = [(file, service)]
+        while (extends := found[-1][1].extends) is not None:
+            short = extends.text.rpartition(".")[2]
+            if short not in self.services:
+                self.problems.append(say.unknown_service(extends.span, extends.text, self.services))
+                break
+            if len(found) == MAX_ANCESTORS:
+                self.problems.append(say.endless_service(service.span, service.name))
+                break
+            found.append(self.services[short])
+        return found
+
+    def function(self, file: tree.File, name: str, function: tree.Function) -> None:
         words = tuple(_word(number, each) for number, each in enumerate(function.name.split("_"), 1) if each)
         arguments = tuple(made for each in function.arguments if (made := self.member(file, each, name)) is not None)
         options: tuple[tuple[str, Constant], ...] = (("call", True), ("thrift", True))

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.catalogue import thrift
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.tags import FIXED_FORMATS, LIST, YARP4, Dialect, vocab
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, String, Struct
-from rosetta_jit.wire.codec import Blob, Choice, Codec, Constant, Count, Number, Repeat, Seq, Table
+from rosetta_jit.wire.codec import Blob, Choice, Codec, Constant, Count, Number, Recursion, Repeat, Seq, Table
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Type
@@ -30,6 +31,11 @@ class Thrift:
 
     schema: Schema
     dialect: Dialect
+    recursive: frozenset[str] = frozenset()
+
+    def nested(self) -> dict[str, Codec]:
+        """The codecs of structs that contain themselves, as elements of a list."""
+        return {name: self.list_of(struct, ()) for name in sorted(self.recursive) if isinstance(struct := self.schema.types[name], Struct)}
 
     def message(self, struct: Struct) -> Codec:
         """A struct alone, or a call or a reply, which Bottle has written where its elements are all of one type."""
@@ -57,6 +63,8 @@ class Thrift:
         for each in struct.fields:
             inner = self.schema.resolve(each.type)
             here = (*path, each.name)
+            if isinstance(inner, Struct):
+                self.refuse_recursion(inner)
             if isinstance(inner, Struct) and not each.option("nested"):
                 found += self.flat(inner, here)
             else:
@@ -67,6 +75,7 @@ class Thrift:
         """A value behind its code."""
         match self.schema.resolve(type_):
             case Struct() as struct:
+                self.refuse_recursion(struct)
                 return self.list_of(struct, path)
             case Array(element):
                 return self.array(field, element, path)
@@ -81,7 +90,15 @@ class Thrift:
         fields = self.flat(struct, path)
         return self.coded((LIST, Seq((Constant((), len(fields), "i32", kind="count"), *(self.tagged(*each) for each in fields)))))
 
+    def refuse_recursion(self, struct: Struct) -> None:
+        """A struct that contains itself is read and written in lists alone: elsewhere it would have no end, or no place of its own."""
+        if struct.name in self.recursive:
+            raise SchemaError((thrift.only_in_lists(struct.span, struct.name),))
+
     def array(self, field: Field, element: Type, path: Path) -> Codec:
+        inner = self.schema.resolve(element)
+        if isinstance(inner, Struct) and inner.name in self.recursive and path:
+            return self.coded((LIST, Repeat(path, COUNT, Recursion((), inner.name))))
         unit = self.unit(element)
         if unit is None:
             inner = self.innermost(element)

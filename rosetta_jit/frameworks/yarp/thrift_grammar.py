@@ -89,11 +89,12 @@ class Function:
 
 @dataclass(frozen=True, slots=True)
 class Service:
-    """Functions that a port answers."""
+    """Functions that a port answers, and those of the service that it extends."""
 
     name: str
     functions: tuple[Function, ...]
     span: Span
+    extends: Word | None = None
 
 
 @dataclass(slots=True)
@@ -187,6 +188,8 @@ class _Reading:
                     file.declared.append(self.struct())
                 case "service":
                     file.declared.append(self.service())
+                case "union":
+                    raise SchemaError((say.union(keyword.span),))
                 case _:
                     self.at -= 1
                     raise self.wrong("a declaration: struct, enum, typedef, const, service, include or namespace")
@@ -238,8 +241,7 @@ class _Reading:
 
     def service(self) -> Service:
         name = self.name()
-        if self.has("extends"):
-            self.name()
+        extends = self.name() if self.has("extends") else None
         self.expect("{")
         functions: list[Function] = []
         while not self.has("}"):
@@ -255,7 +257,7 @@ class _Reading:
             self.notes()
             self.separator()
         self.notes()
-        return Service(name.text, tuple(functions), name.span)
+        return Service(name.text, tuple(functions), name.span, extends)
 
     # --- types and values --------------------------------------------------------------------------------------------
 

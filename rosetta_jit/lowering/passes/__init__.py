@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.shape import is_large
 from rosetta_jit.kernel.verify import VerificationError, verify
 from rosetta_jit.lowering.passes.bulk import bulk
 from rosetta_jit.lowering.passes.drop import drop
@@ -35,9 +35,6 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     merge,
 )
 
-LARGE = 4_000
-"""Statements from which on each pass runs once: later rounds find little, and every proof takes seconds."""
-
 
 def run(kernel: Kernel) -> Kernel:
     """All passes, and the proof that what comes out is safe.
@@ -60,9 +57,9 @@ def run(kernel: Kernel) -> Kernel:
 
 def _all(kernel: Kernel) -> Kernel:
     results: dict[Callable[[Kernel], Kernel], Kernel] = {}
-    large = sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
+    large = is_large(kernel)
     for transform in PASSES:
-        # What a pass has made, and no pass has changed since, it would not change again.
+        # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
         if results.get(transform) is not kernel and not (large and transform in results):
             kernel = results[transform] = transform(kernel)
     verify(kernel)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Used, add, index, mul
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
-from rosetta_jit.kernel.shape import bound_name, operands, statements, subexpressions
+from rosetta_jit.kernel.shape import bound_names, operands, statements, subexpressions
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import For
@@ -77,7 +77,7 @@ class Rounds:
 
 def rounds_of(loop: For) -> Rounds:
     """The rounds of a loop."""
-    bound = {name for stmt, _ in statements(loop.body) if (name := bound_name(stmt)) is not None}
+    bound = {name for stmt, _ in statements(loop.body) for name in bound_names(stmt)}
     rounds = Rounds(loop.variable, frozenset(bound | changed_names(loop.body) | {loop.variable}), {}, {})
     for stmt in loop.body:
         if isinstance(stmt, Let):

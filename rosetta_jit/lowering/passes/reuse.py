@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Const, Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
+from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
-from rosetta_jit.kernel.shape import blocks_of, bound_name, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.shape import blocks_of, bound_names, expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from rosetta_jit.kernel.ir import Address, Block, Kernel, Stmt
 
@@ -30,10 +30,11 @@ _Known = dict[int, dict[Expr, Local]]
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """The variables of a body, the names that are taken in the kernel, and those made here."""
+    """The variables of a body, the names that are taken in the kernel, those made here, and the memory that each routine writes."""
 
     variables: set[str]
     taken: set[str]
+    written: Mapping[str, set[int]]
     made: set[str] = field(default_factory=set[str])
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
 
@@ -46,12 +47,15 @@ class _Names:
 
 def reuse(kernel: Kernel) -> Kernel:
     """The kernel with a name for what it would read more than once."""
-    taken = {name for body in kernel.bodies for stmt, _ in statements(body) if (name := bound_name(stmt)) is not None}
-    return with_bodies(kernel, tuple(_body(body, taken) for body in kernel.bodies))
+    taken = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
+    written: dict[str, set[int]] = {}
+    for routine in kernel.routines:
+        written[routine.name] = _written_in(routine.body, written)
+    return with_bodies(kernel, tuple(_body(body, taken, written) for body in kernel.bodies))
 
 
-def _body(body: Block, taken: set[str]) -> Block:
-    names = _Names(changed_names(body), taken)
+def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Block:
+    names = _Names(changed_names(body), taken, written)
     named = _block(body, {}, names)
     parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part, _ in subexpressions(expr))
     uses = Counter(part.name for part in parts if isinstance(part, Local))
@@ -64,10 +68,10 @@ def _body(body: Block, taken: set[str]) -> Block:
 def _block(block: Block, known: _Known, names: _Names) -> Block:
     result: list[Stmt] = []
     for stmt in block:
-        inside = {memory for inner in blocks_of(stmt) for each, _ in statements(inner) for memory in _written(each)}
+        inside = {memory for inner in blocks_of(stmt) for memory in _written_in(inner, names.written)}
         _forget(known, inside)
         result.extend(_statement(stmt, known, names))
-        _forget(known, _written(stmt))
+        _forget(known, _written(stmt, names.written))
     return tuple(result)
 
 
@@ -112,9 +116,15 @@ def _source(read: Expr) -> int:
 # --- what is written ---------------------------------------------------------------------------------------------------
 
 
-def _written(stmt: Stmt) -> set[int]:
+def _written_in(block: Block, routines: Mapping[str, set[int]]) -> set[int]:
+    return {memory for stmt, _ in statements(block) for memory in _written(stmt, routines)}
+
+
+def _written(stmt: Stmt, routines: Mapping[str, set[int]]) -> set[int]:
     """The memory that a statement itself writes."""
     match stmt:
+        case Call(routine):
+            return routines[routine]
         case Store():
             return {MESSAGE}
         case SetField(place, _):

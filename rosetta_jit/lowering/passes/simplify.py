@@ -12,6 +12,7 @@ from rosetta_jit.kernel.ir import (
     ROW,
     Assign,
     Block,
+    Call,
     Const,
     Expect,
     For,
@@ -105,6 +106,9 @@ def _statement(stmt: Stmt, names: _Names) -> Block:
             return _block(body, names) if count == 1 else ()
         case While(Const(_, False), _, _, _):
             return ()
+        case Call():
+            names.fixed.update(result.name for result in stmt.results)
+            return (stmt,)
         case _:
             return _nested(stmt, names)
 

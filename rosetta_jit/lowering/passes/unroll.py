@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Assign, Block, Const, For, Let, Var, While, index
+from rosetta_jit.kernel.ir import Assign, Block, Call, Const, For, Let, Var, While, index
 from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_bodies, with_expressions
-from rosetta_jit.kernel.shape import bound_name, statements
+from rosetta_jit.kernel.shape import bound_names, statements
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
@@ -18,7 +18,7 @@ MAX_STATEMENTS = 64
 
 def unroll(kernel: Kernel) -> Kernel:
     """The kernel without short loops."""
-    names = {name for body in kernel.bodies for stmt, _ in statements(body) if (name := bound_name(stmt)) is not None}
+    names = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
     return with_bodies(kernel, tuple(_block(body, names) for body in kernel.bodies))
 
 
@@ -36,13 +36,13 @@ def _block(block: Block, names: set[str]) -> Block:
 
 def _is_short(count: int, body: Block) -> bool:
     inner = [stmt for stmt, _ in statements(body)]
-    is_innermost = not any(isinstance(stmt, For | While) for stmt in inner)
+    is_innermost = not any(isinstance(stmt, For | While | Call) for stmt in inner)
     return is_innermost and count <= MAX_ROUNDS and count * len(inner) <= MAX_STATEMENTS and not ends(body)
 
 
 def _round(body: Block, variable: str, number: int, names: set[str]) -> Block:
     """A copy of a loop's body for one value of its variable, with names of its own."""
-    bound = [stmt.name for stmt, _ in statements(body) if isinstance(stmt, Let | Var)]
+    bound = [name for stmt, _ in statements(body) for name in bound_names(stmt)]
     renamed = {name: _fresh(f"{name}_{number}", names) for name in bound}
 
     def change(expr: Expr) -> Expr:

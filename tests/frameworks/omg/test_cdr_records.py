@@ -17,7 +17,7 @@ from rosetta_jit.runtime.holder import values
 
 VECTORS = Path(__file__).resolve().parents[2] / "vectors"
 SLOW = {"test_interface_files/MultiNested"}
-"""Hundreds of arrays: proving it takes half a minute."""
+"""Hundreds of arrays: compiling it takes half a minute."""
 
 
 @cache
@@ -104,6 +104,10 @@ def test_big_endian_kernels(name):
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", sorted(SLOW))
-def test_cyclone_dds_where_it_is_large(name):
-    check("ros2", name, "big", "interpreter")
+@pytest.mark.parametrize("order", ["little", "big"])
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize(
+    ("framework", "name"), [(framework, name) for framework in ("corba", "ros2") for name in sorted(records(framework))]
+)
+def test_all_of_both(framework, name, backend, order):
+    check(framework, name, order, backend)

@@ -78,12 +78,5 @@ def test_a_set_without_its_imports_is_refused(tmp_path):
         from_file_descriptor_set(files)
 
 
-def test_a_set_in_an_edition_is_refused():
-    files = descriptor_pb2.FileDescriptorSet()
-    files.file.add(name="a.proto", syntax="editions")
-    with pytest.raises(SchemaError, match="editions"):
-        from_file_descriptor_set(files)
-
-
 def _stem(name: str) -> str:
     return name.rpartition("/")[2].removesuffix(".proto")

@@ -37,7 +37,14 @@ def test_token_soup(words):
 @settings(max_examples=150, deadline=None)
 @given(st.data())
 def test_files_with_tokens_moved(data):
-    words = (VECTORS / data.draw(st.sampled_from(["shapes2.proto", "options.proto", "words.proto"]))).read_text().split(" ")
+    words = (
+        (
+            VECTORS
+            / data.draw(st.sampled_from(["shapes2.proto", "options.proto", "words.proto", "editions/wire.proto", "editions/words.proto"]))
+        )
+        .read_text()
+        .split(" ")
+    )
     for _ in range(data.draw(st.integers(1, 3))):
         here, there = (data.draw(st.integers(0, len(words) - 1)) for _ in range(2))
         words[here], words[there] = words[there], words[here]
@@ -64,7 +71,8 @@ def test_descriptors_with_bytes_changed(data, shapes):
 @pytest.fixture(scope="module")
 def shapes(tmp_path_factory):
     out = tmp_path_factory.mktemp("sets")
-    sets = [protoc(VECTORS, name, out / "set") for name in ("shapes2.proto", "shapes3.proto", "extensions.proto")]
+    names = ("shapes2.proto", "shapes3.proto", "extensions.proto", "editions/wire.proto", "editions/lib/public.proto")
+    sets = [protoc(VECTORS, name, out / "set") for name in names]
     return b"".join(sets)
 
 
@@ -94,6 +102,12 @@ HOSTILE = {
     + "} message M {"
     + " ".join(f"optional E f{i} = {i + 1} [default = V{i}];" for i in range(BIG // 20))
     + "}",
+    "long name of a feature": 'edition = "2023"; option features' + ".a" * BIG + " = A;",
+    "one feature again and again": 'edition = "2023"; ' + "option features.enum_type = OPEN; " * (BIG // 10),
+    "many features at once": 'edition = "2023"; option features = { ' + "a: b " * (BIG // 10) + "};",
+    "many names out of style": 'edition = "2024"; ' + "".join(f"message m{i} {{ int32 _F{i} = 1; }} " for i in range(BIG // 20)),
+    "underscores": 'edition = "2024"; message M { ' + "".join(f"int32 {'a_' * 200}{i} = {i + 1}; " for i in range(BIG // 100)) + "}",
+    "visibility again and again": 'edition = "2024"; ' + "export local " * BIG,
     "lone surrogates": 'message M { optional string a = 1 [default = "\ud800"]; }',
 }
 

@@ -59,6 +59,7 @@ def test_reads_the_example_of_the_paper():
     ("text", "type_"),
     [
         (":int8", Int(8, True, "int8")),
+        (":uint8", Int(8, False, "int8")),
         (":int16", Int(16, True, "int16")),
         (":int", Int(32, True, "int32")),
         (":int32", Int(32, True, "int32")),
@@ -144,7 +145,8 @@ def test_every_mistake_has_a_golden_file():
     from rosetta_jit.catalogue import bottle
 
     told = "".join(path.read_text() for path in GOLDEN.glob("*.err"))
-    lonely = {"unlike_messages", "undescribable_message", "no_messages", "no_such_tag", "duplicate"}
+    lonely = {"unlike_messages", "undescribable_message", "no_messages", "duplicate"}
+    lonely |= {"no_such_tag", "packed_element", "blob_of_any_size", "misplaced_union", "like_cases", "not_spread"}  # what an encoding finds
     words = {name.replace("_", "-") for name, value in vars(bottle).items() if callable(value) and value.__module__ == bottle.__name__}
     words -= {name.replace("_", "-") for name in lonely} | {"unknown-type-word", "-error", "-cut", "-nearest"}
     assert {word for word in words if f"[{word}]" not in told} == set()
@@ -158,9 +160,8 @@ def test_collects_the_problems_of_all_files():
 
 @pytest.mark.parametrize("path", sorted((ROOT / "idl" / "yarp").rglob("*.bottle-schema")), ids=lambda path: path.stem)
 def test_shipped_schemas_are_sound(path):
-    schema = parse(Source(path.name, path.read_text()), nothing)
-    (struct,) = schema.types.values()
-    assert struct.name.startswith(f"yarp.{path.parent.name}.")
+    schema = parse(Source(path.name, path.read_text()), lambda name: Source(name, (ROOT / "idl" / name).read_text()))
+    assert next(iter(schema.types)).startswith(f"yarp.{path.parent.name}.")
 
 
 @pytest.mark.parametrize(
@@ -214,6 +215,14 @@ TOKENS = st.sampled_from(
         "+",
         "x.y",
         ":rest",
+        ":packed",
+        ":bare",
+        ":union",
+        ":blob",
+        ":spread",
+        "(:code :double)",
+        "(:padding 4)",
+        "(:since :yarp4)",
         ":unit",
         ":length",
         ";",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 from contextlib import suppress
 from pathlib import Path
 
@@ -57,9 +58,44 @@ def test_values(dialect):
     assert (found["f"], found["i"], found["d"], found["lb"]) == (True, -1, 5.5, [True, False])
 
 
-def test_recursion_through_lists_has_no_encoding():
-    with pytest.raises(SchemaError, match="contains itself"):
-        rj.Decoder.of("S", schema={"a.thrift": "struct S { 1: list<S> x }"}, encoding="yarp4")
+TREE = "struct S { 1: i32 a; 2: list<S> kids; 3: string name }"
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("dialect", ["yarp3", "yarp4"])
+def test_lists_of_the_struct_itself(dialect, backend):
+    options = {"schema": {"a.thrift": TREE}, "encoding": dialect, "backend": backend}
+    decode, encode = rj.Decoder.of("S", **options), rj.Encoder.of("S", **options)
+    leaf = {"a": 3, "kids": [], "name": "z"}
+    data = struct.pack("<4i", 256, 3, 1, 1) + struct.pack("<2i", 256, 2)
+    inner = struct.pack("<4i", 256, 3, 1, 3) + struct.pack("<2i", 256, 0) + struct.pack("<ii1s", 4, 1, b"z")
+    data += inner * 2 + struct.pack("<ii1s", 4, 1, b"r")
+    assert decode(data).to_dict() == {"a": 1, "kids": [leaf, leaf], "name": "r"}
+    assert encode(decode(data)) == data
+    assert rj.Decoder.of("S", schema={"a.thrift": TREE}, backend="python")(data).to_dict()["name"] == "r"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "struct S { 1: map<string, S> x }",
+        "struct S { 1: list<list<S>> x }",
+        "struct S { 1: T t } struct T { 1: list<S> x }",
+        "struct T { 1: S s } struct S { 1: list<S> x }",
+    ],
+)
+def test_other_recursion_has_no_encoding(text):
+    with pytest.raises(SchemaError, match="only-in-lists"):
+        rj.Decoder.of(text.split()[1], schema={"a.thrift": text}, encoding="yarp4")
+
+
+def test_a_service_has_the_functions_of_what_it_extends():
+    files = {"base.thrift": "namespace yarp lab\nservice Base { i32 ask(1: i32 q); void stop_it() }"}
+    found = read('include "base.thrift"\nservice Middle extends base.Base {}\nservice Arm extends Middle { double ask() }', files)
+    names = {name for name in found.types if name.startswith("Arm.")}
+    assert names == {f"Arm.{each}" for each in ("ask.request", "ask.reply", "stop_it.request", "stop_it.call", "stop_it.reply")}
+    assert found.types["Arm.ask.reply"].fields[0].type == Float(64, "float64")  # its own
+    assert found.types["Middle.ask.reply"].fields[0].type == Int(32, spelling="int32")
 
 
 def read(text, files=None):
@@ -104,6 +140,8 @@ def test_any_text_is_read_or_refused(text):
         "typedef a b typedef b a struct S { 1: a x }",
         "struct S { 1: list<S> x } struct T { 1: T x }",
         "/*" * 10000,
+        "service A { " + " ".join(f"void f{i}()" for i in range(9000)) + " } service B extends A {}",
+        " ".join(f"service S{i} extends S{i + 1} {{}}" for i in range(5000)),
     ],
 )
 def test_hostile_texts(text):

@@ -1,6 +1,6 @@
 """What protoc refuses although every name in it is known; the list is the table of contents.
 
-https://protobuf.dev/programming-guides/proto2/ and .../proto3/
+https://protobuf.dev/programming-guides/proto2/, .../proto3/ and .../editions/
 """
 
 from __future__ import annotations
@@ -10,8 +10,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf.proto.check_enums import check_enums
 from rosetta_jit.frameworks.protobuf.proto.check_extensions import check_extensions
+from rosetta_jit.frameworks.protobuf.proto.check_features import check_features
 from rosetta_jit.frameworks.protobuf.proto.check_fields import check_fields
+from rosetta_jit.frameworks.protobuf.proto.check_json import check_json
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import check_numbers
+from rosetta_jit.frameworks.protobuf.proto.check_style import check_style
+from rosetta_jit.frameworks.protobuf.proto.check_visibility import check_visibility
 from rosetta_jit.frameworks.protobuf.proto.options import check_options
 
 if TYPE_CHECKING:
@@ -20,7 +24,17 @@ if TYPE_CHECKING:
 
 Check = Callable[["Declarations"], "Iterator[Diagnostic]"]
 
-CHECKS: tuple[Check, ...] = (check_numbers, check_fields, check_enums, check_extensions, check_options)
+CHECKS: tuple[Check, ...] = (
+    check_numbers,
+    check_fields,
+    check_enums,
+    check_extensions,
+    check_json,
+    check_options,
+    check_features,
+    check_visibility,
+    check_style,
+)
 
 
 def check(declared: Declarations) -> Iterator[Diagnostic]:

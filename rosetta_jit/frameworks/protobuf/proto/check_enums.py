@@ -23,13 +23,14 @@ def check_enums(declared: Declarations) -> Iterator[Diagnostic]:
         enum = entry.enum
         if not enum.values:
             yield say.empty_enum(enum.name)
-        elif entry.version == "proto3" and enum.values[0].number != 0:
+        elif not entry.closed and enum.values[0].number != 0:
             yield say.first_not_zero(enum.values[0].number_span, enum.values[0].number)
         yield from check_overlaps(enum.reserved, -(2**31), 2**31 - 1)
         yield from repeated_names(enum.reserved_names)
         yield from _values(entry)
         yield from _aliases(enum)
-        if entry.version == "proto3":
+        # Enums that are older than the rule can say so, but in proto2 only.
+        if entry.version != "proto2" or not flag(enum.options, "deprecated_legacy_json_field_conflicts"):
             yield from _stripped_names(enum)
 
 

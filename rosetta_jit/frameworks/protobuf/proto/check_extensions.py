@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import containing, in_order
 from rosetta_jit.frameworks.protobuf.proto.options import OPTIONS, flag
-from rosetta_jit.frameworks.protobuf.proto.tree import MapType
+from rosetta_jit.frameworks.protobuf.proto.tree import MapType, Name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredExtension
 
-OPTION_MESSAGES = frozenset(f".google.protobuf.{name}" for name in (*OPTIONS, "ExtensionRangeOptions"))
+OPTION_MESSAGES = frozenset(f".google.protobuf.{name}" for name in OPTIONS)
 
 
 def check_extensions(declared: Declarations) -> Iterator[Diagnostic]:
@@ -41,10 +41,10 @@ def _shape(extension: DeclaredExtension, declared: Declarations) -> Iterator[Dia
     field = extension.field
     if isinstance(field.type, MapType):
         yield say.map_extension(field.type.span)
-    elif field.label == "required":
+    elif field.label == "required" and extension.entry.version == "proto2":
         yield say.required_extension(field.label_span)
     extendee = extension.extendee.text
-    if extendee and extension.version == "proto3" and extendee not in OPTION_MESSAGES:
+    if extendee and extension.entry.version == "proto3" and extendee not in OPTION_MESSAGES:
         yield say.extension_in_proto3(extension.extendee)
     target = declared.messages.get(extendee[1:])
     if target and flag(target.message.options, "message_set_wire_format") and not _is_item(extension, declared):
@@ -53,5 +53,7 @@ def _shape(extension: DeclaredExtension, declared: Declarations) -> Iterator[Dia
 
 def _is_item(extension: DeclaredExtension, declared: Declarations) -> bool:
     """Whether an extension can stand in a MessageSet: an optional message can."""
-    type_ = extension.field.type
-    return not isinstance(type_, MapType) and extension.field.label == "optional" and type_.text[1:] in declared.messages
+    type_, entry = extension.field.type, extension.entry
+    singular = not entry.repeated and entry.features.field_presence != "LEGACY_REQUIRED"
+    prefixed = entry.features.message_encoding == "LENGTH_PREFIXED"
+    return isinstance(type_, Name) and singular and prefixed and type_.text[1:] in declared.messages

@@ -1,21 +1,22 @@
-"""Labels, groups, maps, oneofs, defaults and `packed`: what a field may be in its version of the language."""
+"""Labels, groups, maps, oneofs, enums, defaults and `packed`: what a field may be in its version of the language."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
+from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
-from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
-from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Name, Oneof
+from rosetta_jit.frameworks.protobuf.proto.tree import EDITIONS, Field, MapType, Name, Oneof
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredMessage
+    from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredField
     from rosetta_jit.frameworks.protobuf.proto.tree import Option, Version
 
 NO_KEYS = frozenset(("double", "float", "bytes"))
@@ -25,30 +26,15 @@ NO_KEYS = frozenset(("double", "float", "bytes"))
 def check_fields(declared: Declarations) -> Iterator[Diagnostic]:
     """The fields of each message, and all extensions."""
     for entry in declared.messages.values():
-        yield from _message(entry, declared)
-    for extension in declared.extensions.values():
-        yield from _label(extension.field, extension.version)
-        yield from _field(extension.field, extension.version, declared)
-
-
-def json_name(field: Field) -> str:
-    """The name of a field in JSON where it chooses none: `frame_shift` is `frameShift`."""
-    first, *rest = field.name.text.split("_")
-    return first + "".join(part[:1].upper() + part[1:] for part in rest)
-
-
-def _message(entry: DeclaredMessage, declared: Declarations) -> Iterator[Diagnostic]:
-    if entry.version == "proto3" and entry.message.extensions:
-        yield say.extensions_in_proto3(entry.message.extensions[0].span)
-    for member in entry.message.members:
-        match member:
-            case Oneof():
+        if entry.version == "proto3" and entry.message.extensions:
+            yield say.extensions_in_proto3(entry.message.extensions[0].span)
+        for member in entry.message.members:
+            if isinstance(member, Oneof):
                 yield from _oneof(member)
-            case Field():
-                yield from _label(member, entry.version)
-    for field in fields_of(entry.message):
-        yield from _field(field, entry.version, declared)
-    yield from _json_names(entry)
+        for field in fields_in(entry):
+            yield from _field(field, declared)
+    for extension in declared.extensions.values():
+        yield from _field(extension.entry, declared)
 
 
 def _oneof(oneof: Oneof) -> Iterator[Diagnostic]:
@@ -61,9 +47,25 @@ def _oneof(oneof: Oneof) -> Iterator[Diagnostic]:
             yield say.label_in_oneof(field.label_span, field.label)
 
 
+def _field(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:
+    field = entry.field
+    if entry.place != "oneof":
+        yield from _label(field, entry.version)
+    if field.group:
+        yield from _group(field, entry.version, declared)
+    if isinstance(field.type, MapType):
+        yield from _map(field.type)
+    yield from _enum(entry, declared)
+    for option in field.options:
+        if option.parts == ("default",):
+            yield from _default(entry, option, declared)
+    if flag(field.options, "packed") and not _can_pack(field, declared):
+        yield say.cannot_pack(field.name)
+
+
 def _label(field: Field, version: Version) -> Iterator[Diagnostic]:
     match field.type, field.label, version:
-        case (MapType(), None, _) | (_, "optional" | "repeated", "proto3"):
+        case (MapType(), None, _) | (_, "repeated", "proto3" | "2023" | "2024"):
             pass
         case MapType(), str(), _:
             yield say.label_on_map(field.label_span)
@@ -71,29 +73,40 @@ def _label(field: Field, version: Version) -> Iterator[Diagnostic]:
             yield say.missing_label(field.name)
         case _, "required", "proto3":
             yield say.required_in_proto3(field.label_span)
+        case _, "optional" | "required" as label, "2023" | "2024":
+            yield say_edition.label_in_edition(field.label_span, label)
         case _:
             pass
 
 
-def _field(field: Field, version: Version, declared: Declarations) -> Iterator[Diagnostic]:
-    if isinstance(field.type, MapType):
-        yield from _map(field.type)
-        enum = declared.enums.get(field.type.value.text[1:])
-    else:
-        enum = declared.enums.get(field.type.text[1:])
-    if field.group and isinstance(field.type, Name) and field.type.text and field.type.text[1:] not in declared.messages:
+def _group(field: Field, version: Version, declared: Declarations) -> Iterator[Diagnostic]:
+    if isinstance(field.type, Name) and field.type.text and field.type.text[1:] not in declared.messages:
         yield say.bad_descriptor(f"the group `{field.name.text}` has no message")
-    if field.group and version == "proto3":
+    if version == "proto3":
         yield say.group_in_proto3(field.name)
-    if enum and isinstance(field.type, MapType) and enum.enum.values and enum.enum.values[0].number != 0:
-        yield say.map_enum(field.type.value, enum.full)
-    if enum and enum.version == "proto2" and version == "proto3":
-        yield say.closed_enum(field.name, enum.full)
-    for option in field.options:
-        if option.parts == ("default",):
-            yield from _default(field, version, option, declared)
-    if flag(field.options, "packed") and not _can_pack(field, declared):
-        yield say.cannot_pack(field.name)
+    if version in EDITIONS:
+        yield say_edition.group_in_edition(field.name)
+
+
+def _enum(entry: DeclaredField, declared: Declarations) -> Iterator[Diagnostic]:
+    """What a field of an enum needs of it."""
+    type_ = entry.field.type
+    name = type_.value if isinstance(type_, MapType) else type_
+    enum = declared.enums.get(name.text[1:])
+    if enum is None:
+        return
+    if isinstance(type_, MapType) and enum.enum.values and enum.enum.values[0].number != 0:
+        yield say.map_enum(name, enum.full)
+    if enum.closed and entry.version == "proto3":
+        yield say.closed_enum(entry.field.name, enum.full)
+    elif enum.closed and _is_implicit(entry):
+        yield say_edition.closed_implicit(entry.field.name, enum.full)
+
+
+def _is_implicit(entry: DeclaredField) -> bool:
+    """Whether a value of 0 means that there is none; protoc takes it so for the values of maps too."""
+    listed = entry.field.label == "repeated"
+    return entry.features.field_presence == "IMPLICIT" and entry.place == "message" and not listed
 
 
 def _map(type_: MapType) -> Iterator[Diagnostic]:
@@ -101,13 +114,16 @@ def _map(type_: MapType) -> Iterator[Diagnostic]:
         yield say.map_key(type_.key)
 
 
-def _default(field: Field, version: Version, option: Option, declared: Declarations) -> Iterator[Diagnostic]:
-    if version == "proto3":
+def _default(entry: DeclaredField, option: Option, declared: Declarations) -> Iterator[Diagnostic]:
+    type_ = entry.field.type
+    if entry.version == "proto3":
         yield say.default_in_proto3(option.span)
-    elif isinstance(field.type, MapType) or field.label == "repeated":
+    elif isinstance(type_, MapType) or entry.repeated:
         yield say.default_of_many(option.span)
-    elif field.type.text:
-        yield from _default_value(field.type, option, declared)
+    elif _is_implicit(entry):
+        yield say_edition.default_of_implicit(option.span)
+    elif type_.text:
+        yield from _default_value(type_, option, declared)
 
 
 def _default_value(type_: Name, option: Option, declared: Declarations) -> Iterator[Diagnostic]:
@@ -128,14 +144,3 @@ def _can_pack(field: Field, declared: Declarations) -> bool:
         return False
     word = field.type.text
     return word == "" or word[1:] in declared.enums or (word in SCALARS and is_packable(word))
-
-
-def _json_names(entry: DeclaredMessage) -> Iterator[Diagnostic]:
-    """In proto3 two fields must not have the same name in JSON."""
-    if entry.version == "proto2" or flag(entry.message.options, "deprecated_legacy_json_field_conflicts"):
-        return
-    seen: dict[str, Field] = {}
-    for field in fields_of(entry.message):
-        first = seen.setdefault(json_name(field), field)
-        if first is not field and first.name.text != field.name.text:
-            yield say.same_json_name(field.name, first.name, json_name(field))

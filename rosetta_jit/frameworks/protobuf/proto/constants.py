@@ -6,7 +6,7 @@ import math
 import struct
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Value, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Listing, Value, Word
 from rosetta_jit.model.types import Bool, Bytes, Float, Int, String
 
 if TYPE_CHECKING:
@@ -67,6 +67,8 @@ def spelled(value: Value) -> str:
             return text
         case Aggregate():
             return "{...}"
+        case Listing():
+            return "[...]"
         case bytes():
             return f'"{value.decode(errors="backslashreplace")}"'
         case int() | float():

@@ -61,7 +61,7 @@ def own_options(holder: str, options: Message) -> tuple[Option, ...]:
     return tuple(
         Option((field.name,), _value(field, value))
         for field, value in options.ListFields()
-        if not field.is_extension and OPTIONS[holder].get(field.name) not in (None, "repeated", "message")
+        if not field.is_extension and OPTIONS[holder].get(field.name) not in (None, "repeated", "message", "FeatureSet")
     )
 
 

@@ -6,14 +6,24 @@ https://github.com/protocolbuffers/protobuf/blob/main/src/google/protobuf/descri
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
+    features,
+    has_unknown_features,
+    option_dependencies,
+    unenforced,
+    visibility,
+)
 from rosetta_jit.frameworks.protobuf.proto.descriptor_options import Extensions, custom_options, extensions_in, own_options
 from rosetta_jit.frameworks.protobuf.proto.literals import EscapeError, number, unescape
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import (
+    EDITIONS,
+    SYNTAXES,
+    Edition,
     Enum,
     EnumValue,
     Extend,
@@ -35,17 +45,19 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from google.protobuf.descriptor_pb2 import (
         DescriptorProto,
         EnumDescriptorProto,
         FieldDescriptorProto,
         FileDescriptorProto,
+        OneofDescriptorProto,
         ServiceDescriptorProto,
     )
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frameworks.protobuf.proto.descriptor_features import Holder
 
 TYPE_GROUP = 10
 WORDS: Mapping[int, str] = {
@@ -66,6 +78,8 @@ WORDS: Mapping[int, str] = {
     18: "sint64",
 }
 """FieldDescriptorProto.Type, where it is a scalar's."""
+EDITION_NUMBERS: Mapping[int, Edition] = {1000: "2023", 1001: "2024"}
+"""google.protobuf.Edition"""
 PATH = re.compile(r"\.?[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
 MAX_SHOWN = 40
 """Characters of a wrong name that a report repeats."""
@@ -74,12 +88,23 @@ LABELS: Mapping[int, Label] = {1: "optional", 2: "required", 3: "repeated"}
 
 
 def read_files(files: Iterable[FileDescriptorProto], problems: list[Diagnostic]) -> list[File]:
-    """The files of a descriptor set; those of an edition are problems."""
+    """The files of a descriptor set; those of a version that is not known are problems."""
     files = list(files)
     extensions = extensions_in(files)
-    others = (file for file in files if file.syntax not in ("", "proto2", "proto3"))
-    problems += [say.unsupported_descriptor(file.name, file.syntax) for file in others]
-    return [_Reader(cast("Version", file.syntax or "proto2"), extensions, problems).file(file) for file in files]
+    return [_Reader(_version(file, problems), extensions, problems).file(file) for file in files]
+
+
+def _version(file: FileDescriptorProto, problems: list[Diagnostic]) -> Version:
+    number = file.edition
+    if file.syntax == "editions" and number in EDITION_NUMBERS:
+        return EDITION_NUMBERS[number]
+    for syntax in SYNTAXES:
+        if file.syntax == syntax or (not file.syntax and not number):
+            return syntax
+    # An edition that is newer than protobuf's Python package is an unknown field to it, and reads as 0.
+    written = f"edition {number}" if number else "an unknown edition" if file.syntax == "editions" else file.syntax
+    problems.append(say.unsupported_descriptor(file.name, written))
+    return EDITIONS[-1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,18 +114,29 @@ class _Reader:
     problems: list[Diagnostic]
 
     def file(self, file: FileDescriptorProto) -> File:
-        public = frozenset(file.public_dependency)
         return File(
             name=self.text(file.name),
             version=self.version,
             package=self.name(file.package) if file.package else None,
-            imports=tuple(Import(self.text(path), public=index in public) for index, path in enumerate(file.dependency)),
+            imports=tuple(self.imports(file)),
             messages=tuple(self.message(message) for message in file.message_type),
             enums=tuple(self.enum(enum) for enum in file.enum_type),
             extends=tuple(self.extend(field) for field in file.extension),
             services=tuple(self.service(service) for service in file.service),
-            options=own_options("FileOptions", file.options),
+            options=(*self.options("FileOptions", file.options), *unenforced(self.version, file.options)),
         )
+
+    def imports(self, file: FileDescriptorProto) -> Iterator[Import]:
+        public = frozenset(file.public_dependency)
+        for index, path in enumerate(file.dependency):
+            yield Import(self.text(path), "public" if index in public else "plain")
+        for path in option_dependencies(file):
+            yield Import(self.text(path), "option")
+
+    def options(self, holder: str, options: Holder) -> tuple[Option, ...]:
+        if has_unknown_features(options):
+            self.problems.append(say.bad_descriptor("a feature has a value that is not known"))
+        return (*own_options(holder, options), *features(options))
 
     def message(self, message: DescriptorProto) -> Message:
         entries = {inner.name: inner for inner in message.nested_type if _is_entry(inner)}
@@ -113,7 +149,8 @@ class _Reader:
             extensions=tuple(Range(range_.start, range_.end - 1) for range_ in message.extension_range),
             reserved=tuple(Range(range_.start, range_.end - 1) for range_ in message.reserved_range),
             reserved_names=tuple(Name(self.text(name)) for name in message.reserved_name),
-            options=own_options("MessageOptions", message.options),
+            options=self.options("MessageOptions", message.options),
+            visibility=visibility(message),
         )
 
     def members(self, message: DescriptorProto, entries: Mapping[str, DescriptorProto]) -> list[Field | Oneof]:
@@ -131,11 +168,13 @@ class _Reader:
                 order.append(field.oneof_index)
             cases[field.oneof_index].append(read)
         order += [index for index, fields in cases.items() if not fields]
-        return [item if isinstance(item, Field) else Oneof(self.name(message.oneof_decl[item].name), tuple(cases[item])) for item in order]
+        return [item if isinstance(item, Field) else self.oneof(message.oneof_decl[item], cases[item]) for item in order]
+
+    def oneof(self, oneof: OneofDescriptorProto, fields: list[Field]) -> Oneof:
+        return Oneof(self.name(oneof.name), tuple(fields), self.options("OneofOptions", oneof.options))
 
     def extend(self, field: FieldDescriptorProto) -> Extend:
-        read = self.field(field, {})
-        return Extend(self.name(field.extendee), (replace(read, label=LABELS.get(field.label)),))
+        return Extend(self.name(field.extendee), (self.field(field, {}),))
 
     def field(self, field: FieldDescriptorProto, entries: Mapping[str, DescriptorProto]) -> Field:
         entry = entries.get(self.text(field.type_name).rpartition(".")[2]) if field.label == LABEL_REPEATED else None
@@ -148,7 +187,7 @@ class _Reader:
             group=field.type == TYPE_GROUP,
             options=(
                 *default,
-                *own_options("FieldOptions", field.options),
+                *self.options("FieldOptions", field.options),
                 *custom_options(field.options, self.extensions),
             ),
         )
@@ -158,7 +197,7 @@ class _Reader:
         label = LABELS.get(field.label)
         if label != "optional" or field.proto3_optional:
             return label
-        return None if self.version == "proto3" or field.HasField("oneof_index") else label
+        return None if self.version != "proto2" or field.HasField("oneof_index") else label
 
     def default(self, field: FieldDescriptorProto) -> Value:
         """A default, which a descriptor holds as text whatever its type is."""
@@ -187,7 +226,8 @@ class _Reader:
             values=tuple(EnumValue(self.name(value.name), value.number) for value in enum.value),
             reserved=tuple(Range(range_.start, range_.end) for range_ in enum.reserved_range),
             reserved_names=tuple(Name(self.text(name)) for name in enum.reserved_name),
-            options=own_options("EnumOptions", enum.options),
+            options=self.options("EnumOptions", enum.options),
+            visibility=visibility(enum),
         )
 
     def service(self, service: ServiceDescriptorProto) -> Service:

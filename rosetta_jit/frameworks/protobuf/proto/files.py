@@ -13,15 +13,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.tree import File, Import
+    from rosetta_jit.frameworks.protobuf.proto.tree import File, Import, ImportKind
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.source import Source
 
 MAX_FILES = 4096
 """Files that one file may import, directly or not."""
 
-Edges = tuple[tuple[str, bool], ...]
-"""What a file imports: names of files, and whether the import is public."""
+Edges = tuple[tuple[str, "ImportKind"], ...]
+"""What a file imports: names of files, and what for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +31,15 @@ class FileSet:
     files: tuple[File, ...]
     imports: Mapping[str, Edges]
 
-    def visible_from(self, name: str) -> frozenset[str]:
+    def visible_from(self, name: str, *, in_options: bool = False) -> frozenset[str]:
         """The files whose names a file can use: itself, its imports, and what these import publicly."""
         seen = {name}
-        waiting = [target for target, _ in self.imports.get(name, ())]
+        waiting = [target for target, kind in self.imports.get(name, ()) if in_options or kind != "option"]
         while waiting:
             target = waiting.pop()
             if target not in seen:
                 seen.add(target)
-                waiting += [further for further, public in self.imports.get(target, ()) if public]
+                waiting += [further for further, kind in self.imports.get(target, ()) if kind == "public"]
         return frozenset(seen)
 
 
@@ -49,7 +49,7 @@ class _Open:
 
     file: File
     waiting: Iterator[Import]
-    edges: list[tuple[str, bool]]
+    edges: list[tuple[str, ImportKind]]
 
 
 def gather(source: Source, load: Load, problems: list[Diagnostic]) -> FileSet:
@@ -70,7 +70,7 @@ def gather(source: Source, load: Load, problems: list[Diagnostic]) -> FileSet:
             found[import_.path] = _find(import_, load, problems)
         file = found[import_.path]
         if file is not None and _is_new(import_, file, stack, problems):
-            top.edges.append((file.name, import_.public))
+            top.edges.append((file.name, import_.kind))
             if file.name not in done and len(found) <= MAX_FILES:
                 stack.append(_open(file))
     if len(found) > MAX_FILES:
@@ -88,8 +88,10 @@ def file_set(files: Iterable[File], problems: list[Diagnostic]) -> FileSet:
         if file.name in imports:
             problems.append(say.repeated_file(file.name))
             continue
-        problems += [say.missing_file(None, import_.path) for import_ in file.imports if import_.path not in names]
-        imports[file.name] = tuple((import_.path, import_.public) for import_ in file.imports)
+        # Files that are imported for options alone need not come along: the options are known to whoever made the descriptor.
+        needed = (import_ for import_ in file.imports if import_.kind != "option")
+        problems += [say.missing_file(None, import_.path) for import_ in needed if import_.path not in names]
+        imports[file.name] = tuple((import_.path, import_.kind) for import_ in file.imports)
         kept.append(file)
     return FileSet(tuple(kept), imports)
 

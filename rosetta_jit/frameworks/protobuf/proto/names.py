@@ -9,17 +9,33 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
-from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Extend, Field, File, MapType, Message, Method, Name, Oneof, Option, Service
+from rosetta_jit.frameworks.protobuf.proto.tree import (
+    Aggregate,
+    Enum,
+    Extend,
+    Field,
+    File,
+    MapType,
+    Message,
+    Method,
+    Name,
+    Oneof,
+    Option,
+    Service,
+)
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
 
 EXTENSION: frozenset[Kind] = frozenset(("extension",))
 MESSAGE: frozenset[Kind] = frozenset(("message",))
-
+FEATURE_SET = "google.protobuf.FeatureSet"
+"""The message that custom features extend."""
 
 MAX_COMPARED = 500
 """Names among which a similar one is looked for; comparing is slow."""
@@ -27,12 +43,14 @@ MAX_COMPARED = 500
 
 def absolute(file: File, symbols: Symbols, problems: list[Diagnostic]) -> File:
     """The same file with every type and every custom option by its absolute name."""
-    return _Resolver(file.name, symbols, problems).file(file)
+    return _Resolver(file.name, symbols.visible[file.name], symbols.visible_in_options[file.name], symbols, problems).file(file)
 
 
 @dataclass(frozen=True, slots=True)
 class _Resolver:
     file_name: str
+    visible: frozenset[str]
+    visible_in_options: frozenset[str]
     symbols: Symbols
     problems: list[Diagnostic]
 
@@ -55,6 +73,7 @@ class _Resolver:
             messages=tuple(self.message(scope, inner) for inner in message.messages),
             enums=tuple(self.enum(scope, enum) for enum in message.enums),
             extends=tuple(self.extend(scope, extend) for extend in message.extends),
+            extension_options=self.options(outer, message.extension_options),
             options=self.options(outer, message.options),
         )
 
@@ -101,34 +120,49 @@ class _Resolver:
         return replace(method, types=types, options=self.options(scope, method.options))
 
     def options(self, scope: str, options: tuple[Option, ...]) -> tuple[Option, ...]:
-        return tuple(replace(option, parts=(self.part(scope, option), *option.parts[1:])) for option in options)
+        return tuple(self.option(scope, option) for option in options)
 
-    def part(self, scope: str, option: Option) -> str:
-        """The first part of an option's name; the others are read in the type of that one."""
-        first = option.parts[0]
-        if not first.startswith("("):
-            return first
-        return f"({self.lookup(scope, Name(first[1:-1], option.span), EXTENSION).text})"
+    def option(self, scope: str, option: Option) -> Option:
+        parts = tuple(self.part(scope, part, option.span) for part in option.parts)
+        value = option.value
+        if parts == ("features",) and isinstance(value, Aggregate):
+            # In text format the name of an extension is looked up from the message that it extends.
+            value = Aggregate(tuple(replace(entry, name=self.part(FEATURE_SET, entry.name, option.span)) for entry in value.entries))
+        return replace(option, parts=parts, value=value)
+
+    def part(self, scope: str, part: str, span: Span | None) -> str:
+        """A part of an option's name; an extension's is in parentheses."""
+        if not part.startswith("("):
+            return part
+        return f"({self.lookup(scope, Name(part[1:-1], span), EXTENSION).text})"
 
     def lookup(self, scope: str, name: Name, kinds: frozenset[Kind]) -> Name:
         if not name.text:
             return name
-        full = self.symbols.find(self.file_name, scope, name.text, kinds)
+        files = self.files(kinds)
+        full = self.symbols.find(files, scope, name.text, kinds)
         if full is None:
-            self.problems.append(self.unknown(scope, name, kinds))
+            self.problems.append(self.unknown(files, scope, name, kinds))
             return Name("", name.span)
-        if self.symbols.table[full].kind not in kinds:
-            self.problems.append(say.wrong_kind(name, full, self.symbols.table[full].kind, kinds))
+        symbol = self.symbols.table[full]
+        if symbol.kind not in kinds:
+            self.problems.append(say.wrong_kind(name, full, symbol.kind, kinds))
             return Name("", name.span)
+        if not symbol.exported and self.file_name not in symbol.files:
+            self.problems.append(say_edition.local_name(name, full, min(symbol.files)))
         return Name(f".{full}", name.span)
 
-    def unknown(self, scope: str, name: Name, kinds: frozenset[Kind]) -> Diagnostic:
+    def files(self, kinds: frozenset[Kind]) -> frozenset[str]:
+        """Where a name is looked for: extensions are named in options alone."""
+        return self.visible_in_options if kinds == EXTENSION else self.visible
+
+    def unknown(self, files: frozenset[str], scope: str, name: Name, kinds: frozenset[Kind]) -> Diagnostic:
         """Why a name was not found: it means something else, an inner scope hides it, its file is not imported, or it is nowhere."""
         bare = name.text.removeprefix(".")
-        other = self.symbols.find(self.file_name, scope, name.text, ALL_KINDS)
+        other = self.symbols.find(files, scope, name.text, ALL_KINDS)
         if other:
             return say.wrong_kind(name, other, self.symbols.table[other].kind, kinds)
-        inner = self.symbols.scope_of(self.file_name, scope, name.text, kinds)
+        inner = self.symbols.scope_of(files, scope, name.text, kinds)
         if inner and "." in bare:
             return say.hidden_name(name, join(inner, bare))
         scopes = [scope, *(scope[:end] for end in range(len(scope)) if scope[end] == "."), ""]

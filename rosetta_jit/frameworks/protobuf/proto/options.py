@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
+from rosetta_jit.frameworks.protobuf.proto.features import FEATURES
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import enums_of, extends_of, fields_of, messages_of
-from rosetta_jit.frameworks.protobuf.proto.tree import MapType, Oneof, Option, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, MapType, Oneof, Option, Word
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations
-    from rosetta_jit.frameworks.protobuf.proto.tree import Field, File
+    from rosetta_jit.frameworks.protobuf.proto.tree import Field, File, Value
     from rosetta_jit.model.types import Constant
 
 OPTIONS: Mapping[str, Mapping[str, str]] = {
@@ -42,7 +43,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "php_namespace": "string",
         "php_metadata_namespace": "string",
         "ruby_package": "string",
-        "features": "message",
+        "features": "FeatureSet",
     },
     "MessageOptions": {
         "message_set_wire_format": "bool",
@@ -50,7 +51,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "deprecated": "bool",
         "map_entry": "bool",
         "deprecated_legacy_json_field_conflicts": "bool",
-        "features": "message",
+        "features": "FeatureSet",
     },
     "FieldOptions": {
         "default": "any",
@@ -66,30 +67,34 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "retention": "RETENTION_UNKNOWN|RETENTION_RUNTIME|RETENTION_SOURCE",
         "targets": "repeated",
         "edition_defaults": "repeated",
-        "features": "message",
+        "features": "FeatureSet",
         "feature_support": "message",
     },
-    "OneofOptions": {"features": "message"},
+    "OneofOptions": {"features": "FeatureSet"},
+    "ExtensionRangeOptions": {"declaration": "repeated", "features": "FeatureSet", "verification": "DECLARATION|UNVERIFIED"},
     "EnumOptions": {
         "allow_alias": "bool",
         "deprecated": "bool",
         "deprecated_legacy_json_field_conflicts": "bool",
-        "features": "message",
+        "features": "FeatureSet",
     },
     "EnumValueOptions": {
         "deprecated": "bool",
-        "features": "message",
+        "features": "FeatureSet",
         "debug_redact": "bool",
         "feature_support": "message",
     },
-    "ServiceOptions": {"features": "message", "deprecated": "bool"},
+    "ServiceOptions": {"features": "FeatureSet", "deprecated": "bool"},
     "MethodOptions": {
         "deprecated": "bool",
         "idempotency_level": "IDEMPOTENCY_UNKNOWN|NO_SIDE_EFFECTS|IDEMPOTENT",
-        "features": "message",
+        "features": "FeatureSet",
     },
 }
 """Options by the message that holds them; alternatives are the values of an enum."""
+
+TABLES = {**OPTIONS, "FeatureSet": {name: "|".join(feature.values) for name, feature in FEATURES.items()}}
+"""The same with the message of features, which options hold."""
 
 RESOLVED = frozenset(("default", "json_name", "packed"))
 """Options that become something else than an option of the model."""
@@ -101,7 +106,8 @@ def field_options(field: Field, declared: Declarations) -> tuple[tuple[str, Cons
         (f"option.{option.name.replace('(.', '(')}", value)
         for option in field.options
         if option.name not in RESOLVED
-        for value in _values("FieldOptions", option, declared)
+        if len(option.parts) == 1
+        for value in values(type_at("FieldOptions", option.parts, declared) or "message", option.value, declared)
     ]
     return tuple(sorted(dict(pairs).items()))
 
@@ -117,70 +123,102 @@ def flag(options: tuple[Option, ...], name: str) -> bool | None:
 def check_options(declared: Declarations) -> Iterator[Diagnostic]:
     """Every option exists, has a value of its type, and is set once."""
     for file in declared.files:
-        for holder, options in _options_of(file):
+        for holder, options in options_of(file):
             yield from _check(holder, options, declared)
 
 
 def _check(holder: str, options: tuple[Option, ...], declared: Declarations) -> Iterator[Diagnostic]:
-    seen: set[str] = set()
+    seen: set[tuple[str, ...]] = set()
     for option in options:
-        type_ = _type(holder, option, declared)
-        if option.parts[0] == "()":
+        if "()" in option.parts:
+            continue
+        type_ = type_at(holder, option.parts, declared)
+        if option.parts in seen and type_ != "repeated":
+            yield say.repeated_option(option.span, option.name)
+        seen.update(_told(option.parts, option.value))
+        # What is said of features is checked with them.
+        if option.parts[0] == "features":
             continue
         if type_ is None:
             yield say.unknown_option(option.span, option.name, holder)
             continue
-        if option.name in seen and type_ != "repeated":
-            yield say.repeated_option(option.span, option.name)
-        seen.add(option.name)
         try:
-            list(_values(holder, option, declared))
+            list(values(type_, option.value, declared))
         except WrongValueError as error:
             yield say.wrong_option(option.span, option.name, str(error.args[0]), spelled(option.value))
 
 
-def _values(holder: str, option: Option, declared: Declarations) -> Iterator[Constant]:
-    """The value of an option, where it is one scalar."""
-    type_ = _type(holder, option, declared)
-    if len(option.parts) > 1 or type_ in (None, "repeated", "message", "any"):
-        return
+def _told(parts: tuple[str, ...], value: Value) -> Iterator[tuple[str, ...]]:
+    """What is set once an option is: it, what holds it, and what its value says."""
+    yield from (parts[:count] for count in range(1, len(parts) + 1))
+    if isinstance(value, Aggregate):
+        for entry in value.entries:
+            yield from _told((*parts, entry.name), entry.value)
+
+
+def values(type_: str, value: Value, declared: Declarations) -> Iterator[Constant]:
+    """The value of an option of some type, where it is one scalar.
+
+    Raises
+    ------
+    WrongValueError
+    """
     if type_ in SCALARS:
-        yield constant(SCALARS[type_], option.value)
-    elif type_.startswith("."):
-        entry = declared.enums[type_[1:]]
-        enum_number(entry.numbers, option.value)
-        yield spelled(option.value)
-    else:
-        yield _choice(type_, option)
+        yield constant(SCALARS[type_], value)
+    elif type_[1:] in declared.enums:
+        enum_number(declared.enums[type_[1:]].numbers, value)
+        yield spelled(value)
+    elif "|" in type_:
+        yield _alternative(type_, value)
 
 
-def _choice(alternatives: str, option: Option) -> str:
-    if not isinstance(option.value, Word) or option.value.text not in alternatives.split("|"):
+def _alternative(alternatives: str, value: Value) -> str:
+    if not isinstance(value, Word) or value.text not in alternatives.split("|"):
         raise WrongValueError("one of " + ", ".join(f"`{word}`" for word in alternatives.split("|")))
-    return option.value.text
+    return value.text
 
 
-def _type(holder: str, option: Option, declared: Declarations) -> str | None:
-    """The word of an option's type: of a scalar, an absolute enum, `message`, `repeated`, or alternatives."""
-    first = option.parts[0]
-    if not first.startswith("("):
-        return OPTIONS[holder].get(first)
-    extension = declared.extensions.get(first[2:-1])
-    if extension is None or extension.extendee.text != f".google.protobuf.{holder}":
-        return None
-    type_ = extension.field.type
-    if extension.field.label == "repeated":
+def type_at(holder: str, parts: tuple[str, ...], declared: Declarations) -> str | None:
+    """The word of the type that an option's name leads to, from the options message that holds it; None where it leads nowhere.
+
+    It is that of a scalar, an absolute message or enum, a table above, alternatives, or `repeated`, `message`, `any`.
+    """
+    type_ = holder
+    for part in parts:
+        if type_ in ("repeated", "message", "any"):
+            return "message"
+        found = _extension(type_, part, declared) if part.startswith("(") else _own(type_, part, declared)
+        if found is None:
+            return None
+        type_ = found
+    return type_
+
+
+def _extension(type_: str, part: str, declared: Declarations) -> str | None:
+    extension = declared.extensions.get(part[2:-1])
+    extended = f".google.protobuf.{type_}" if type_ in TABLES else type_
+    return None if extension is None or extension.extendee.text != extended else _word(extension.field)
+
+
+def _own(type_: str, part: str, declared: Declarations) -> str | None:
+    if type_ in TABLES:
+        return TABLES[type_].get(part)
+    message = declared.messages.get(type_[1:])
+    return None if message is None or part not in message.fields else _word(message.fields[part])
+
+
+def _word(field: Field) -> str:
+    if isinstance(field.type, MapType) or field.label == "repeated":
         return "repeated"
-    if isinstance(type_, MapType) or not (type_.text in SCALARS or type_.text[1:] in declared.enums):
-        return "message"
-    return type_.text
+    return field.type.text or "message"
 
 
-def _options_of(file: File) -> Iterator[tuple[str, tuple[Option, ...]]]:
+def options_of(file: File) -> Iterator[tuple[str, tuple[Option, ...]]]:
     """Every list of options of a file, with the message that defines them."""
     yield "FileOptions", file.options
     for _, message in messages_of(file):
         yield "MessageOptions", message.options
+        yield "ExtensionRangeOptions", message.extension_options
         for field in fields_of(message):
             yield "FieldOptions", field.options
         for member in message.members:

@@ -1,55 +1,54 @@
-"""Lark tree to `tree.File`: one method a rule of the grammar.
-
-What depends on other statements is left to the checks.
-"""
+"""Lark tree to `tree.File`: its version, what it imports, and its services; `declaration_reading` reads the rest."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
-
-from lark import Token, Tree
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.frameworks.protobuf.proto import syntax
+from rosetta_jit.frameworks.protobuf.proto.declaration_reading import DeclarationReader
 from rosetta_jit.frameworks.protobuf.proto.tree import (
-    Enum,
-    EnumValue,
-    Extend,
-    Field,
+    EDITIONS,
+    SYNTAXES,
     File,
     Import,
-    Label,
-    MapType,
-    Message,
+    ImportKind,
     Method,
     Name,
-    Oneof,
-    Range,
     Service,
     Version,
 )
 from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from lark import Token
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.values import Node
     from rosetta_jit.source import Source
 
-MAX_NUMBER = 2**31 - 1
-MAX_MESSAGE_SET_NUMBER = 2**31 - 2
-"""`max` in an extension range of a message with `message_set_wire_format`."""
-MAX_FIELD_NUMBER = 2**29 - 1
-
 
 def read(source: Source, problems: list[Diagnostic]) -> File | None:
     """The file that a source holds; None where its syntax is too broken to say."""
     root = syntax.parse(source, problems)
-    return None if root is None else _Reader(source, problems).file(root)
+    return None if root is None else _Reader(source, problems, _version(root, ValueReader(source, problems))).file(root)
 
 
-class _Reader(ValueReader):
+def _version(root: Node, reader: ValueReader) -> Version:
+    for node in all_of(root, "syntax"):
+        word, string = tokens_of(node)[0], one(node, "string")
+        value = reader.text(string)
+        for version in EDITIONS if word == "edition" else SYNTAXES:
+            if version == value:
+                return version
+        unknown = say_edition.unknown_edition if word == "edition" else say.unknown_syntax
+        reader.problems.append(unknown(reader.span(string), value))
+    return "proto2"
+
+
+class _Reader(DeclarationReader):
     __slots__ = ()
 
     def file(self, root: Node) -> File:
@@ -59,9 +58,9 @@ class _Reader(ValueReader):
         extends, groups = self.extends(root)
         return File(
             name=self.source.name,
-            version=self.version(root),
+            version=self.version,
             package=packages[0] if packages else None,
-            imports=tuple(self.import_(node) for node in all_of(root, "import")),
+            imports=self.imports(root),
             messages=(*(self.message(node) for node in all_of(root, "message")), *groups),
             enums=tuple(self.enum(node) for node in all_of(root, "enum")),
             extends=extends,
@@ -69,162 +68,33 @@ class _Reader(ValueReader):
             options=self.options(root),
         )
 
-    def version(self, root: Node) -> Version:
-        for node in all_of(root, "syntax"):
-            word = tokens_of(node)[0]
-            string = one(node, "string")
-            value = self.text(string)
-            if word == "edition":
-                self.problems.append(say.edition(self.span(string)))
-            elif value in ("proto2", "proto3"):
-                return value
-            else:
-                self.problems.append(say.unknown_syntax(self.span(string), value))
-        return "proto2"
+    def imports(self, root: Node) -> tuple[Import, ...]:
+        imports = tuple(self.import_(node) for node in all_of(root, "import"))
+        for before, import_ in pairwise(imports):
+            if before.kind == "option" and import_.kind != "option":
+                self.problems.append(say_edition.late_import(import_.span))
+        return imports
 
     def import_(self, node: Node) -> Import:
-        words = tokens_of(node)
-        for word in words:
-            if word not in ("public", "weak"):
-                self.problems.append(say.unexpected(self.at(word), word, {"STRING"}))
         path = one(node, "string")
-        return Import(self.text(path), public="public" in words, span=self.span(path))
+        return Import(self.text(path), self.import_kind(tokens_of(node)), self.span(path))
 
-    # Messages
-
-    def message(self, node: Node) -> Message:
-        return self.body(node, self.name(tokens_of(node)[1]), self.doc(node))
-
-    def body(self, node: Node, name: Name, doc: str) -> Message:
-        members = tuple(
-            self.oneof(child) if child.data == "oneof" else self.field(child) for child in all_of(node, "field", "group", "oneof")
-        )
-        extends, extend_groups = self.extends(node)
-        reserved, reserved_names = self.reserved(node)
-        options = self.options(node)
-        message_set = any(option.parts == ("message_set_wire_format",) for option in options)
-        return Message(
-            name=name,
-            members=members,
-            messages=(
-                *(self.message(child) for child in all_of(node, "message")),
-                *self.groups(node),
-                *(group for oneof in all_of(node, "oneof") for group in self.groups(oneof)),
-                *extend_groups,
-            ),
-            enums=tuple(self.enum(child) for child in all_of(node, "enum")),
-            extends=extends,
-            extensions=self.extensions(node, MAX_MESSAGE_SET_NUMBER if message_set else MAX_FIELD_NUMBER),
-            reserved=reserved,
-            reserved_names=reserved_names,
-            options=options,
-            doc=doc,
-        )
-
-    def groups(self, node: Node) -> Iterator[Message]:
-        """The messages that the groups among some fields declare."""
-        for child in _fields(node):
-            if child.data == "group":
-                yield self.body(child, self.name(tokens_of(child)[-2]), self.doc(child))
-
-    def field(self, node: Node) -> Field:
-        tokens = tokens_of(node)
-        group = node.data == "group"
-        # `repeated = 1` without a label is a field of that name: only the count of words tells.
-        label = tokens[0] if len(tokens) > 2 + group else None
-        number = tokens[-1]
-        if group:
-            written = self.name(tokens[-2])
-            if not written.text[0].isupper():
-                # Its field would have the same name.
-                self.problems.append(say.lower_case_group(written))
-            name, type_ = Name(written.text.lower(), written.span), written
-        else:
-            name, type_ = self.name(tokens[-2]), self.type(node)
-        return Field(
-            name=name,
-            type=type_,
-            number=self.integer(number),
-            number_span=self.at(number),
-            label=cast("Label", str(label)) if label else None,
-            label_span=self.at(label) if label else None,
-            group=group,
-            options=self.settings(node),
-            doc=self.doc(node),
-            span=self.at(tokens[-2]),
-        )
-
-    def type(self, node: Node) -> Name | MapType:
-        for map_ in all_of(node, "map"):
-            key, value = all_of(map_, "path")
-            return MapType(self.path(key), self.path(value), self.at(tokens_of(map_)[0]))
-        return self.path(one(node, "path"))
-
-    def oneof(self, node: Node) -> Oneof:
-        return Oneof(
-            name=self.name(tokens_of(node)[1]),
-            fields=tuple(self.field(child) for child in _fields(node)),
-            options=self.options(node),
-            doc=self.doc(node),
-        )
-
-    def extends(self, node: Node) -> tuple[tuple[Extend, ...], list[Message]]:
-        """The extend blocks, and the messages of the groups in them: these are declared where the block stands."""
-        blocks = list(all_of(node, "extend"))
-        for block in blocks:
-            if not _fields(block):
-                self.problems.append(say.empty_extend(self.span(one(block, "path"))))
-        groups = [group for block in blocks for group in self.groups(block)]
-        return tuple(self.extend(block) for block in blocks), groups
-
-    def extend(self, node: Node) -> Extend:
-        return Extend(self.path(one(node, "path")), tuple(self.field(child) for child in _fields(node)))
-
-    def extensions(self, node: Node, limit: int) -> tuple[Range, ...]:
-        return tuple(self.range(child, limit) for block in all_of(node, "extensions") for child in all_of(block, "range"))
-
-    def reserved(self, node: Node, limit: int = MAX_FIELD_NUMBER) -> tuple[tuple[Range, ...], tuple[Name, ...]]:
-        blocks = list(all_of(node, "reserved"))
-        names = [string for block in blocks for string in all_of(block, "string")]
-        return (
-            tuple(self.range(child, limit) for block in blocks for child in all_of(block, "range")),
-            tuple(Name(self.text(string), self.span(string)) for string in names),
-        )
-
-    def range(self, node: Node, limit: int) -> Range:
-        first, *rest = node.children
-        span = self.span(node)
-        start = self.end(first, limit)
-        if not rest:
-            return Range(start, start, span)
-        word, last = rest
-        if str(word) != "to":
-            self.problems.append(say.unexpected(self.at(cast("Token", word)), str(word), {"COMMA", "SEMICOLON", "TO"}))
-        return Range(start, self.end(last, limit), span)
-
-    def end(self, node: Node | Token, limit: int) -> int:
-        """One end of a range."""
-        if isinstance(node, Tree):
-            return self.signed(node)
-        if str(node) != "max":
-            self.problems.append(say.unexpected(self.at(node), str(node), {"NUMBER", "MAX"}))
-        return limit
-
-    # Enums and services
-
-    def enum(self, node: Node) -> Enum:
-        reserved, reserved_names = self.reserved(node, MAX_NUMBER)
-        return Enum(
-            name=self.name(tokens_of(node)[0]),
-            values=tuple(self.value(child) for child in all_of(node, "value")),
-            reserved=reserved,
-            reserved_names=reserved_names,
-            options=self.options(node),
-        )
-
-    def value(self, node: Node) -> EnumValue:
-        number = one(node, "signed")
-        return EnumValue(self.name(tokens_of(node)[0]), self.signed(number), self.span(number), self.settings(node))
+    def import_kind(self, words: list[Token]) -> ImportKind:
+        for word in words:
+            match str(word):
+                case "public":
+                    return "public"
+                case "weak":
+                    if self.version == "2024":
+                        self.problems.append(say_edition.weak_import(self.at(word)))
+                    return "weak"
+                case "option":
+                    if self.version != "2024":
+                        self.problems.append(say_edition.option_import(self.at(word)))
+                    return "option"
+                case other:
+                    self.problems.append(say.unexpected(self.at(word), other, {"STRING"}))
+        return "plain"
 
     def service(self, node: Node) -> Service:
         methods = tuple(self.method(child) for child in all_of(node, "rpc"))
@@ -240,11 +110,12 @@ class _Reader(ValueReader):
     def method_type(self, node: Node) -> Name:
         path = self.path(one(node, "path"))
         for word in tokens_of(node):
+            # `(stream.Foo)` is a stream of `.Foo`; of other names the parser takes the first part for such a word too.
+            if word != "stream" and path.text.startswith("."):
+                return self.checked(Name(f"{word}{path.text}", self.span(node)))
             if word != "stream":
                 self.problems.append(say.unexpected(self.at(word), word, {"RPAR", "DOT", "STREAM"}))
-        # `(stream.Foo)` is a stream of `.Foo`: there `stream` is a keyword, whatever follows it.
-        return Name(path.text.removeprefix("stream"), path.span) if path.text.startswith("stream.") else path
-
-
-def _fields(node: Node) -> list[Node]:
-    return list(all_of(node, "field", "group"))
+            return path
+        if path.text == "stream":
+            self.problems.append(say.unexpected(self.span(node), path.text, {"IDENT"}))
+        return path

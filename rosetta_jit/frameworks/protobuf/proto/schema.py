@@ -1,8 +1,8 @@
 """Declarations to the meta-model.
 
 message → Struct, enum → Enum, oneof → one field with a Union. A singular field whose presence is tracked is Optional, also
-where it is `required`; in proto3 a scalar without `optional` is not tracked and stays plain. An extension is a field of the
-message that it extends, named `[package.extension]`.
+where it is required; a scalar whose presence is implicit stays plain. An extension is a field of the message that it extends,
+named `[package.extension]`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.frameworks.protobuf.proto.constants import constant, enum_number
-from rosetta_jit.frameworks.protobuf.proto.options import field_options, flag
+from rosetta_jit.frameworks.protobuf.proto.declarations import cases_in, field_in
+from rosetta_jit.frameworks.protobuf.proto.options import field_options
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
 from rosetta_jit.frameworks.protobuf.proto.symbols import join
 from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Name, Oneof
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
         Declarations,
         DeclaredEnum,
         DeclaredExtension,
+        DeclaredField,
         DeclaredMessage,
     )
-    from rosetta_jit.frameworks.protobuf.proto.tree import Version
     from rosetta_jit.model.types import Constant, Schema
 
 
@@ -39,9 +40,9 @@ def build(declared: Declarations) -> Schema:
 
 
 def enum(entry: DeclaredEnum) -> model.Enum:
-    """An enum; those of proto2 hold no other numbers than the named ones."""
+    """An enum; a closed one holds no other numbers than the named ones."""
     values = tuple((value.name.text, value.number) for value in entry.enum.values)
-    return model.Enum(entry.full, values, closed=entry.version == "proto2", span=entry.enum.name.span)
+    return model.Enum(entry.full, values, closed=entry.closed, span=entry.enum.name.span)
 
 
 KEEPS_UNKNOWN = (("unknown", True),)
@@ -62,42 +63,44 @@ class _Builder:
     def member(self, entry: DeclaredMessage, member: Field | Oneof) -> model.Field:
         match member:
             case Field():
-                return self.field(member.name.text, member, self.labelled(member, entry.version), entry.version)
+                declared = field_in(entry, member)
+                return self.field(member.name.text, declared, self.labelled(declared))
             case Oneof(name):
                 full = join(entry.full, name.text)
-                cases = tuple(self.field(field.name.text, field, self.value(field), entry.version) for field in member.fields)
+                cases = tuple(self.field(case.field.name.text, case, self.value(case.field)) for case in cases_in(entry, member))
                 union = model.Union(full, cases, span=name.span)
                 return model.Field(name.text, union, doc=member.doc, span=name.span)
             case _:
                 assert_never(member)
 
     def extension(self, extension: DeclaredExtension) -> model.Field:
-        field = extension.field
-        # An extension is tracked in proto3 too: there is no implicit presence outside of a message's own fields.
-        type_ = self.labelled(field, "proto2")
-        return self.field(f"[{extension.full}]", field, type_, extension.version, ("extension", True))
+        return self.field(f"[{extension.full}]", extension.entry, self.labelled(extension.entry), ("extension", True))
 
-    def field(self, name: str, field: Field, type_: model.Type, version: Version, *marks: tuple[str, Constant]) -> model.Field:
+    def field(self, name: str, entry: DeclaredField, type_: model.Type, *marks: tuple[str, Constant]) -> model.Field:
+        field = entry.field
         return model.Field(
             name=name,
             type=type_,
             number=field.number,
             default=self.default(field),
-            required=field.label == "required",
-            options=tuple(sorted((*marks, *self.encoding(field, version), *field_options(field, self.declared)))),
+            required=isinstance(type_, model.Optional) and entry.features.field_presence == "LEGACY_REQUIRED",
+            options=tuple(sorted((*marks, *self.encoding(entry), *field_options(field, self.declared)))),
             doc=field.doc,
             span=field.name.span,
         )
 
-    def labelled(self, field: Field, version: Version) -> model.Type:
-        value = self.value(field)
-        if field.label == "repeated":
+    def labelled(self, entry: DeclaredField) -> model.Type:
+        value = self.value(entry.field)
+        if entry.field.label == "repeated":
             return model.Array(value)
         if isinstance(value, model.Map):
             return value
-        is_message = isinstance(field.type, Name) and field.type.text[1:] in self.declared.messages
-        tracked = version == "proto2" or field.label == "optional" or is_message
-        return model.Optional(value) if tracked else value
+        # There is no implicit presence of messages, nor outside of a message's own fields.
+        implicit = entry.features.field_presence == "IMPLICIT" and entry.place == "message" and not self.is_message(entry.field)
+        return value if implicit else model.Optional(value)
+
+    def is_message(self, field: Field) -> bool:
+        return isinstance(field.type, Name) and field.type.text[1:] in self.declared.messages
 
     def value(self, field: Field) -> model.Type:
         """The type of one value of a field."""
@@ -121,17 +124,17 @@ class _Builder:
                 return enum_number(self.declared.enums[word[1:]].numbers, option.value)
         return None
 
-    def encoding(self, field: Field, version: Version) -> list[tuple[str, Constant]]:
+    def encoding(self, entry: DeclaredField) -> list[tuple[str, Constant]]:
         """What the wire must know of a field beside its type."""
-        if field.group:
-            return [("group", True)]
+        field, features = entry.field, entry.features
+        if self.is_message(field):
+            return [("group", True)] if features.message_encoding == "DELIMITED" else []
         if isinstance(field.type, MapType) or field.label != "repeated":
             return []
         word = field.type.text
-        if not (word[1:] in self.declared.enums or (word in SCALARS and is_packable(word))):
+        if word in SCALARS and not is_packable(word):
             return []
-        packed = flag(field.options, "packed")
-        return [("packed", version == "proto3" if packed is None else packed)]
+        return [("packed", features.repeated_field_encoding == "PACKED")]
 
 
 def _by_extendee(declared: Declarations) -> dict[str, tuple[DeclaredExtension, ...]]:

@@ -10,8 +10,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, choose
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME, MAX_REPORTED, refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
+from rosetta_jit.frameworks.protobuf.proto.visibility import is_exported
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,34 +36,36 @@ class Symbol:
     kind: Kind
     files: frozenset[str]
     name: Name
+    exported: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Symbols:
-    """All names, absolute and without a leading dot, and the files that each file can see."""
+    """All names, absolute and without a leading dot, and the files that each file can see, and can see in its options."""
 
     table: Mapping[str, Symbol]
     visible: Mapping[str, frozenset[str]]
+    visible_in_options: Mapping[str, frozenset[str]]
 
-    def seen_from(self, file: str, full: str) -> Symbol | None:
-        """The symbol of an absolute name, where that file can use it."""
+    def seen(self, files: frozenset[str], full: str) -> Symbol | None:
+        """The symbol of an absolute name, where one of some files has it."""
         symbol = self.table.get(full)
-        return symbol if symbol and not symbol.files.isdisjoint(self.visible[file]) else None
+        return symbol if symbol and not symbol.files.isdisjoint(files) else None
 
-    def find(self, file: str, scope: str, name: str, kinds: frozenset[Kind]) -> str | None:
+    def find(self, files: frozenset[str], scope: str, name: str, kinds: frozenset[Kind]) -> str | None:
         """The absolute name that ``name`` means in a scope; of what has a simple name, only ``kinds`` count."""
         if name.startswith("."):
-            return name[1:] if self.seen_from(file, name[1:]) else None
-        outer = self.scope_of(file, scope, name, kinds)
+            return name[1:] if self.seen(files, name[1:]) else None
+        outer = self.scope_of(files, scope, name, kinds)
         full = join(outer, name) if outer is not None else ""
-        return full if self.seen_from(file, full) else None
+        return full if self.seen(files, full) else None
 
-    def scope_of(self, file: str, scope: str, name: str, kinds: frozenset[Kind]) -> str | None:
+    def scope_of(self, files: frozenset[str], scope: str, name: str, kinds: frozenset[Kind]) -> str | None:
         """The innermost scope that knows the first part of a name: there the name is looked up, and nowhere else."""
         first, dot, _ = name.partition(".")
         wanted = SCOPES if dot else kinds
         while True:
-            symbol = self.seen_from(file, join(scope, first))
+            symbol = self.seen(files, join(scope, first))
             if symbol and symbol.kind in wanted:
                 return scope
             if not scope:
@@ -89,7 +93,10 @@ def declare(files: FileSet, problems: list[Diagnostic]) -> Symbols:
                 table[full] = Symbol("package", old.files | symbol.files, old.name)
             elif len(problems) < MAX_REPORTED:
                 problems.append(say.repeated_name(symbol.name, full, old.kind, old.name.span))
-    return Symbols(table, {file.name: files.visible_from(file.name) for file in files.files})
+    names = [file.name for file in files.files]
+    return Symbols(
+        table, {name: files.visible_from(name) for name in names}, {name: files.visible_from(name, in_options=True) for name in names}
+    )
 
 
 def join(scope: str, name: str) -> str:
@@ -154,13 +161,15 @@ def _symbols(file: File) -> Iterator[tuple[str, Symbol]]:
     parts = package.split(".") if package else []
     for count in range(len(parts)):
         yield ".".join(parts[: count + 1]), Symbol("package", files, file.package or Name(""))
+    features = choose(DEFAULTS[file.version], file.options)
     for full, message in messages_of(file):
-        yield full, Symbol("message", files, message.name)
+        nested = full.rpartition(".")[0] != package
+        yield full, Symbol("message", files, message.name, is_exported(message.visibility, features, nested=nested))
         yield from _members(full, message, files)
     for full, enum in enums_of(file):
-        yield full, Symbol("enum", files, enum.name)
         # The values of an enum stand beside it, not in it: so it is in C++.
         scope = full.rpartition(".")[0]
+        yield full, Symbol("enum", files, enum.name, is_exported(enum.visibility, features, nested=scope != package))
         for value in enum.values:
             yield join(scope, value.name.text), Symbol("value", files, value.name)
     for scope, extend in extends_of(file):

@@ -29,6 +29,7 @@ MAX_ERRORS = 20
 
 OPENING = frozenset(("LBRACE", "LSQB", "LESSTHAN"))
 CLOSING = frozenset(("RBRACE", "RSQB", "MORETHAN"))
+VISIBILITIES = frozenset(("export", "local"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +62,7 @@ class _Parser(Protocol):
 
 def parse(source: Source, problems: list[Diagnostic]) -> Tree[Token] | None:
     """The tree of a file; what could be read of it where problems were found, None where nothing could."""
-    tokens = list(_tokens(source))
+    tokens = _with_visibility(list(_tokens(source)))
     deep = _too_deep(tokens)
     if deep is not None:
         problems.append(say.nesting(span_of(source, deep), MAX_NESTING))
@@ -95,6 +96,19 @@ def _tokens(source: Source) -> Iterator[Token]:
     text = source.text
     # A byte order mark may stand before everything else; blanks keep the offsets right.
     return grammar().lex(" " + text[1:] if text.startswith("\ufeff") else text)
+
+
+def _with_visibility(tokens: list[Token]) -> list[Token]:
+    """The same tokens; `export` and `local` are a kind of their own where a declaration follows: no parser looks that far ahead."""
+    return [
+        token.update(type="VISIBILITY") if token in VISIBILITIES and _declares(tokens[index + 1 : index + 3]) else token
+        for index, token in enumerate(tokens)
+    ]
+
+
+def _declares(tokens: list[Token]) -> bool:
+    """Whether `message Name` follows, not the name of a field: `message =`."""
+    return len(tokens) == 2 and tokens[0].type in ("MESSAGE", "ENUM") and tokens[1].type != "EQUAL"
 
 
 def _too_deep(tokens: list[Token]) -> Token | None:

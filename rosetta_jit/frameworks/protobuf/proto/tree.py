@@ -10,13 +10,19 @@ A group is a field (`group` is set) and a message beside it. Spans are None wher
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
-Version = Literal["proto2", "proto3"]
+Syntax = Literal["proto2", "proto3"]
+Edition = Literal["2023", "2024"]
+Version = Syntax | Edition
+SYNTAXES: tuple[Syntax, ...] = get_args(Syntax)
+EDITIONS: tuple[Edition, ...] = get_args(Edition)
 Label = Literal["optional", "required", "repeated"]
+Visibility = Literal["export", "local"]
+ImportKind = Literal["plain", "public", "weak", "option"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +41,28 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True)
+class Listing:
+    """`[1, 2]` in a message in text format."""
+
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """`name: value` in a message in text format. The name of an extension is in parentheses, as in an option's name."""
+
+    name: str
+    value: Value
+
+
+@dataclass(frozen=True, slots=True)
 class Aggregate:
-    """A message in text format; only custom options have such values, and nothing here reads them."""
+    """A message in text format: `{ name: value ... }`."""
+
+    entries: tuple[Entry, ...] = ()
 
 
-Value = int | float | bytes | Word | Aggregate
+Value = int | float | bytes | Word | Aggregate | Listing
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +150,7 @@ class Enum:
     reserved: tuple[Range, ...] = ()
     reserved_names: tuple[Name, ...] = ()
     options: tuple[Option, ...] = ()
+    visibility: Visibility | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,10 +163,12 @@ class Message:
     enums: tuple[Enum, ...] = ()
     extends: tuple[Extend, ...] = ()
     extensions: tuple[Range, ...] = ()
+    extension_options: tuple[Option, ...] = ()
     reserved: tuple[Range, ...] = ()
     reserved_names: tuple[Name, ...] = ()
     options: tuple[Option, ...] = ()
     doc: str = ""
+    visibility: Visibility | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,10 +191,10 @@ class Service:
 
 @dataclass(frozen=True, slots=True)
 class Import:
-    """Another file whose names can be used; those that it imports itself can be where it says `public`."""
+    """Another file whose names can be used: in options alone, by whoever imports this file too, or neither."""
 
     path: str
-    public: bool = False
+    kind: ImportKind = "plain"
     span: Span | None = None
 
 

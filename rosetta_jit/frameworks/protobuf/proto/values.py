@@ -14,7 +14,7 @@ from rosetta_jit.catalogue import proto as say
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Name, Option, Value, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Word
 from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ class ValueReader:
             for part in name.children
             if isinstance(part, Tree) or part.type != "DOT"
         )
+        self.checked(Name(".".join(parts), self.span(name)))
         return Option(parts, self.option_value(value), self.span(name))
 
     def option_value(self, node: Node) -> Value:
@@ -58,8 +59,15 @@ class ValueReader:
                 return self.number(node)
             case "word":
                 return Word("".join(tokens_of(node)))
+            case "listing":
+                return Listing(tuple(self.option_value(child) for child in cast("list[Node]", node.children)))
             case _:
-                return Aggregate()
+                return Aggregate(tuple(self.entry(child) for child in cast("list[Node]", node.children)))
+
+    def entry(self, node: Node) -> Entry:
+        key, value = cast("tuple[Node | Token, Node]", node.children)
+        name = f"({''.join(tokens_of(key))})" if isinstance(key, Tree) else str(key)
+        return Entry(name, self.option_value(value))
 
     # Words, numbers, strings
 

@@ -1,0 +1,216 @@
+"""Lark tree to the declarations of `tree`: one method a rule of the grammar.
+
+What depends on other statements is left to the checks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from lark import Token, Tree
+
+from rosetta_jit.catalogue import proto as say
+from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
+from rosetta_jit.frameworks.protobuf.proto.tree import (
+    EDITIONS,
+    Enum,
+    EnumValue,
+    Extend,
+    Field,
+    Label,
+    MapType,
+    Message,
+    Name,
+    Oneof,
+    Range,
+    Version,
+    Visibility,
+)
+from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.frameworks.protobuf.proto.values import Node
+
+MAX_NUMBER = 2**31 - 1
+MAX_MESSAGE_SET_NUMBER = 2**31 - 2
+"""`max` in an extension range of a message with `message_set_wire_format`."""
+MAX_FIELD_NUMBER = 2**29 - 1
+
+
+@dataclass(frozen=True, slots=True)
+class DeclarationReader(ValueReader):
+    """Reads messages and enums of a source in some version of the language."""
+
+    version: Version
+
+    def visibility(self, node: Node) -> Visibility | None:
+        word = tokens_of(node)[0]
+        if word.type != "VISIBILITY":
+            return None
+        if self.version != "2024":
+            self.problems.append(say_edition.early_visibility(self.at(word)))
+        return cast("Visibility", str(word))
+
+    # Messages
+
+    def message(self, node: Node) -> Message:
+        return self.body(node, self.name(tokens_of(node)[-1]), self.doc(node), self.visibility(node))
+
+    def body(self, node: Node, name: Name, doc: str, visibility: Visibility | None = None) -> Message:
+        members = tuple(
+            self.oneof(child) if child.data == "oneof" else self.field(child) for child in all_of(node, "field", "group", "oneof")
+        )
+        self.check_words(node)
+        extends, extend_groups = self.extends(node)
+        reserved, reserved_names = self.reserved(node)
+        options = self.options(node)
+        message_set = any(option.parts == ("message_set_wire_format",) for option in options)
+        return Message(
+            name=name,
+            members=members,
+            messages=(
+                *(self.message(child) for child in all_of(node, "message")),
+                *self.groups(node),
+                *(group for oneof in all_of(node, "oneof") for group in self.groups(oneof)),
+                *extend_groups,
+            ),
+            enums=tuple(self.enum(child) for child in all_of(node, "enum")),
+            extends=extends,
+            extensions=self.extensions(node, MAX_MESSAGE_SET_NUMBER if message_set else MAX_FIELD_NUMBER),
+            extension_options=tuple(option for block in all_of(node, "extensions") for option in self.settings(block)),
+            reserved=reserved,
+            reserved_names=reserved_names,
+            options=options,
+            doc=doc,
+            visibility=visibility,
+        )
+
+    def check_words(self, node: Node) -> None:
+        """In edition 2024 a field of a message cannot begin with the words for visibility, though types may have such names."""
+        for field in all_of(node, "field"):
+            first = ends(field)[0]
+            if self.version == "2024" and first in VISIBILITIES:
+                self.problems.append(say_edition.misplaced_visibility(self.at(first), first))
+
+    def groups(self, node: Node) -> Iterator[Message]:
+        """The messages that the groups among some fields declare."""
+        for child in _fields(node):
+            if child.data == "group":
+                yield self.body(child, self.name(tokens_of(child)[-2]), self.doc(child))
+
+    def field(self, node: Node) -> Field:
+        tokens = tokens_of(node)
+        group = node.data == "group"
+        # `repeated = 1` without a label is a field of that name: only the count of words tells.
+        label = tokens[0] if len(tokens) > 2 + group else None
+        number = tokens[-1]
+        if group:
+            written = self.name(tokens[-2])
+            if not written.text[0].isupper():
+                # Its field would have the same name.
+                self.problems.append(say.lower_case_group(written))
+            name, type_ = Name(written.text.lower(), written.span), written
+        else:
+            name, type_ = self.name(tokens[-2]), self.type(node)
+        return Field(
+            name=name,
+            type=type_,
+            number=self.integer(number),
+            number_span=self.at(number),
+            label=cast("Label", str(label)) if label else None,
+            label_span=self.at(label) if label else None,
+            group=group,
+            options=self.settings(node),
+            doc=self.doc(node),
+            span=self.at(tokens[-2]),
+        )
+
+    def type(self, node: Node) -> Name | MapType:
+        for map_ in all_of(node, "map"):
+            key, value = all_of(map_, "path")
+            return MapType(self.path(key), self.path(value), self.at(tokens_of(map_)[0]))
+        return self.path(one(node, "path"))
+
+    def oneof(self, node: Node) -> Oneof:
+        return Oneof(
+            name=self.name(tokens_of(node)[1]),
+            fields=tuple(self.field(child) for child in _fields(node)),
+            options=self.options(node),
+            doc=self.doc(node),
+        )
+
+    def extends(self, node: Node) -> tuple[tuple[Extend, ...], list[Message]]:
+        """The extend blocks, and the messages of the groups in them: these are declared where the block stands."""
+        blocks = list(all_of(node, "extend"))
+        for block in blocks:
+            if not _fields(block):
+                self.problems.append(say.empty_extend(self.span(one(block, "path"))))
+        groups = [group for block in blocks for group in self.groups(block)]
+        return tuple(self.extend(block) for block in blocks), groups
+
+    def extend(self, node: Node) -> Extend:
+        return Extend(self.path(one(node, "path")), tuple(self.field(child) for child in _fields(node)))
+
+    def extensions(self, node: Node, limit: int) -> tuple[Range, ...]:
+        return tuple(self.range(child, limit) for block in all_of(node, "extensions") for child in all_of(block, "range"))
+
+    def reserved(self, node: Node, limit: int = MAX_FIELD_NUMBER) -> tuple[tuple[Range, ...], tuple[Name, ...]]:
+        blocks = list(all_of(node, "reserved"))
+        return (
+            tuple(self.range(child, limit) for block in blocks for child in all_of(block, "range")),
+            tuple(name for block in blocks for name in self.reserved_names(block)),
+        )
+
+    def reserved_names(self, node: Node) -> Iterator[Name]:
+        """Strings in proto2 and proto3, identifiers in editions."""
+        quoted = [Name(self.text(string), self.span(string)) for string in all_of(node, "string")]
+        bare = [self.name(token) for token in tokens_of(node)]
+        if self.version in EDITIONS:
+            self.problems.extend(say_edition.reserved_string(name) for name in quoted)
+        else:
+            self.problems.extend(say_edition.reserved_identifier(name) for name in bare)
+        yield from (*quoted, *bare)
+
+    def range(self, node: Node, limit: int) -> Range:
+        first, *rest = node.children
+        span = self.span(node)
+        start = self.end(first, limit)
+        if not rest:
+            return Range(start, start, span)
+        word, last = rest
+        if str(word) != "to":
+            self.problems.append(say.unexpected(self.at(cast("Token", word)), str(word), {"COMMA", "SEMICOLON", "TO"}))
+        return Range(start, self.end(last, limit), span)
+
+    def end(self, node: Node | Token, limit: int) -> int:
+        """One end of a range."""
+        if isinstance(node, Tree):
+            return self.signed(node)
+        if str(node) != "max":
+            self.problems.append(say.unexpected(self.at(node), str(node), {"NUMBER", "MAX"}))
+        return limit
+
+    # Enums
+
+    def enum(self, node: Node) -> Enum:
+        reserved, reserved_names = self.reserved(node, MAX_NUMBER)
+        return Enum(
+            name=self.name(tokens_of(node)[-1]),
+            values=tuple(self.value(child) for child in all_of(node, "value")),
+            reserved=reserved,
+            reserved_names=reserved_names,
+            options=self.options(node),
+            visibility=self.visibility(node),
+        )
+
+    def value(self, node: Node) -> EnumValue:
+        number = one(node, "signed")
+        return EnumValue(self.name(tokens_of(node)[0]), self.signed(number), self.span(number), self.settings(node))
+
+
+def _fields(node: Node) -> list[Node]:
+    return list(all_of(node, "field", "group"))

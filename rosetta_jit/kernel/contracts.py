@@ -1,0 +1,54 @@
+"""What a routine may rely on and what its callers may: the two sides of its contract, for the proof."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.linear import Linear
+from rosetta_jit.kernel.paths import from_begin, variable
+from rosetta_jit.kernel.symbolic import Scope, condition, demand, entry, evaluate, oblige, unknown
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Call, Kernel, Routine
+
+MESSAGE = ("begin", "end")
+"""What every routine sees of its caller."""
+
+
+def inside(kernel: Kernel, routine: Routine) -> Scope:
+    """The scope at the start of a routine: any arguments that it allows."""
+    scope = entry(kernel)
+    scope.locals = {name: scope.locals[name] for name in MESSAGE}
+    for parameter in routine.parameters:
+        scope.locals[parameter.name] = parameter.type, unknown(scope, parameter.type)
+    for required in routine.requires:
+        scope.facts.assume(condition(scope, required))
+    return scope
+
+
+def keep(scope: Scope, routine: Routine) -> None:
+    """Prove at the end of a routine's body what its callers rely on."""
+    for result in routine.results:
+        demand(result.name in scope.locals and scope.locals[result.name][0] == result.type, f"no {result.type} {result.name}")
+    for ensured in routine.ensures:
+        oblige(scope, condition(scope, ensured), "a routine that may break its promise")
+
+
+def bind(scope: Scope, routine: Routine, call: Call) -> None:
+    """Prove what a call owes, and bind its results.
+
+    A result of type i64 is a position if an argument is one: it is kept as a distance from `begin`.
+    """
+    inner = Scope(scope.strides, scope.facts, {name: scope.locals[name] for name in MESSAGE}, scope.used, scope.capacity)
+    for parameter, argument in zip(routine.parameters, call.arguments, strict=True):
+        inner.locals[parameter.name] = typed = evaluate(scope, argument)
+        demand(typed[0] == parameter.type, f"{typed[0]} where {parameter.type} belongs")
+    for required in routine.requires:
+        oblige(inner, condition(inner, required), "a call that asks for what may not be there")
+    moves = any(isinstance(value, Linear) and from_begin(value) for _, value in (inner.locals[p.name] for p in routine.parameters))
+    for result in routine.results:
+        inner.locals[result.name] = result.type, variable(scope, result.type, relative=moves and result.type == "i64")
+    for ensured in routine.ensures:
+        scope.facts.assume(condition(inner, ensured))
+    for local, result in zip(call.results, routine.results, strict=True):
+        scope.locals[local.name] = inner.locals[result.name]

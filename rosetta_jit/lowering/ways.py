@@ -1,0 +1,77 @@
+"""A block with `when`s as the blocks without, one for each way through it: each way must set everything, once.
+
+A way that ends in a rejection owes nothing. In a loop each round may go another way; there all ways must set the same places, so that
+what one way sets over all rounds is what any mixture sets.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import check as words
+from rosetta_jit.lowering.typed import Assign, For, Reject, SetLength, When
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.typed import Rule, Step
+    from rosetta_jit.source import Span
+
+MAX_WAYS = 64
+"""Ways through a block that are checked."""
+
+Ways = list[tuple["Rule", ...]]
+
+
+class TooManyWaysError(Exception):
+    """More ways than `MAX_WAYS`; never leaves the checker."""
+
+    def __init__(self, span: Span | None) -> None:
+        super().__init__()
+        self.span = span
+
+
+def ways(rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Ways:
+    """Every way through a block that does not end in a rejection.
+
+    Raises
+    ------
+    TooManyWaysError
+    """
+    found: Ways = [()]
+    for rule in rules:
+        parts = _ways_of(rule, problems)
+        if len(found) * len(parts) > MAX_WAYS:
+            raise TooManyWaysError(rule.span)
+        found = [(*before, *part) for before, part in product(found, parts)]
+    return found
+
+
+def _ways_of(rule: Rule, problems: list[Diagnostic]) -> Ways:
+    match rule:
+        case Assign() | SetLength():
+            return [(rule,)]
+        case Reject():
+            return []
+        case When(_, then, otherwise):
+            return ways(then, problems) + ways(otherwise, problems)
+        case For(body=body):
+            inside = ways(body, problems)
+            if len({frozenset(_set_by(way)) for way in inside}) > 1:
+                problems.append(words.uneven_rounds(rule.span))
+            return [(replace(rule, body=way),) for way in inside]
+
+
+def _set_by(way: tuple[Rule, ...]) -> list[tuple[bool, tuple[Step, ...]]]:
+    """The places that rules without `when` set."""
+    found: list[tuple[bool, tuple[Step, ...]]] = []
+    for rule in way:
+        match rule:
+            case Assign(place) | SetLength(place):
+                found.append((isinstance(rule, Assign), place.steps))
+            case For(body=body):
+                found += _set_by(body)
+            case _:
+                pass
+    return found

@@ -1,0 +1,131 @@
+"""Packed and bare structs, typed blobs, and unions: what the wire has for them, and where they are refused."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.errors import SchemaError
+
+UNION = '("v" (:union ("i" :int) ("d" :double) ("s" :string) ("list" (:list :int)) ("pair" (:bottle ("a" :int) ("b" :string)))))'
+
+
+def programs(body, backend="interpreter", encoding="yarp4"):
+    options = {"schema": {"t.bottle-schema": f'"t.T"\n( {body} )'}, "encoding": encoding, "backend": backend}
+    return rj.Decoder.of("t.T", **options), rj.Encoder.of("t.T", **options)
+
+
+def check(body, values, data, backend="interpreter"):
+    decode, encode = programs(body, backend)
+    holder = encode.new()
+    for name, value in values.items():
+        setattr(holder, name, value)
+    assert encode(holder) == data
+    assert encode(decode(data)) == data
+
+
+def test_packed_fields_have_no_codes():
+    body = ':packed ("a" :int8) ("b" :double (:padding 5)) ("s" :string) ("xs" (:list :int16)) ("p" (:bottle :packed ("c" :uint8)))'
+    data = struct.pack("<bd5xi2sii2hB", 1, 2.5, 2, b"hi", 256 | 64, 2, 3, 4, 200)
+    check(body, {"a": 1, "b": 2.5, "s": "hi", "xs": [3, 4], "p": {"c": 200}}, data)
+
+
+def test_any_padding_is_read():
+    decode, _ = programs(':packed ("a" :int8 (:padding 3))')
+    assert decode(b"\5abc").a == 5
+
+
+def test_a_bare_struct_has_a_code_and_a_count():
+    check(':bare ("a" :int8) ("s" :string)', {"a": 1, "s": "x"}, struct.pack("<iibi1s", 256, 2, 1, 1, b"x"))
+
+
+def test_a_typed_blob():
+    body = '("n" :int) ("head" (:blob (:bottle :packed ("a" :int16) ("b" :double))))'
+    check(body, {"n": 7, "head": {"a": 1, "b": 2.0}}, struct.pack("<6ihd", 256, 2, 1, 7, 12, 10, 1, 2.0))
+
+
+def test_typed_blobs_are_blobs_like_others():
+    head = '("head" (:blob (:bottle :packed ("a" :int16))))'
+    check(f'("b" :blob) {head}', {"b": b"x", "head": {"a": 1}}, struct.pack("<3i1sih", 256 | 12, 2, 1, b"x", 2, 1))
+    check(f':packed {head} ("n" :int8)', {"head": {"a": 1}, "n": 2}, struct.pack("<ihb", 2, 1, 2))
+    union = f'("n" :int) ("v" (:union ("i" :int) {head}))'
+    check(union, {"n": 7, "v": {"head": {"a": 1}}}, struct.pack("<6ih", 256, 2, 1, 7, 12, 2, 1))
+
+
+def test_what_came_later_is_empty_before():
+    body = '("n" :int) ("new" (:list :int) (:since :yarp4)) ("v" (:union ("i" :int) ("s" :string)))'
+    decode, encode = programs(body, encoding="yarp3")
+    data = struct.pack("<4i", 257, 2, 7, 5)
+    assert decode(data).to_dict()["new"] == []
+    assert encode(decode(data)) == data
+    newer = decode(data)
+    newer.new = [1, 2]
+    assert programs(body)[0](programs(body)[1](newer)).to_dict()["new"] == [1, 2]
+
+
+def test_spread_elements_are_counted_one_by_one():
+    body = '("n" :int) ("points" (:list (:bottle ("x" :int) ("y" :int))) :rest :spread)'
+    decode, encode = programs(body)
+    data = struct.pack("<2i5i", 257, 5, 9, 1, 2, 3, 4)  # all of one type, so that it is told once
+    assert decode(data).to_dict() == {"n": 9, "points": [{"x": 1, "y": 2}, {"x": 3, "y": 4}]}
+    assert encode(decode(data)) == data
+    with pytest.raises(rj.DecodeError, match="1 more than a multiple of 2"):
+        decode(struct.pack("<2i4i", 257, 4, 9, 1, 2, 3))
+
+
+CASES = [
+    ({"i": 5}, struct.pack("<4i", 257, 2, 7, 5)),  # the case makes all elements of one type
+    ({"d": 0.5}, struct.pack("<5id", 256, 2, 1, 7, 20, 0.5)),
+    ({"s": "ab"}, struct.pack("<6i2s", 256, 2, 1, 7, 4, 2, b"ab")),
+    ({"list": [1, 2]}, struct.pack("<8i", 256, 2, 1, 7, 257, 2, 1, 2)),
+    ({"pair": {"a": 3, "b": "c"}}, struct.pack("<10i1s", 256, 2, 1, 7, 256, 2, 1, 3, 4, 1, b"c")),
+]
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+def test_the_code_of_an_element_tells_the_case(backend):
+    for case, data in CASES:
+        check(f'("n" :int) {UNION}', {"n": 7, "v": case}, data, backend)
+
+
+def test_a_specialised_case_is_read_from_either_form():
+    decode, _ = programs(f'("n" :int) {UNION}')
+    assert decode(struct.pack("<6i", 256, 2, 1, 7, 1, 5)).v.i == 5
+    with pytest.raises(rj.DecodeError, match=r"tag|constant"):
+        decode(struct.pack("<5iq", 256, 2, 1, 7, 17, 5))
+
+
+def test_a_union_alone():
+    for case, data in [({"i": 5}, struct.pack("<3i", 257, 1, 5)), ({"s": "ab"}, struct.pack("<3i2s", 260, 1, 2, b"ab"))]:
+        check(UNION, {"v": case}, data)
+
+
+def test_a_dict_of_anything():
+    body = '("n" :int) ("x" (:dict (:union ("i" :int) ("s" :string))))'
+    entry = struct.pack("<iii1si1s", 260, 2, 1, b"k", 1, b"v") + struct.pack("<iiii1sii", 256, 2, 4, 1, b"m", 1, 5)
+    data = struct.pack("<4iiii", 256, 2, 1, 7, 768, 256, 2) + entry
+    decode, encode = programs(body)
+    holder = decode(data)
+    assert (holder.x["k"].s, holder.x["m"].i) == ("v", 5)
+    assert encode(holder) == data
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ('("p" (:bottle :packed ("a" :int)))', "packed-element"),
+        ('("b" (:blob (:bottle ("s" :string))))', "blob-of-any-size"),
+        (f'{UNION} ("n" :int)', "misplaced-union"),
+        (f'("x" (:list (:bottle {UNION}))) ("y" (:list (:union ("i" :int))))', "misplaced-union"),
+        (f'("n" :int) ("u" (:union ("b" (:bottle {UNION}))))', "misplaced-union"),
+        ('("n" :int) ("u" (:union ("a" :vocab) ("b" :bool)))', "like-cases"),
+        (':packed ("u" (:union ("a" :int)))', "misplaced-union"),
+        ('("n" :int) ("xs" (:list :int) :rest :spread)', "not-spread"),
+        ('("n" :int) ("xs" (:list (:bottle ("y" (:list :int) :rest))) :rest :spread)', "not-spread"),
+    ],
+)
+def test_what_has_no_bytes(body, words):
+    with pytest.raises(SchemaError, match=rf"\[{words}\]"):
+        programs(body)

@@ -1,0 +1,2 @@
+service A extends Bass { void f() }
+service Base extends Base {}

@@ -1,0 +1,160 @@
+"""What a mapping decides: conditions, choices, tables and rejections, in both directions and in every backend."""
+
+from __future__ import annotations
+
+import pytest
+
+import rosetta_jit as rj
+
+BACKENDS = ["numba", "python", "interpreter"]
+FILES = {
+    "wire.bottle-schema": '"wire" (("encoding" :string) ("count" :int) ("level" :double) ("values" (:list :double)))',
+    "holder.proto": """syntax = "proto2"; package h;
+message Picture {
+  enum Mode { GRAY = 0; RGB = 1; BGR = 2; }
+  required Mode mode = 1; required int32 count = 2; required double level = 3; required bool loud = 4; repeated double values = 5;
+}""",
+}
+HEAD = """import "wire.bottle-schema"
+import "holder.proto"
+data-holder: h.Picture
+wire-schema: wire
+"""
+UNPACK = """unpack-rules:
+  reject "negative counts mean nothing" when .count < 0 or .count == 99
+  .mode = table(.encoding) { "mono8" = h.Picture.Mode.GRAY, "rgb8" = h.Picture.Mode.RGB, "bgr8" = h.Picture.Mode.BGR,
+                             otherwise reject "no such encoding" }
+  .count = int32(.count & 0xff | 1 << 8) if .count > 1000 else .count
+  .loud = not (.level <= 10.5) and .encoding != "mono8"
+  when .encoding == "mono8"
+    .level = -.level
+    len(.values) = 0
+  else
+    .level = .level
+    .values = .values
+  end
+"""
+PACK = """pack-rules:
+  .encoding = table(.mode) { h.Picture.Mode.GRAY = "mono8", h.Picture.Mode.RGB = "rgb8", otherwise "bgr8" }
+  .count = .count
+  when .mode == h.Picture.Mode.GRAY
+    .level = -.level
+    len(.values) = 0
+  else
+    reject "too many values" when len(.values) > 3
+    .level = .level
+    len(.values) = len(.values)
+    for i from 0 to len(.values)
+      .values[i] = .values[i] if .values[i] >= 0 else 0.0
+    end
+  end
+"""
+
+
+def text(*blocks):
+    return {**FILES, "m.mapping": HEAD + "".join(blocks)}
+
+
+def folder(tmp_path, *blocks):
+    for name, content in text(*blocks).items():
+        (tmp_path / name).write_text(content)
+    return tmp_path / "m.mapping"
+
+
+def wire(backend, **values):
+    encode = rj.Encoder.of("wire", schema=FILES, imports=["wire.bottle-schema"], encoding="yarp3", backend=backend)
+    return encode(encode.holder_type.from_dict({"encoding": "rgb8", "count": 1, "level": 1.0, "values": [1.0], **values}))
+
+
+def read_wire(data):
+    return rj.Decoder.of("wire", schema=FILES, imports=["wire.bottle-schema"], encoding="yarp3", backend="interpreter")(data).to_dict()
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_conditions_to_unpack(tmp_path, backend):
+    decode = rj.Decoder(folder(tmp_path, UNPACK), encoding="yarp3", backend=backend)
+
+    def decoded(**values):
+        return decode(wire(backend, **values)).to_dict()
+
+    assert decoded() == {"mode": "RGB", "count": 1, "level": 1.0, "loud": False, "values": [1.0]}
+    assert decoded(encoding="bgr8", level=10.75) == {"mode": "BGR", "count": 1, "level": 10.75, "loud": True, "values": [1.0]}
+    assert decoded(encoding="mono8", level=11.0) == {"mode": "GRAY", "count": 1, "level": -11.0, "loud": False, "values": []}
+    assert decoded(count=0x1234)["count"] == 0x34 | 256
+    for wrong in ({"count": -1}, {"count": 99}):
+        with pytest.raises(rj.DecodeError, match="negative counts mean nothing") as error:
+            decoded(**wrong)
+        assert error.value.kind == "rejected"
+        assert "m.mapping:6:3" in str(error.value)
+    for wrong in ("mono16", "", "rgb8 ", "rgb"):
+        with pytest.raises(rj.DecodeError, match="no such encoding") as error:
+            decoded(encoding=wrong)
+        assert (error.value.kind, error.value.path) == ("rejected", ".mode")
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_conditions_to_pack(tmp_path, backend):
+    encode = rj.Encoder(folder(tmp_path, PACK), encoding="yarp3", backend=backend)
+
+    def encoded(**values):
+        given = {"mode": "RGB", "count": 5, "level": 2.0, "loud": True, "values": [1.0, -2.0, 3.0], **values}
+        return read_wire(encode(encode.holder_type.from_dict(given)))
+
+    assert encoded() == {"encoding": "rgb8", "count": 5, "level": 2.0, "values": [1.0, 0.0, 3.0]}
+    assert encoded(mode="BGR", values=[]) == {"encoding": "bgr8", "count": 5, "level": 2.0, "values": []}
+    assert encoded(mode="GRAY") == {"encoding": "mono8", "count": 5, "level": -2.0, "values": []}
+    with pytest.raises(rj.EncodeError, match="too many values") as error:
+        encoded(values=[1.0] * 4)
+    assert error.value.kind == "rejected"
+
+
+def problems(tmp_path, *blocks):
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder(folder(tmp_path, *blocks), backend="interpreter")
+    return [(problem.code, problem.span.source.line_column(problem.span.start)[0]) for problem in error.value.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("rule", "code"),
+    [
+        (".mode = .count == 1", "type-clash"),
+        (".loud = .count", "lossy-conversion"),
+        (".loud = .count and true", "condition"),
+        (".loud = not .level", "condition"),
+        ('.loud = .encoding < "a"', "not-comparable"),
+        ('.loud = .count == "a"', "not-comparable"),
+        (f'.loud = .encoding == "{"a" * 65}"', "long-text"),
+        (".count = 1 if .loud else 2", "unknown-field"),
+        (".count = .count if .level > 1 else .level", "lossy-conversion"),
+        ('.level = 1.0 if .count > 1 else "a"', "mixed-choice"),
+        ('when .count > 1 reject "a" .count = 1 end', "unreachable"),
+        (".level = .level & 1", "operand"),
+        ("when .count end", "condition"),
+        ("when .count > 1 .count = 1 end", "never-set"),
+        ("for i from 0 to 2 when i > 0 .count = 1 else .level = 1.0 end end", "uneven-rounds"),
+    ],
+)
+def test_mistakes(tmp_path, rule, code):
+    rules = f"unpack-rules:\n  {rule}\n"
+    assert code in {found for found, line in problems(tmp_path, rules) if line == 6 or code == "never-set"}
+
+
+def test_each_way_sets_everything(tmp_path):
+    without = UNPACK.replace("    .level = .level\n", "")
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder(folder(tmp_path, without))
+    (problem,) = error.value.diagnostics
+    assert problem.code == "never-set"
+    assert problem.notes[-1] == "in one way through the `when` blocks, not in all"
+
+
+def test_ways_are_bounded(tmp_path):
+    many = "".join(f"  when .count > {number} .count = 1 else .count = 2 end\n" for number in range(200))
+    assert ("too-many-ways", 12) in problems(tmp_path, "unpack-rules:\n" + many)
+
+
+def test_a_thousand_rejections_are_no_nesting(tmp_path):
+    many = "".join(f'  reject "number {number}" when .count == {number}\n' for number in range(300))
+    decode = rj.Decoder(folder(tmp_path, UNPACK + many), encoding="yarp3", backend="interpreter")
+    with pytest.raises(rj.DecodeError, match="number 250"):
+        decode(wire("interpreter", count=250))
