@@ -8,7 +8,8 @@ import rosetta_jit as rj
 from rosetta_jit.cli import main
 
 FILES = {
-    "wire.bottle-schema": '"wire" (("tag" (:vocab :|x|) :|x|) ("head" (:bottle ("seq" :int) ("id" :string))) ("a" :int) ("b" :double) ("c" :string) ("d" (:list :double)))',
+    "wire.bottle-schema": """"wire" (("tag" (:vocab :|x|) :|x|) ("head" (:bottle ("seq" :int) ("id" :string)))
+    ("a" :int) ("b" :double) ("c" :string) ("d" (:list :double)))""",
     "holder.proto": """syntax = "proto2"; package h;
 message Holder { optional int32 a = 1; optional double b = 2; optional string c = 3; repeated double d = 4; optional string note = 5; }""",
 }
@@ -31,8 +32,19 @@ def warnings(path):
 
 
 def test_what_is_left_out_is_warned_of(mapping):
-    rules = 'unpack-rules:\n  .a = .head.seq\n  .d = .d\npack-rules:\n  .head.seq = .a\n  .head.id = ""\n  .a = len(.d)\n  .b = 0\n  .c = ""\n  len(.d) = 0\n'
-    path = mapping(rules.replace(".a = len(.d)", ".a = int32(len(.d))"))
+    unpack = "unpack-rules:
+  .a = .head.seq
+  .d = .d
+"
+    pack = 'pack-rules:
+  .head.seq = .a
+  .head.id = ""
+  .a = int32(len(.d))
+  .b = 0
+  .c = ""
+  len(.d) = 0
+'
+    path = mapping(unpack + pack)
     assert sorted(warnings(path)) == sorted(
         [
             *[("never-read", name) for name in (".head.id", ".a", ".b", ".c")],
