@@ -32,18 +32,8 @@ def warnings(path):
 
 
 def test_what_is_left_out_is_warned_of(mapping):
-    unpack = "unpack-rules:
-  .a = .head.seq
-  .d = .d
-"
-    pack = 'pack-rules:
-  .head.seq = .a
-  .head.id = ""
-  .a = int32(len(.d))
-  .b = 0
-  .c = ""
-  len(.d) = 0
-'
+    unpack = "unpack-rules:\n  .a = .head.seq\n  .d = .d\n"
+    pack = 'pack-rules:\n  .head.seq = .a\n  .head.id = ""\n  .a = int32(len(.d))\n  .b = 0\n  .c = ""\n  len(.d) = 0\n'
     path = mapping(unpack + pack)
     assert sorted(warnings(path)) == sorted(
         [
