@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error
+from rosetta_jit.catalogue.mapping import error, shorten
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
-DISAGREES = "the holder does not have what the mapping says of it"
-"""Why a holder is refused that no message could have been unpacked to."""
+
+def disagrees(place: str, wanted: str) -> str:
+    """Why a holder is refused that no message could have been unpacked to."""
+    return f"`{shorten(place)}` is not `{shorten(wanted)}`, as the mapping says"
 
 
 def no_inverse(span: Span | None, why: str, rule: Span | None) -> Diagnostic:

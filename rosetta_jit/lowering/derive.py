@@ -14,6 +14,7 @@ from rosetta_jit.catalogue import derive as words
 from rosetta_jit.lowering.inverse import NoInverseError, fields_in, reads_in_index, replaced, solve
 from rosetta_jit.model.expr import Binary, Len, Path
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.printer import show_expr
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -117,7 +118,8 @@ class _Packing:
         if any(_side(each) == "wire" for each in fields_in(wanted)):
             self.problems.append(words.several_fields(rule.value.span))
             return ()
-        return (When(Binary("!=", rule.place, wanted, rule.span), (Reject(words.DISAGREES, rule.span),), (), rule.span),)
+        reason = words.disagrees(show_expr(rule.place), show_expr(wanted))
+        return (When(Binary("!=", rule.place, wanted, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
 
 def _setting(target: Path | Len, value: Expr, rule: Relation) -> tuple[Rule, ...]:

@@ -92,7 +92,7 @@ def test_both_ways(tmp_path, backend):
 @pytest.mark.parametrize(
     ("change", "kind", "text"),
     [
-        ({"three": 4}, "rejected", "does not have what the mapping says"),
+        ({"three": 4}, "rejected", "`.three` is not `3`, as the mapping says"),
         ({"half": 3}, "range", "remainder"),
         ({"count": 1 << 40}, "range", "does not fit int32"),
         ({"points": [{"x": 1.0, "y": 1 << 40}]}, "range", "does not fit int32"),
@@ -113,7 +113,7 @@ def test_a_derived_direction_is_what_one_would_write(tmp_path):
   .angles[1] = float32(radians(.roll))
   .angles[2] = float32(radians(.pitch))
 pack-rules:
-  reject "the holder does not have what the mapping says of it" when len(.angles) != 3
+  reject "`len(.angles)` is not `3`, as the mapping says" when len(.angles) != 3
   .yaw = degrees(.angles[0])
   .roll = degrees(.angles[1])
   .pitch = degrees(.angles[2])
