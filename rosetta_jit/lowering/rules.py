@@ -45,6 +45,8 @@ class Runner:
                     self.target.set_length(place, self.count(here.of(value)), here)
                 case typed.For():
                     self.loop(rule, here)
+                case typed.When(condition, (typed.Reject(text, span),), ()):
+                    here.at_rule(span).reject(text, when=here.of(condition))
                 case typed.When(condition, then, otherwise):
                     holds = here.of(condition)
                     self.writer.emit(If(holds, self.branch(then, values), self.branch(otherwise, values)))

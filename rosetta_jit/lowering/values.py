@@ -98,9 +98,10 @@ class Values:
         self.writer.emit(*rest)
         return first
 
-    def reject(self, reason: str) -> None:
-        """Refuse the message."""
-        self.writer.expect(Const("bool", value=False), "rejected", self.where, reason, line=self.line)
+    def reject(self, reason: str, *, when: Expr | None = None) -> None:
+        """Refuse the message, always or where something holds."""
+        good = Const("bool", value=False) if when is None else Unary("not", when)
+        self.writer.expect(good, "rejected", self.where, reason, line=self.line)
 
     def at_rule(self, span: Span | None) -> Values:
         """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""

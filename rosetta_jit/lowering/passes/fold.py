@@ -17,9 +17,12 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, L
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.arithmetic import Value
-    from rosetta_jit.kernel.ir import Scalar
+    from rosetta_jit.kernel.ir import Comparison, Scalar
 
 COMMUTATIVE = frozenset({"add", "mul", "and", "or", "xor"})
+OPPOSITE: dict[str, Comparison] = {"eq": "ne", "ne": "eq", "lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}
+"""The comparison that holds where one does not; of floats that may be NaN only equality has one."""
+
 TRUE, FALSE = Const("bool", value=True), Const("bool", value=False)
 
 
@@ -28,6 +31,8 @@ def folded(expr: Expr) -> Expr:
     match expr:
         case Unary("not", Unary("not", operand)):
             return operand
+        case Unary("not", Compare(op, left, right)) if op in ("eq", "ne") or type_of(left) not in FLOATS:
+            return Compare(OPPOSITE[op], left, right)
         case (
             Unary(_, Const()) | Convert(_, Const()) | Binary(_, Const(), Const()) | Compare(_, Const(), Const()) | Fits(_, Const(), Const())
         ):
