@@ -43,6 +43,9 @@ if TYPE_CHECKING:
 
 PREDICATES = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 FLOAT_BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv", "rem": "frem"}
+ANGULAR = frozenset(("sin", "cos", "tan", "asin", "acos", "atan"))
+"""Functions of the C library."""
+
 BITWISE = {"and": "and_", "or": "or_", "xor": "xor", "shl": "shl"}
 
 
@@ -154,6 +157,8 @@ def _unary(frame: Frame, function: str, value: ir.Value, type_: Scalar) -> ir.Va
     if is_float(type_):
         if function == "neg":
             return builder.fneg(value)
+        if function in ANGULAR:
+            return builder.call(intrinsic(frame.module, function, kind, [kind]), [value])
         name = {"abs": "fabs"}.get(function, function)
         return builder.call(intrinsic(frame.module, f"llvm.{name}.{type_}", kind, [kind]), [value])
     match function:
@@ -169,6 +174,8 @@ def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scala
     builder = frame.builder
     if op in ("min", "max"):
         return _extremum(frame, op, left, right, type_)
+    if op == "atan2":
+        return builder.call(intrinsic(frame.module, op, left.type, [left.type] * 2), [left, right])
     if is_float(type_):
         return getattr(builder, FLOAT_BINARY[op])(left, right)
     if op in BITWISE:

@@ -133,7 +133,7 @@ def _read(names: Names, type_: Scalar, address: Address, order: str) -> str:
 
 def _binary(op: str, type_: Scalar, left: str, right: str) -> str:
     match op, type_ in FLOATS:
-        case (("min" | "max" | "rem"), True):
+        case (("min" | "max" | "rem" | "atan2"), True):
             return f'binary("{type_}", "{op}", {left}, {right})'
         case "div", True:
             return f"({left} / {right})"

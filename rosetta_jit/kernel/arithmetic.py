@@ -115,6 +115,8 @@ def _integer_binary(type_: Scalar, op: Arithmetic, left: int, right: int) -> int
             return min(left, right)
         case "max":
             return max(left, right)
+        case "atan2":
+            raise AssertionError("atan2 of integers")
         case _:
             assert_never(op)
 
@@ -135,6 +137,8 @@ def _float_binary(op: Arithmetic, left: np.floating, right: Value) -> Value:
             return left if compare("lt", left, right) else right
         case "max":
             return left if compare("gt", left, right) else right
+        case "atan2":
+            return np.float64(math.atan2(float(left), float(right)))
         case _:
             raise AssertionError(f"{op} of floats")
 
@@ -151,8 +155,19 @@ def unary(type_: Scalar, function: Function, value: Value) -> Value:
         case "sqrt" | "floor" | "ceil" | "trunc" | "rint":
             demand(type_ in FLOATS, f"{function} of {type_}")
             return getattr(np, function)(value)
+        case "sin" | "cos" | "tan" | "asin" | "acos" | "atan":
+            demand(type_ == "f64", f"{function} of {type_}")
+            return np.float64(_angular(function, float(value)))
         case _:
             assert_never(function)
+
+
+def _angular(function: str, value: float) -> float:
+    """As the C library has it: NaN where there is no value."""
+    try:
+        return getattr(math, function)(value)
+    except ValueError:
+        return math.nan
 
 
 def compare(op: Comparison, left: Value, right: Value) -> bool:

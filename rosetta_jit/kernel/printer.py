@@ -60,6 +60,7 @@ SYMBOL = {
     "shr": ">>",
     "min": "min",
     "max": "max",
+    "atan2": "atan2",
     "eq": "==",
     "ne": "!=",
     "lt": "<",

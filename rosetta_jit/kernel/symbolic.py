@@ -42,6 +42,9 @@ MAX_POSITION = 1 << 60
 MAX_ROWS = 1 << 48
 """The capacity of any lane."""
 
+ROUNDING = frozenset(("sqrt", "floor", "ceil", "trunc", "rint"))
+"""Functions that a float32 has too."""
+
 Value = Linear | bool | None | All | Any
 """An integer, or a formula for a bool; None is a value of which nothing is known (every float)."""
 
@@ -240,7 +243,8 @@ def _binary(scope: Scope, op: Arithmetic, left: Typed, right: Typed) -> Typed:
     type_ = left[0]
     demand(type_ == right[0], f"{op} of {type_} and {right[0]}")
     if type_ in FLOATS:
-        demand(op in {"add", "sub", "mul", "div", "rem", "min", "max"}, f"{op} of floats")
+        demand(op in {"add", "sub", "mul", "div", "rem", "min", "max", "atan2"}, f"{op} of floats")
+        demand(op != "atan2" or type_ == "f64", f"{op} of {type_}")
         return type_, None
     if type_ == "bool":
         return type_, _logical(op, left[1], right[1])
@@ -298,6 +302,8 @@ def _integer_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, r
             return integers.shift_left(facts, left, right, limits(type_))
         case "shr":
             return integers.shift_right(facts, left, right, limits(type_))
+        case "atan2":
+            raise UnprovenError("atan2 of integers")
         case "min" | "max":
             return _extreme(facts, left, right, 1 if op == "max" else -1)
         case _:
@@ -329,7 +335,7 @@ def _unary(scope: Scope, expr: Unary) -> Typed:
             opposite = times(number, -1)
             return type_, in_range(scope, scope.facts.chosen(((number, number), (negated(number), opposite))), type_)
         case _:
-            demand(type_ in FLOATS, f"{expr.function} of {type_}")
+            demand(type_ == "f64" or (type_ == "f32" and expr.function in ROUNDING), f"{expr.function} of {type_}")
             return type_, None
 
 

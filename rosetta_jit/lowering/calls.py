@@ -3,7 +3,8 @@
 int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate])     of a float
 float32 float64 (x)   bool (x)   enum.name (x)
-radians degrees sqrt (x) of float64   floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide (x, y)
+radians degrees sqrt sin cos tan asin acos atan (x) atan2 (y, x) of float64
+floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide (x, y)
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
 
 INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
 FLOATS = ("float32", "float64")
-FUNCTIONS = ("radians", "degrees", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide")
+ANGULAR = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
+FUNCTIONS = ("radians", "degrees", *ANGULAR, "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide")
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -122,8 +124,10 @@ def _arity(expr: model.Call, scope: Scope) -> bool:
     match expr.function:
         case "min" | "max":
             fits, expected = found >= 2, "two or more values"
-        case "align" | "divide":
-            fits, expected = found == 2, "a number and a quantum" if expr.function == "align" else "two numbers"
+        case "align":
+            fits, expected = found == 2, "a number and a quantum"
+        case "divide" | "atan2":
+            fits, expected = found == 2, "two numbers"
         case _:
             fits, expected = found == 1, "one value"
     if not fits:

@@ -30,7 +30,8 @@ ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate"
 """``widen`` cannot fail; ``exact``, ``round`` (half to even) and ``truncate`` (toward zero) are a range error where the
 target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
 
-Function = OneOf["radians", "degrees", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
+Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
+Function = OneOf["radians", "degrees", Angular, "atan2", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,6 +122,10 @@ class Values:
                 return Binary("mul", arguments[0], Const(type_of(arguments[0]), factor))
             case "round":
                 return Unary("rint", arguments[0])
+            case "sin" | "cos" | "tan" | "asin" | "acos" | "atan":
+                return Unary(function, arguments[0])
+            case "atan2":
+                return Binary("atan2", arguments[0], arguments[1])
             case "sqrt" | "floor" | "ceil" | "abs":
                 if function == "abs" and type_of(arguments[0]) == "i64":
                     return Binary("max", arguments[0], self.negative(arguments[0]))

@@ -34,6 +34,7 @@ ALLOWED = frozenset(
         "Py_IncRef",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
+        *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
     ]
 )
 """Everything that object code may take from the process: what the entries call, and what LLVM turns intrinsics into."""
