@@ -15,27 +15,27 @@ FILES = {
 HEAD = 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\nunpack-rules:\n'
 FLOATS = [(0.5, 2.0), (-0.75, 0.25), (1.0, -0.0), (-1.0, 1e300), (0.0, -0.0)]
 OF_FLOATS = {
-    "sin(.x)": lambda x, y: math.sin(x),
-    "cos(.x)": lambda x, y: math.cos(x),
-    "tan(.x)": lambda x, y: math.tan(x),
-    "asin(.x)": lambda x, y: math.asin(x),
-    "acos(.x)": lambda x, y: math.acos(x),
-    "atan(.y)": lambda x, y: math.atan(y),
+    "sin(.x)": lambda x, _y: math.sin(x),
+    "cos(.x)": lambda x, _y: math.cos(x),
+    "tan(.x)": lambda x, _y: math.tan(x),
+    "asin(.x)": lambda x, _y: math.asin(x),
+    "acos(.x)": lambda x, _y: math.acos(x),
+    "atan(.y)": lambda _x, y: math.atan(y),
     "atan2(.x, .y)": math.atan2,
-    "sqrt(abs(.x))": lambda x, y: math.sqrt(abs(x)),
-    "round(.x * 10.0) + floor(.x) - ceil(.x)": lambda x, y: round(x * 10) + math.floor(x) - math.ceil(x),
+    "sqrt(abs(.x))": lambda x, _y: math.sqrt(abs(x)),
+    "round(.x * 10.0) + floor(.x) - ceil(.x)": lambda x, _y: round(x * 10) + math.floor(x) - math.ceil(x),
     "min(.x, .y, 0.1) + max(.x, -0.5)": lambda x, y: min(x, y, 0.1) + max(x, -0.5),
-    "2.0 * atan2(sin(.x), cos(.x))": lambda x, y: 2.0 * math.atan2(math.sin(x), math.cos(x)),
+    "2.0 * atan2(sin(.x), cos(.x))": lambda x, _y: 2.0 * math.atan2(math.sin(x), math.cos(x)),
 }
 INTEGERS = [(7, 2), (-7, 2), (1 << 40, 3), (0, 63)]
 OF_INTEGERS = {
     ".i & 12 | .j": lambda i, j: i & 12 | j,
-    ".i ^ -1": lambda i, j: i ^ -1,
+    ".i ^ -1": lambda i, _j: i ^ -1,
     "(.i & 255) << .j % 8": lambda i, j: (i & 255) << j % 8,
     ".i >> .j": lambda i, j: i >> j,
-    "divide(.i * 6, 3)": lambda i, j: i * 2,
-    ".i / .j * .j + .i % .j": lambda i, j: i,
-    "int64(float64(.i) / 2.0, round)": lambda i, j: round(i / 2),
+    "divide(.i * 6, 3)": lambda i, _j: i * 2,
+    ".i / .j * .j + .i % .j": lambda i, _j: i,
+    "int64(float64(.i) / 2.0, round)": lambda i, _j: round(i / 2),
     "1 if .i < .j and not (.i == 0) else -1": lambda i, j: 1 if i < j and i != 0 else -1,
 }
 
