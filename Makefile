@@ -16,7 +16,7 @@ demo: $(VENV)/.demo ## play the bundled recordings through compiled kernels; wri
 	$(BIN)/rosetta-jit demo --output $(OUTPUT)
 
 test: check ## lint, check types, run all tests but the campaigns
-	$(BIN)/python -m pytest -m "not campaign" $(ARGS)
+	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile $(ARGS)
 
 check: $(VENV)/.test ## lint and check types alone
 	$(BIN)/ruff check

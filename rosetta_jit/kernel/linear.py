@@ -76,14 +76,19 @@ def tightened(linear: Linear) -> Linear:
     return Linear(linear.constant // common, tuple((a, c // common) for a, c in linear.terms))
 
 
+FEW = 8
+"""Facts up to which elimination leaves nothing out."""
+
+
 def contradict(facts: list[Linear], budget: int) -> bool:
     """Whether inequalities ``fact >= 0`` cannot all hold, by Fourier-Motzkin elimination.
 
     ``budget`` bounds the combinations tried; when it is spent the answer is False, which always is the safe one. A row that was made
-    from more than n + 1 of the facts after n eliminations follows from others (Kohler's rule) and is left out.
+    from more than n + 1 of the facts after n eliminations follows from others (Kohler's rule), and among many facts is left out; as of
+    equal sums only the strongest is kept, that can lose a contradiction.
     """
     rows = {fact.terms: (fact.constant, 1 << number) for number, fact in enumerate(_strongest(facts))}
-    eliminated = 0
+    eliminated, are_few = 0, len(rows) <= FEW
     while rows:
         atom, cost = _cheapest(rows)
         budget -= cost
@@ -94,7 +99,7 @@ def contradict(facts: list[Linear], budget: int) -> bool:
         for terms, constant, origin, factor in above:
             for other_terms, other_constant, other_origin, other_factor in below:
                 joined = origin | other_origin
-                if joined.bit_count() > eliminated + 1:
+                if not are_few and joined.bit_count() > eliminated + 1:
                     continue
                 over, under = Linear(constant, terms), Linear(other_constant, other_terms)
                 row = tightened(plus(times(over, other_factor), times(under, factor)))
