@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import z3
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.kernel import integers
