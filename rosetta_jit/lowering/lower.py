@@ -16,8 +16,9 @@ from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
 from rosetta_jit.lowering.recursion import cursors, read_rows
 from rosetta_jit.lowering.recursion_write import write_root
-from rosetta_jit.lowering.rules import Runner, Supplies, look_up_arrays
+from rosetta_jit.lowering.rules import Runner
 from rosetta_jit.lowering.sides import HolderSide, WireSide
+from rosetta_jit.lowering.supplies import Supplies, look_up_arrays
 from rosetta_jit.lowering.tagged import read_message
 from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.walk import walk

@@ -1,30 +1,27 @@
 """Rules of a mapping as statements of the kernel, the same in both directions: read one side, write the other.
 
 To unpack, the walk has found the wire's fields, and the rules fill the holder. To pack, the walk asks for numbers and sizes while it
-lays out the message (`Supplies`), and the rules then fill the elements into their places.
+lays out the message (`supplies`), and the rules then fill the elements into their places.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, assert_never, cast
+from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue.pipeline import unmappable_field, unmappable_place
+from rosetta_jit.catalogue.pipeline import unmappable_place
 from rosetta_jit.errors import MappingError
-from rosetta_jit.kernel.ir import Compare, Const, Copy, Expr, For, If, IsText, Local, Place, Wire, add, index
+from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
-from rosetta_jit.lowering.values import constant, scalar_type
+from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.values import Values
-    from rosetta_jit.wire.codec import Path
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +34,7 @@ class Runner:
 
     def run(self, rules: tuple[typed.Rule, ...], values: Values) -> None:
         for rule in rules:
-            here = replace(values, where=Where(_shown(rule))).at_rule(rule.span)
+            here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
                     self.assign(place, value, here)
@@ -133,178 +130,6 @@ class Runner:
     @property
     def holder(self) -> HolderSide:
         return self.source if isinstance(self.source, HolderSide) else _holder(self.target)
-
-
-@dataclass(frozen=True, slots=True)
-class Supplies:
-    """What an encoding walk asks for while it lays out a message: numbers, sizes, and bytes that are copied as they are."""
-
-    rules: tuple[typed.Rule, ...]
-    source: HolderSide
-    values: Values
-
-    def number(self, path: Path) -> Expr:
-        return self.decided(path, _zero(path, self.rules), _given)
-
-    def size(self, path: Path) -> Expr:
-        return self.decided(path, index(0), self.sized)
-
-    def decided(self, path: Path, zero: Const, value: Callable[[typed.Rule, Values], Expr]) -> Expr:
-        """What the rule for a field gives; one in a `when` sets a variable."""
-        writer, rule = self.values.writer, _rule_for(path, self.rules)
-        match rule:
-            case None:
-                raise MappingError((unmappable_field(path),))
-            case typed.When():
-                found = writer.var("_".join(path), zero)
-                self.decide(found, path, self.rules, value)
-                return found
-            case _:
-                found = value(rule, self.here(rule))
-                return found if isinstance(found, Const) else writer.let("_".join(path), found)
-
-    def decide(self, found: Local, path: Path, rules: tuple[typed.Rule, ...], value: Callable[[typed.Rule, Values], Expr]) -> None:
-        """Set a variable where the rules set the field; where they do not, they are going to reject the message."""
-        writer, rule = self.values.writer, _rule_for(path, rules)
-        match rule:
-            case None:
-                pass
-            case typed.When(condition, then, otherwise):
-                holds = self.here(rule).of(condition)
-                known = dict(self.source.arrays)
-                with writer.nested() as yes:
-                    self.decide(found, path, then, value)
-                self.source.arrays = dict(known)
-                with writer.nested() as no:
-                    self.decide(found, path, otherwise, value)
-                self.source.arrays = known
-                writer.emit(If(holds, block(yes), block(no)))
-            case _:
-                writer.assign(found, value(rule, self.here(rule)))
-
-    def sized(self, rule: typed.Rule, here: Values) -> Expr:
-        """The count that a rule gives its array or text."""
-        match rule:
-            case typed.SetLength(_, value):
-                size = here.writer.let("length", here.of(value))
-                here.writer.expect(Compare("ge", size, index(0)), "count", here.where, "a length must not be negative", line=here.line)
-                return size
-            case typed.Assign(_, typed.Const(str(text))):
-                return index(len(text.encode()))
-            case typed.Assign(_, typed.Access(origin)):
-                return self.source.count(origin, here)
-            case typed.Default():
-                return index(0)
-            case _:
-                raise AssertionError(rule)
-
-    def bytes_at(self, path: Path) -> Place | None:
-        rule = _rule_for(path, self.rules)
-        match rule:
-            case typed.Assign(_, typed.Access(origin)):
-                address = self.source.address(origin, self.here(rule))
-                return address if isinstance(address, Place) else None
-            case _:
-                return None
-
-    def here(self, rule: typed.Rule) -> Values:
-        return replace(self.values, where=Where(_shown(rule))).at_rule(rule.span)
-
-
-def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
-    """The rule that sets a field of the wire, or its length, or a `when` that has it in one of its blocks."""
-    for rule in rules:
-        match rule:
-            case typed.Assign(place) | typed.SetLength(place) if wire_key(place) == (path, []):
-                return rule
-            case typed.Default(place) if wire_key(place) == (path[: len(place.steps)], []):
-                return rule
-            case typed.When(_, then, otherwise) if _rule_for(path, (*then, *otherwise)) is not None:
-                return rule
-            case _:
-                pass
-    return None
-
-
-def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
-    """A number of the type of a field that rules set."""
-    rule = _rule_for(path, rules)
-    match rule:
-        case typed.Assign(place):
-            return constant(0, scalar_type(place.type))
-        case typed.When(_, then, otherwise):
-            return _zero(path, (*then, *otherwise))
-        case _:
-            return index(0)
-
-
-def _given(rule: typed.Rule, here: Values) -> Expr:
-    """The number that a rule gives a field; without one, the schema's default or 0."""
-    match rule:
-        case typed.Assign(_, value):
-            return here.of(value)
-        case typed.Default(place):
-            last = place.steps[-1]
-            default = last.field.default if isinstance(last, typed.FieldStep) else None
-            known = isinstance(place.type, Int | Float | Bool | Enum)
-            return constant(default if isinstance(default, int | float) else 0, scalar_type(place.type)) if known else index(0)
-        case _:
-            raise AssertionError(rule)
-
-
-def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Values) -> None:
-    """Read start and count of the holder's arrays once, before any loop."""
-    for place in _array_places(rules):
-        if place.side == "holder" and not any(isinstance(step, typed.IndexStep) for step in place.steps):
-            holder.array(place, values)
-
-
-def _array_places(node: object) -> list[typed.Place]:
-    """Every place below a rule whose length or elements are read."""
-    match node:
-        case tuple():
-            return [place for each in cast("tuple[object, ...]", node) for place in _array_places(each)]
-        case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
-            return [place]
-        case typed.Assign(_, value) | typed.SetLength(_, value):
-            return _array_places(value)
-        case typed.For(_, start, stop, body):
-            return _array_places((start, stop, *body))
-        case typed.When(condition, then, otherwise):
-            return _array_places((condition, *then, *otherwise))
-        case typed.IsText(place):
-            return [place]
-        case typed.Choice(cases, otherwise):
-            return _array_places((*cases, otherwise))
-        case typed.LenOf(place):
-            return [place]
-        case typed.Access(place):
-            return _indexed(place)
-        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
-            return _array_places(operand)
-        case typed.Binary(_, left, right):
-            return _array_places((left, right))
-        case typed.Call(_, arguments, _):
-            return _array_places(arguments)
-        case _:
-            return []
-
-
-def _indexed(place: typed.Place) -> list[typed.Place]:
-    for number, step in enumerate(place.steps):
-        if isinstance(step, typed.IndexStep):
-            return [typed.Place(place.side, place.steps[:number], place.type), *_array_places(step.index)]
-    return []
-
-
-def _shown(rule: typed.Rule) -> str:
-    """The field that a rule sets, as the path of its errors."""
-    if not isinstance(rule, typed.Assign | typed.SetLength):
-        return ""
-    text = ""
-    for step in rule.place.steps:
-        text += f".{step.field.name}" if isinstance(step, typed.FieldStep) else "[]"
-    return text.replace("{", "{{").replace("}", "}}")
 
 
 def _holder(side: Side) -> HolderSide:
