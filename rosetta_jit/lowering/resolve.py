@@ -31,6 +31,7 @@ from rosetta_jit.lowering.typed import (
     SetLength,
     When,
 )
+from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union
@@ -169,6 +170,8 @@ class _Block:
         value = type_expr(rule.value, scope)
         if place is None:
             return None
+        if value is not None:
+            value = in_unit(value, place, scope)
         if value is not None and rule.fits:
             value = _fitted(value, place.type)
         fitting = None if value is None else _fit(value, place, scope)

@@ -1,0 +1,40 @@
+"""What can be wrong with the units of fields."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error, shorten, warning
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+
+
+def incompatible(span: Span | None, source: str, target: str) -> Diagnostic:
+    """Metres where seconds are meant."""
+    message = f"{shorten(source)} cannot become {shorten(target)}: they measure different things"
+    return error("unit", message, span, f"this is in {shorten(source)}", help_="assign another field, or compute what is meant")
+
+
+def wrong_way(span: Span | None, function: str, found: str, wanted: str) -> Diagnostic:
+    """A conversion of what is no angle, or one already."""
+    message = f"`{function}` takes {wanted}s, and this is in {shorten(found)}"
+    return error("unit", message, span, help_=f"write `{'degrees' if function == 'radians' else 'radians'}(...)`, or nothing at all")
+
+
+def no_float(span: Span | None, found: str) -> Diagnostic:
+    """An integer whose unit has to change."""
+    return error("unit", f"the units differ, and {found} has no fractions", span, help_="convert by hand, and say how it is rounded")
+
+
+def one_sided(span: Span | None, unit: str, *, is_source: bool) -> Diagnostic:
+    """A field with a unit and one without."""
+    known, other = ("the value", "the field that it sets") if is_source else ("the field that it sets", "the value")
+    message = f"{known} is in {shorten(unit)}, and nothing says in what {other} is"
+    return warning("one-sided-unit", message, span, help_="declare the other unit, or convert: `radians(...)`, `x * 0.001`")
+
+
+def unknown_unit(span: Span | None, unit: str) -> Diagnostic:
+    """A unit that the library of units does not know."""
+    return warning("unknown-unit", f"`{shorten(unit)}` is no unit that is known: nothing is converted", span)
