@@ -150,9 +150,11 @@ class _Reader:
         if found is None:
             self.problems.append(words.missing_statement(Span(self.source, 0, 0), keyword))
             return "", None
-        token = _token(found)
-        name = read_string(token, self.source, self.problems) if token.type == "STRING" else str(token)
-        return name, self._token_span(token)
+        _, *tokens = (child for child in found.children if isinstance(child, Token))
+        span = Span(self.source, tokens[0].start_pos or 0, tokens[-1].end_pos or 0)
+        if tokens[0].type == "STRING":
+            return read_string(tokens[0], self.source, self.problems), span
+        return "".join(tokens), span
 
     def _rules(self, statements: list[Tree[Token]], direction: str, context: Context) -> tuple[Rule, ...] | None:
         block = self._only(statements, f"{direction}_rules".lstrip("_"), f"{direction}-rules".lstrip("-"))

@@ -78,7 +78,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         raise MappingError(_sorted([*problems, *resolved]))
     problems += resolved.problems
     problems += _directions(mapping, resolved)
-    problems += _unused(imported, mapping, resolved)
+    problems += _unused(imported, resolved)
     errors = [problem for problem in problems if problem.severity == "error"]
     if errors:
         raise MappingError(_sorted(problems))
@@ -160,8 +160,8 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
     return warnings
 
 
-def _unused(imported: list[_Imported], mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
-    used = {mapping.holder_type, mapping.wire_type, *resolved.enums}
+def _unused(imported: list[_Imported], resolved: Resolved) -> list[Diagnostic]:
+    used = {resolved.holder.root.name, resolved.wire.root.name, *resolved.enums}
     return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not used & one.schema.types.keys()]
 
 

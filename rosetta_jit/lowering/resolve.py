@@ -34,7 +34,7 @@ from rosetta_jit.lowering.typed import (
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
-from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -86,7 +86,7 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
-    found = schema.types.get(name)
+    found = schema.types.get(name) or next((type_ for known, type_ in schema.types.items() if same_name(known, name)), None)
     if isinstance(found, Struct):
         return Message(found, schema)
     if found is None:
@@ -286,6 +286,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     target = place.type
     if isinstance(value, Choice) and isinstance(target, String | Bytes):
         return _fit_choice(value, place, scope)
+    if isinstance(value, Choice):
+        value = _adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
@@ -293,6 +295,16 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if fitting is None:
         scope.problems.append(_mismatch(value, target))
     return fitting
+
+
+def _adapted(value: Choice, target: Type) -> Choice:
+    """A choice whose values all fit without a word, as that type."""
+    cases = [(condition, convert(chosen, target)) for condition, chosen in value.cases]
+    otherwise = None if value.otherwise is None else convert(value.otherwise, target)
+    known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
+    if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
+        return value
+    return replace(value, cases=known, otherwise=otherwise, type=target)
 
 
 def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:

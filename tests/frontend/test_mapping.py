@@ -145,3 +145,12 @@ def test_token_soup(words: list[str], headed: bool) -> None:
 def test_any_text(text: str) -> None:
     with suppress(MappingError):
         parse(Source("text", f"{HEAD}unpack-rules:\n{text}"))
+
+
+@pytest.mark.parametrize("name", ["rst.vision.Image", "sensor_msgs/Image", "sensor_msgs/msg/Image", "RTC::TimedDouble"])
+def test_names_of_types(name):
+    text = f"data-holder: {name}\nwire-schema: {name}\nunpack-rules:\n  .a = .b / 2\n"
+    mapping = parse(Source("test", text))
+    assert (mapping.holder_type, mapping.wire_type) == (name, name)
+    assert mapping.wire_span is not None
+    assert text[mapping.wire_span.start : mapping.wire_span.end] == name

@@ -1,0 +1,104 @@
+"""The shipped mappings between ROS 1 and RST: bytes of rosbags in, values by plain Python, and back."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+
+pytest.importorskip("rosbags")
+
+from rosbags.typesys import Stores, get_typestore
+
+STORE = get_typestore(Stores.ROS1_NOETIC)
+BACKENDS = ["numba", "python", "interpreter"]
+
+
+def theirs(name, /, **fields):
+    return STORE.types[name](**fields)
+
+
+def raw(message):
+    return bytes(STORE.serialize_ros1(message, message.__msgtype__))
+
+
+def header():
+    return theirs("std_msgs/msg/Header", seq=3, stamp=theirs("builtin_interfaces/msg/Time", sec=5, nanosec=6), frame_id="camera")
+
+
+def programs(name, backend):
+    return tuple(kind(f"ros1/{name}.mapping", encoding="ros1", backend=backend) for kind in (rj.Decoder, rj.Encoder))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_pose2d(backend):
+    decode, encode = programs("pose2d", backend)
+    for theta in (0.0, 0.5, -3.0, math.pi / 2):
+        message = raw(theirs("geometry_msgs/msg/Pose2D", x=1.5, y=-2.0, theta=theta))
+        pose = decode(message)
+        assert (pose.translation.x, pose.translation.y, pose.translation.z) == (1.5, -2.0, 0.0)
+        rotation = pose.rotation
+        assert (rotation.qw, rotation.qx, rotation.qy, rotation.qz) == (math.cos(theta / 2), 0.0, 0.0, math.sin(theta / 2))
+        back = STORE.deserialize_ros1(encode(pose), "geometry_msgs/msg/Pose2D")
+        assert (back.x, back.y) == (1.5, -2.0)
+        assert back.theta == pytest.approx(theta, abs=1e-12)
+    for change in ({"translation": {"x": 0.0, "y": 0.0, "z": 1.0}}, {"rotation": {"qw": 0.0, "qx": 0.0, "qy": 0.0, "qz": 0.0}}):
+        flat = {"translation": {"x": 0.0, "y": 0.0, "z": 0.0}, "rotation": {"qw": 1.0, "qx": 0.0, "qy": 0.0, "qz": 0.0}}
+        with pytest.raises(rj.EncodeError) as error:
+            encode(encode.holder_type.from_dict({**flat, **change}))
+        assert error.value.kind == "rejected"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_time_reference(backend):
+    decode, encode = programs("time_reference", backend)
+    moment = theirs("builtin_interfaces/msg/Time", sec=1_700_000_000, nanosec=123_456_789)
+    stamp = decode(raw(theirs("sensor_msgs/msg/TimeReference", header=header(), time_ref=moment, source="gps")))
+    assert stamp.time == 1_700_000_000_123_456
+    back = STORE.deserialize_ros1(encode(stamp), "sensor_msgs/msg/TimeReference")
+    assert (back.time_ref.sec, back.time_ref.nanosec, back.source, back.header.seq) == (1_700_000_000, 123_456_000, "", 0)
+    stamp.time = (1 << 32) * 1_000_000
+    with pytest.raises(rj.EncodeError) as error:
+        encode(stamp)
+    assert error.value.kind == "range"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_joint_state(backend):
+    decode, encode = programs("joint_state", backend)
+    positions = np.array([0.5, -0.25, 1.0])
+    state = theirs(
+        "sensor_msgs/msg/JointState", header=header(), name=["a", "b", ""], position=positions, velocity=positions * 2, effort=np.zeros(1)
+    )
+    angles = decode(raw(state))
+    assert list(angles.angles) == list(positions)
+    back = STORE.deserialize_ros1(encode(angles), "sensor_msgs/msg/JointState")
+    assert list(back.position) == list(positions)
+    assert (back.name, len(back.velocity), len(back.effort)) == ([], 0, 0)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("encoding", "channels", "color"), [("mono8", 1, "COLOR_GRAYSCALE"), ("rgb8", 3, "COLOR_RGB"), ("bgr8", 3, "COLOR_BGR")]
+)
+def test_image(encoding, channels, color, backend):
+    decode, encode = programs("image", backend)
+    width, height, padding = 5, 3, 2
+    rows = np.arange(height * (width * channels + padding), dtype=np.uint8).reshape(height, -1)
+    fields = {"height": height, "width": width, "encoding": encoding, "is_bigendian": 0, "step": rows.shape[1], "data": rows.ravel()}
+    image = decode(raw(theirs("sensor_msgs/msg/Image", header=header(), **fields)))
+    pixels = rows[:, : width * channels]
+    assert bytes(image.data) == pixels.tobytes()
+    found = image.to_dict()
+    assert (found["width"], found["height"], found["channels"], found["color_mode"]) == (width, height, channels, color)
+    back = STORE.deserialize_ros1(encode(image), "sensor_msgs/msg/Image")
+    assert (back.width, back.height, back.encoding, back.step) == (width, height, encoding, width * channels)
+    assert bytes(back.data) == pixels.tobytes()
+    image.width = 7
+    with pytest.raises(rj.EncodeError, match="do not fill the image"):
+        encode(image)
+    with pytest.raises(rj.DecodeError, match="no such encoding"):
+        decode(raw(theirs("sensor_msgs/msg/Image", header=header(), **{**fields, "encoding": "bayer_rggb8"})))
