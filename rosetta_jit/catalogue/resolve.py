@@ -215,3 +215,8 @@ def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:
 def no_default(span: Span | None, found: str) -> Diagnostic:
     """Elements that a message always has, left without a value."""
     return error("no-default", f"the wire has no default for {found}: its elements are always there", span, help_="set each of them")
+
+
+def many_cases(span: Span | None, most: int) -> Diagnostic:
+    """A longer table than is compiled."""
+    return error("many-cases", f"a choice here has at most {most} cases", span, help_="compute the value, or split the table with `when`")

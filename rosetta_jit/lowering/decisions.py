@@ -27,6 +27,9 @@ EQUALITY = frozenset(("==", "!="))
 MAX_TEXT = 64
 """Bytes of a text that a field is compared with."""
 
+MAX_CASES = 500
+"""Cases of a choice among numbers."""
+
 
 def type_condition(expr: model.Expr, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """An expression that must be true or false."""
@@ -100,6 +103,9 @@ def _numbers(left: Expr, right: Expr) -> tuple[Expr, Expr] | None:
 
 def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """A choice: all its values as one type, the first that all fit without a word."""
+    if len(expr.cases) > MAX_CASES:
+        scope.problems.append(words.many_cases(expr.span, MAX_CASES))
+        return None
     conditions = [type_condition(condition, scope, type_expr) for condition, _ in expr.cases]
     written = [value for _, value in expr.cases] + ([] if expr.otherwise is None else [expr.otherwise])
     values = [type_expr(value, scope) for value in written]

@@ -45,6 +45,9 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
+MAX_TEXTS = 50
+"""Cases of a choice among texts."""
+
 MAX_NESTED = 20
 """Structs within each other that are looked into for what has no default."""
 
@@ -309,6 +312,9 @@ def _adapted(value: Choice, target: Type) -> Choice:
 
 def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
     """Each text of a choice as the type of the place."""
+    if len(value.cases) > MAX_TEXTS:
+        scope.problems.append(words.many_cases(value.span, MAX_TEXTS))
+        return None
     cases = [(condition, _fit(chosen, place, scope)) for condition, chosen in value.cases]
     otherwise = None if value.otherwise is None else _fit(value.otherwise, place, scope)
     known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)

@@ -80,23 +80,25 @@ class Values:
                 assert_never(value)
 
     def choice(self, choice: typed.Choice) -> Expr:
-        """Only the value that is chosen is computed: another may not have one."""
-        first = self.writer.var("chosen", constant(0, scalar_type(choice.type)))
-        with self.writer.nested() as other:
-            if choice.otherwise is None:
-                self.reject(choice.reason)
-            else:
-                self.writer.assign(first, self.of(choice.otherwise))
-        rest = block(other)
-        for condition, chosen in reversed(choice.cases):
-            with self.writer.nested() as step:
+        """Only the value that is chosen is computed, and only the conditions before it: others may not have one."""
+        writer = self.writer
+        found = writer.var("chosen", constant(0, scalar_type(choice.type)))
+        undecided = writer.var("undecided", Const("bool", value=True))
+        for condition, chosen in choice.cases:
+            with writer.nested() as step:
                 holds = self.of(condition)
-                with self.writer.nested() as then:
-                    self.writer.assign(first, self.of(chosen))
-                self.writer.emit(If(holds, block(then), rest))
-            rest = block(step)
-        self.writer.emit(*rest)
-        return first
+                with writer.nested() as then:
+                    writer.assign(found, self.of(chosen))
+                    writer.assign(undecided, Const("bool", value=False))
+                writer.emit(If(holds, block(then)))
+            writer.emit(If(undecided, block(step)))
+        if choice.otherwise is None:
+            self.reject(choice.reason, when=undecided)
+            return found
+        with writer.nested() as other:
+            writer.assign(found, self.of(choice.otherwise))
+        writer.emit(If(undecided, block(other)))
+        return found
 
     def reject(self, reason: str, *, when: Expr | None = None) -> None:
         """Refuse the message, always or where something holds."""

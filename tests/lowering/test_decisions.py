@@ -158,3 +158,18 @@ def test_a_thousand_rejections_are_no_nesting(tmp_path):
     decode = rj.Decoder(folder(tmp_path, UNPACK + many), encoding="yarp3", backend="interpreter")
     with pytest.raises(rj.DecodeError, match="number 250"):
         decode(wire("interpreter", count=250))
+
+
+def test_large_tables(tmp_path):
+    def table(entries, keys=lambda number: number, values=lambda number: number + 1):
+        return ", ".join(f"{keys(number)} = {values(number)}" for number in range(entries))
+
+    rest = "  .mode = h.Picture.Mode.RGB\n  .level = .level\n  .loud = true\n  .values = .values\n"
+    rules = f"unpack-rules:\n{rest}  .count = table(.count) {{ {table(300)} }}\n"
+    decode = rj.Decoder(folder(tmp_path, rules), encoding="yarp3", backend="interpreter")
+    assert decode(wire("interpreter", count=299)).count == 300
+    with pytest.raises(rj.DecodeError, match="no entry"):
+        decode(wire("interpreter", count=300))
+    assert ("many-cases", 10) in problems(tmp_path, f"unpack-rules:\n{rest}  .count = table(.count) {{ {table(5000)} }}\n")
+    texts = table(60, values=lambda number: f'"{number}"')
+    assert ("many-cases", 6) in problems(tmp_path, f"pack-rules:\n  .encoding = table(.count) {{ {texts} }}\n")
