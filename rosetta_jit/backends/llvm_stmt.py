@@ -63,7 +63,7 @@ def block(frame: Frame, statements: Block) -> None:
         _statement(frame, statement)
 
 
-def _statement(frame: Frame, statement: Stmt) -> None:  # noqa: C901 - one case a statement of the grammar
+def _statement(frame: Frame, statement: Stmt) -> None:
     match statement:
         case Require(at, size, failure):
             _require(frame, at, size, failure)
@@ -91,6 +91,18 @@ def _statement(frame: Frame, statement: Stmt) -> None:  # noqa: C901 - one case 
             copy_memory(frame, pointer(frame, target), pointer(frame, source), expression(frame, size))
         case Fill(target, size, byte):
             fill_memory(frame, pointer(frame, target), byte, expression(frame, size))
+        case For() | While() | If() | Switch():
+            _nested(frame, statement)
+        case Return(position):
+            frame.done.enter(frame.builder, [expression(frame, position)])
+        case Call():
+            _call(frame, statement)
+        case _:
+            assert_never(statement)
+
+
+def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
+    match statement:
         case For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
         case While(condition, body, _, _):
@@ -99,12 +111,6 @@ def _statement(frame: Frame, statement: Stmt) -> None:  # noqa: C901 - one case 
             _if(frame, expression(frame, condition), then, otherwise)
         case Switch(value, cases, default):
             _switch(frame, expression(frame, value), cases, default)
-        case Return(position):
-            frame.done.enter(frame.builder, [expression(frame, position)])
-        case Call():
-            _call(frame, statement)
-        case _:
-            assert_never(statement)
 
 
 def _require(frame: Frame, at: Expr, size: Expr, failure: Failure) -> None:

@@ -220,3 +220,8 @@ def no_default(span: Span | None, found: str) -> Diagnostic:
 def many_cases(span: Span | None, most: int) -> Diagnostic:
     """A longer table than is compiled."""
     return error("many-cases", f"a choice here has at most {most} cases", span, help_="compute the value, or split the table with `when`")
+
+
+def repeated_same_names(span: Span | None) -> Diagnostic:
+    """A second `same names` in a block."""
+    return error("set-twice", "`same names` stands in this block already", span, "again here", help_="name all exceptions in one")

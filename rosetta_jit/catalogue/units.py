@@ -24,8 +24,9 @@ def wrong_way(span: Span | None, function: str, found: str, wanted: str) -> Diag
 
 
 def no_float(span: Span | None, found: str) -> Diagnostic:
-    """An integer whose unit has to change."""
-    return error("unit", f"the units differ, and {found} has no fractions", span, help_="convert by hand, and say how it is rounded")
+    """Something else than a float whose unit has to change."""
+    message = f"the units differ, and {found} is no float that could be converted"
+    return error("unit", message, span, help_="convert by hand: an integer with a rule, an array element by element")
 
 
 def one_sided(span: Span | None, unit: str, *, is_source: bool) -> Diagnostic:

@@ -112,6 +112,7 @@ class _Block:
         typed = [self.rule(rule, scope) for rule in rules]
         found = tuple(rule for rule in typed if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
+        scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
         return found if not same else (*found, *self.same_names(same[0], found, scope))
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:

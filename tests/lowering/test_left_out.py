@@ -64,6 +64,7 @@ def test_what_is_meant(mapping, backend):
     [
         ("unpack-rules:\n  same names except .a, .b, .c, .d\n", "no-same-names"),
         ("unpack-rules:\n  same names\n  ignore .nothing\n", "unknown-field"),
+        ("unpack-rules:\n  same names\n  same names except .a\n", "set-twice"),
         ("unpack-rules:\n  same names\n  .a = .a\n  .a = .a\n", "set-twice"),
         ("unpack-rules:\n  same names\n  default .a\n  .a = .a\n", "set-twice"),
     ],

@@ -67,7 +67,7 @@ def test_mistakes(tmp_path, source, target, rule, code):
 
 def test_integers_are_converted_by_hand(tmp_path):
     path = files(tmp_path, "mm", "m", "unpack-rules:\n  .y = .x\n", (":int", ":int"))
-    with pytest.raises(rj.MappingError, match="no fractions"):
+    with pytest.raises(rj.MappingError, match="no float"):
         rj.check(path)
 
 
