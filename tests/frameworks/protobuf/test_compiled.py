@@ -53,7 +53,7 @@ def programs(name, backend, **options):
     )
 
 
-@pytest.mark.parametrize("backend", ["llvm", "python"])
+@pytest.mark.parametrize("backend", ["numba", "llvm", "python", "interpreter"])
 @pytest.mark.parametrize("name", TYPES)
 def test_bytes_of_the_peer_come_back(name, backend):
     decode, encode = programs(name, backend, schema=DESCRIPTORS)
