@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import random
+import struct
 from pathlib import Path
 
 import pytest
@@ -61,6 +62,41 @@ def test_bytes_of_the_peer_come_back(name, backend):
         if record["type"] == name:
             data = bytes.fromhex(record["hex"])
             assert encode(decode(data)) == data
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("name", TYPES)
+def test_values_of_the_peer(name, backend):
+    decode, _ = programs(name, backend, schema=DESCRIPTORS)
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString(DESCRIPTORS).file:
+        pool.Add(file)
+    theirs = message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+    for record in PEER["records"]:
+        if record["type"] == name:
+            data = bytes.fromhex(record["hex"])
+            assert listed(decode(data)) == listed(theirs.FromString(data))
+
+
+def listed(value):
+    """The fields that are set, by name (of extensions as text format has it), down to the bits of floats."""
+    match value:
+        case float():
+            return struct.pack("<d", value)
+        case _ if hasattr(value, "ListFields"):
+            return {shown(field): listed(each) for field, each in value.ListFields()}
+        case _ if hasattr(value, "items"):
+            return {key: listed(each) for key, each in value.items()}
+        case str() | bytes() | int():
+            return value
+        case _ if hasattr(value, "tobytes") and not hasattr(value, "__len__"):
+            return listed(value.item())
+        case _:
+            return [listed(each) for each in value]
+
+
+def shown(field):
+    return f"[{field.full_name}]" if field.is_extension and not field.name.startswith("[") else field.name
 
 
 NUMBERS = {
