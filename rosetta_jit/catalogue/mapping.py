@@ -29,6 +29,7 @@ EXPECTATIONS = (
     ("COMMA", "`,`"),
     ("FROM", "`from`"),
     ("TO", "`to`"),
+    ("BY", "`by`"),
     ("END", "`end`"),
     ("MEMBER", "`.field`"),
     ("START", "a field (`.name`)"),
@@ -37,7 +38,7 @@ EXPECTATIONS = (
 )
 """Token kind → how a person calls what may stand there, in the order in which it is listed."""
 
-STARTS_VALUE = frozenset({"LPAR", "START", "NAME", "STRING"})
+STARTS_VALUE = frozenset({"LPAR", "LSQB", "START", "NAME", "STRING"})
 STARTS_RULE = frozenset({"START"})
 
 
@@ -89,6 +90,13 @@ def escape(span: Span, text: str) -> Diagnostic:
 def number(span: Span, target: str) -> Diagnostic:
     """A number that no type of the language holds."""
     return error("number", f"the number does not fit {target}", span, "too large")
+
+
+def picked(span: Span | None) -> Diagnostic:
+    """An element of a list of elements that is no number."""
+    return error(
+        "picked", "a list of elements has numbers alone", span, help_="`.a[[2, 0, 1]]`; loops and rules for one element take any index"
+    )
 
 
 def missing_statement(span: Span, keyword: str) -> Diagnostic:

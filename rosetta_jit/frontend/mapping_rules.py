@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, cast
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
-from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, List, Literal, Member, Name, Path, Pick, Slice, Unary
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -58,6 +58,8 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
             left, right = _trees(tree)
             place = _path(left, context.target, context)
             return Relation(place if tree.data == "relation" else Len(place, place.span), _expr(right, context), span)
+        case "arranged" | "arranged_both":
+            return _arranged(tree, context, span)
         case "when":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)
@@ -74,6 +76,13 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
             variable = str(_tokens(tree)[0])
             rules = tuple(read_rule(rule, context) for rule in body)
             return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+
+
+def _arranged(tree: Tree[Token], context: Context, span: Span) -> Arranged:
+    place, flag, *entries = _trees(tree)
+    cases = [tuple(_expr(part, context) for part in _trees(entry)) for entry in entries]
+    both = (_path(place, context.target, context), _path(flag, context.target, context))
+    return Arranged(*both, tuple((key, value) for key, value in cases), span)
 
 
 def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:
@@ -134,6 +143,8 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
             return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
         case "group":
             return _expr(_trees(tree)[0], context)
+        case "list":
+            return List(tuple(_expr(item, context) for item in _trees(tree)), span)
         case _:
             arguments = tuple(_expr(argument, context) for argument in _trees(tree))
             return Call(str(_tokens(tree)[0]), arguments, span)
@@ -163,7 +174,26 @@ def _path(tree: Tree[Token], side: Side, context: Context) -> Path:
 def _step(step: Tree[Token] | Token, context: Context) -> Step:
     if isinstance(step, Token):
         return Member(str(step)[1:].strip('"'), context.span(step))
-    return Index(_expr(_trees(step)[0], context), context.span(step))
+    span, parts = context.span(step), [_expr(part, context) for part in _trees(step)]
+    match str(step.data), parts:
+        case "each", _:
+            return Each(span)
+        case "slice", [start, *bounds]:
+            stop, by = (*bounds, None, None)[:2]
+            return Slice(start, stop, by or Literal(1), span)
+        case _, [List(items)]:
+            return Pick(_numbers(items, context), span)
+        case _, [index, *_]:
+            return Index(index, span)
+        case _:
+            raise AssertionError(step)
+
+
+def _numbers(items: tuple[Expr, ...], context: Context) -> tuple[int, ...]:
+    """The elements that a list names: numbers that stand in the text."""
+    numbers = [item.value for item in items if isinstance(item, Literal) and type(item.value) is int]
+    context.problems.extend(words.picked(item.span) for item in items if not (isinstance(item, Literal) and type(item.value) is int))
+    return tuple(numbers)
 
 
 def _integer(token: Token, context: Context) -> int:

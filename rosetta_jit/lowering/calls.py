@@ -13,9 +13,11 @@ from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Literal, cast
 
+from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
+from rosetta_jit.lowering.layouts import ARGUMENTS
 from rosetta_jit.lowering.typed import INT64, Call, Const, Convert
 from rosetta_jit.lowering.units import check_argument
 from rosetta_jit.model.expr import Name
@@ -43,8 +45,11 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if target is not None:
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
+    if expr.function in ARGUMENTS:
+        scope.problems.append(layouts.out_of_place(expr.span))
+        return None
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, "bool", "len", *scope.enums}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

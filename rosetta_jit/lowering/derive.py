@@ -11,9 +11,11 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.catalogue import layouts
 from rosetta_jit.lowering.inverse import NoInverseError, fields_in, reads_in_index, replaced, solve
+from rosetta_jit.lowering.related import equal_lengths, layout_reads
 from rosetta_jit.model.expr import Binary, Len, Path
-from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ def derive(mapping: Mapping, problems: list[Diagnostic]) -> Mapping:
         return mapping
     pack = _Packing(problems)
     pack.learn(mapping.rules)
+    pack.known |= {rule.place: rule.value for rule in mapping.pack_rules or () if isinstance(rule, Assign) and rule.place not in pack.known}
     return replace(
         mapping,
         unpack_rules=(*_unpacking(mapping.rules), *(mapping.unpack_rules or ())),
@@ -47,6 +50,8 @@ def _unpacked(rule: Rule) -> Rule:
             return Assign(place, value, span)
         case For(body=body):
             return replace(rule, body=_unpacking(body))
+        case Arranged(cases=cases):
+            return replace(rule, cases=cases[:1])
         case _:
             return rule
 
@@ -64,6 +69,8 @@ class _Packing:
         for rule in rules:
             if isinstance(rule, For):
                 self.learn(rule.body)
+            elif isinstance(rule, Arranged):
+                self.solve(Relation(rule.place, rule.cases[0][1], rule.span))
             elif isinstance(rule, Relation) and len(fields_in(rule.value)) == 1:
                 self.solve(rule)
 
@@ -76,8 +83,8 @@ class _Packing:
         if solution.place not in self.setters:
             self.setters[solution.place] = rule
             self.known[solution.place] = solution.value
-        if isinstance(rule.place, Path) and isinstance(rule.value, Path):
-            self.known.setdefault(Len(rule.value), Len(rule.place, rule.span))  # arrays that are equal have equal lengths
+        if (lengths := equal_lengths(rule.place, rule.value)) is not None:
+            self.known.setdefault(*lengths)
 
     def rules(self, rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
         return tuple(found for rule in rules for found in self.rule(rule))
@@ -93,6 +100,8 @@ class _Packing:
                 return (replace(rule, body=self.rules(body), **bounds),)
             case Relation():
                 return self.relation(rule)
+            case Arranged():
+                return self.arranged(rule)
             case Ignore(place, span):
                 return (Default(place, span),)
             case Default(place, span):
@@ -111,7 +120,7 @@ class _Packing:
                 return ()
         target = next((each for each in fields if self.setters.get(each) is rule), None)
         if target is not None:
-            return _setting(target, self.known[target], rule)
+            return self.setting(target, self.known[target], rule)
         if len(fields) == 1 and fields[0] not in self.setters:
             return ()  # reported when it was learnt
         wanted = replaced(rule.value, self.known)
@@ -121,11 +130,32 @@ class _Packing:
         reason = words.disagrees(show_expr(rule.place), show_expr(wanted))
         return (When(Binary("!=", rule.place, wanted, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
+    def setting(self, target: Path | Len, value: Expr, rule: Relation) -> tuple[Rule, ...]:
+        if isinstance(target, Len):
+            return (SetLength(target.path, value, rule.span),)
+        value = replaced(value, self.known)
+        unknown = [read for read in layout_reads(value) if _side(read) == "wire"]
+        if unknown:
+            self.problems.append(words.unknown_bound(unknown[0].span))
+            return ()
+        return (Assign(target, value, rule.span, fits=True),)
 
-def _setting(target: Path | Len, value: Expr, rule: Relation) -> tuple[Rule, ...]:
-    if isinstance(target, Len):
-        return (SetLength(target.path, value, rule.span),)
-    return (Assign(target, value, rule.span, fits=True),)
+    def arranged(self, rule: Arranged) -> tuple[Rule, ...]:
+        """The flag says which of the layouts the holder has."""
+        if any(len(set(column)) < len(rule.cases) for column in zip(*rule.cases, strict=True)):
+            self.problems.append(layouts.same_layout(rule.span))
+        rest: tuple[Rule, ...] = (Reject(layouts.UNKNOWN_FLAG, rule.span),)
+        for flag, value in reversed(rule.cases):
+            rest = (When(Binary("==", rule.flag, flag, rule.span), self.packed(Relation(rule.place, value, rule.span)), rest, rule.span),)
+        return rest
+
+    def packed(self, case: Relation) -> tuple[Rule, ...]:
+        try:
+            solution = solve(case.value, case.place)
+        except NoInverseError as error:
+            self.problems.append(words.no_inverse(error.part.span, str(error), case.span))
+            return ()
+        return self.setting(solution.place, solution.value, case)
 
 
 def _side(place: Path | Len) -> str:

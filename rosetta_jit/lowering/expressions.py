@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
@@ -52,6 +53,9 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_call(expr, scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
+        case model.List():
+            scope.problems.append(layouts.out_of_place(expr.span))
+            return None
         case _:
             assert_never(expr)
 

@@ -13,6 +13,7 @@
 | `radians(x)`      | degrees(value), and the reverse   |
 | `float32(x)` …    | the value, as the field holds it  |
 | `table(x) {a = b}`| table(value) {b = a}              |
+| `reversed(x)` …   | see `layouts`                     |
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Name, Path, Unary
+from rosetta_jit.lowering.layouts import ARGUMENTS, opposite
+from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Name, Path, Slice, Unary
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -74,6 +76,8 @@ def _fields(expr: Expr) -> Iterator[Path | Len]:
         case Binary(_, left, right):
             yield from _fields(left)
             yield from _fields(right)
+        case Call(function, (array, *_)) if function in ARGUMENTS:
+            yield from _fields(array)  # its other arguments are no fields to solve for
         case Call(_, arguments):
             for argument in arguments:
                 yield from _fields(argument)
@@ -98,6 +102,8 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return argument, Call(OPPOSITE[function], (value,), span)
         case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
             return argument, value
+        case Call(function, (array, *_)) if function in ARGUMENTS:
+            return array, opposite(expr, value)
         case Call(function):
             raise NoInverseError(expr, f"`{function}` gives the same for several values")
         case Choice():
@@ -168,6 +174,7 @@ def replaced(expr: Expr, known: dict[Path | Len, Expr]) -> Expr:
 def reads_in_index(path: Path) -> Span | None:
     """Where an index of a place reads a field."""
     for step in path.steps:
-        if isinstance(step, Index) and fields_in(step.index):
+        parts = (step.index,) if isinstance(step, Index) else (step.start, step.step, step.stop) if isinstance(step, Slice) else ()
+        if any(part is not None and fields_in(part) for part in parts):
             return step.span
     return None

@@ -14,6 +14,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
+from rosetta_jit.lowering.elementwise import elementwise
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import (
@@ -144,7 +145,7 @@ class _Block:
                 return self.left_alone(rule, path, scope)
             case model.SameNames():
                 return None  # when all other rules of the block are known
-            case model.Relation():
+            case model.Relation() | model.Arranged():
                 raise AssertionError(rule)
             case _:
                 assert_never(rule)
@@ -221,7 +222,7 @@ def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | N
     if rules is None:
         return None
     block = _Block()
-    typed = block.rules(rules, scope)
+    typed = block.rules(elementwise(rules, scope, block.broken), scope)
     return TypedRules(typed, tuple(block.broken))
 
 

@@ -111,7 +111,10 @@ class Runner:
             self.target.borrow(place, source.at, size, values)
             return
         self.target.set_length(place, size, values)
-        self.writer.emit(Copy(self.target.address(place, values), source, size))
+        address = self.target.address(place, values)
+        if isinstance(address, Wire):  # one of several rules for it, so that the walk has taken room for some size
+            self.writer.require(size, values.where, at=address.at)
+        self.writer.emit(Copy(address, source, size))
 
     def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
         """An array as a whole: its length, then each element."""

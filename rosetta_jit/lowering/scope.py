@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
-from rosetta_jit.model.expr import Index, Member
+from rosetta_jit.model.expr import Each, Index, Member, Pick, Slice
 from rosetta_jit.model.types import Array, Bytes, Enum, Int, Optional, Struct, Union
 
 if TYPE_CHECKING:
@@ -86,6 +87,9 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Exp
                 found = _member(step, type_, message, scope, path.side)
             case Index():
                 found = _element(step, type_, scope, index)
+            case Slice() | Pick() | Each():
+                scope.problems.append(layouts.out_of_place(step.span))
+                found = Broken(())
             case _:
                 assert_never(step)
         if isinstance(found, Broken):

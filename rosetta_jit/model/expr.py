@@ -1,7 +1,7 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
-    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice
-    Path = Root, Step*         Step = Member(name) | Index(Expr)
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List
+    Path = Root, Step*         Step = Member(name) | Index(Expr) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
 constant) the side is always ``wire``.
@@ -57,7 +57,32 @@ class Index:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Step = Member | Index
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """``[start to stop by step]``: these elements, as an array; to the last one where ``stop`` is None."""
+
+    start: Expr
+    stop: Expr | None
+    step: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Pick:
+    """``[[2, 0, 1]]``: the elements of these numbers, in this order."""
+
+    indices: tuple[int, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Each:
+    """``[]``: every element; a rule with it holds for all of them."""
+
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Step = Member | Index | Slice | Pick | Each
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,4 +143,12 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice
+@dataclass(frozen=True, slots=True)
+class List:
+    """``[a, b, c]``"""
+
+    items: tuple[Expr, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List

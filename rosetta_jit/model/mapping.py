@@ -3,7 +3,7 @@
     Mapping = Import*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
             | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
-            | Ignore(Path) | Default(Path) | SameNames(Path*)
+            | Ignore(Path) | Default(Path) | SameNames(Path*) | Arranged(place, flag, {constant: Expr})
 
 In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's. Relations and loops of them stand in the rules for
 both directions alone, with the place on the holder's side.
@@ -108,7 +108,21 @@ class SameNames:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For | When | Reject | Relation | Ignore | Default | SameNames
+@dataclass(frozen=True, slots=True)
+class Arranged:
+    """``.place by .flag = { constant = value, ... }``: what the array is where the flag has this value.
+
+    In a rule for one direction there is one case: the flag is set with the array. For both directions there may be several, of
+    which unpacking takes the first.
+    """
+
+    place: Path
+    flag: Path
+    cases: tuple[tuple[Expr, Expr], ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject | Relation | Ignore | Default | SameNames | Arranged
 
 
 @dataclass(frozen=True, slots=True)

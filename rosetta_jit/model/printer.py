@@ -57,7 +57,7 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Name(name):
             return name
         case expr.Path(_, steps):
-            return "".join(f".{step.name}" if isinstance(step, expr.Member) else f"[{show_expr(step.index)}]" for step in steps)
+            return "".join(map(_step, steps))
         case expr.Len(path):
             return f"len({show_expr(path)})"
         case expr.Unary(operator, operand):
@@ -69,8 +69,27 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Choice(cases, otherwise, reason):
             last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
+        case expr.List(items):
+            return f"[{', '.join(map(show_expr, items))}]"
         case _:
             assert_never(value)
+
+
+def _step(step: expr.Step) -> str:
+    match step:
+        case expr.Member(name):
+            return f".{name}"
+        case expr.Index(index):
+            return f"[{show_expr(index)}]"
+        case expr.Slice(start, stop, by):
+            end = "" if stop is None else f" {show_expr(stop)}"
+            return f"[{show_expr(start)} to{end}{'' if by == expr.Literal(1) else f' by {show_expr(by)}'}]"
+        case expr.Pick(indices):
+            return f"[[{', '.join(map(str, indices))}]]"
+        case expr.Each():
+            return "[]"
+        case _:
+            assert_never(step)
 
 
 def _bounds(length: int | expr.Expr | None, maximum: int | None) -> str:

@@ -131,7 +131,7 @@ def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
         case expr.Name(name):
             return ["name", name]
         case expr.Path(side, steps):
-            return ["path", side, [step.name if isinstance(step, expr.Member) else _plain_expr(step.index) for step in steps]]
+            return ["path", side, [_plain_step(step) for step in steps]]
         case expr.Len(path):
             return ["len", _plain_expr(path)]
         case expr.Unary(operator, operand):
@@ -142,8 +142,20 @@ def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
             return ["call", function, [_plain_expr(each) for each in arguments]]
         case expr.Choice(cases, otherwise, reason):
             return ["choice", [[_plain_expr(part) for part in case] for case in cases], _plain_expr(otherwise), reason]
+        case expr.List():
+            raise AssertionError(value)  # no IDL has one
         case _:
             assert_never(value)
+
+
+def _plain_step(step: expr.Step) -> str | list[Any] | None:
+    match step:
+        case expr.Member(name):
+            return name
+        case expr.Index(index):
+            return _plain_expr(index)
+        case _:
+            raise AssertionError(step)  # mappings alone name many elements at once
 
 
 def _expr(plain: Any, depth: int) -> Any:

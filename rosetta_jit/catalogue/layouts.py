@@ -1,0 +1,125 @@
+"""What can be wrong with rules about whole arrays and their order."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+
+
+def not_an_array(span: Span | None) -> Diagnostic:
+    """A value that is not an array in some order."""
+    help_ = "give it a field: `.a`, `.a[0 to 3]`, `reversed(.a)`; to compute with each element, write `[]` behind both arrays"
+    return error("not-an-array", "this is no array whose elements could be put in another order", span, help_=help_)
+
+
+def needs_each(span: Span | None) -> Diagnostic:
+    """Many elements where one is meant."""
+    return error("needs-each", "this names many elements", span, "of each of them?", help_="write `[]` before it: `.points[0 to 3][].x`")
+
+
+def scalar_needs_each(span: Span | None) -> Diagnostic:
+    """One value for many elements."""
+    return error("needs-each", "one value for many elements", span, help_="write `[]` behind the elements: `.a[0 to 3][] = 0`")
+
+
+def out_of_place(span: Span | None) -> Diagnostic:
+    """Many elements where a rule cannot use them."""
+    help_ = "an array in another order is assigned as a whole: `.a = .b[0 to 3]`, or element by element: `.a[] = 2 * .b[]`"
+    return error("many-elements", "this stands for many elements, and the rule needs one value", span, help_=help_)
+
+
+def arguments(span: Span | None, function: str, least: int, most: int, found: int) -> Diagnostic:
+    """A wrong number of arguments."""
+    expected = str(least) if least == most else f"{least} or {most}"
+    return error("arguments", f"`{function}` takes an array and numbers, {expected} in all, not {found}", span)
+
+
+def no_size(span: Span | None) -> Diagnostic:
+    """A count that is none."""
+    return error("layout-size", "a count or a size must be an integer above 0", span)
+
+
+def slice_step(span: Span | None) -> Diagnostic:
+    """A slice that does not go forward."""
+    return error("slice-step", "the step of a slice must be an integer above 0", span, help_="`reversed(.a)` goes backward")
+
+
+def empty_slice(span: Span | None) -> Diagnostic:
+    """A slice whose end lies before its start."""
+    return error("slice-range", "the slice ends before it starts", span, help_="`to` is exclusive; `reversed(.a[1 to 5])` goes backward")
+
+
+def of_a_list(span: Span | None) -> Diagnostic:
+    """Elements of elements that a list names."""
+    return error("list-order", "elements that a list names cannot be put in another order", span, help_="write the list in the final order")
+
+
+def long_list(span: Span | None, limit: int) -> Diagnostic:
+    """More listed elements than each rule of its own is worth."""
+    return error("list-length", f"a list of more than {limit} elements", span, help_="use slices or a loop")
+
+
+def too_many_rules(span: Span | None, limit: int) -> Diagnostic:
+    """Lists in lists, whose product is large."""
+    return error("list-length", f"the lists of this block come to more than {limit} elements", span, help_="use slices or a loop")
+
+
+def no_permutation(span: Span | None) -> Diagnostic:
+    """A list that leaves out numbers or repeats them."""
+    help_ = "`permuted(.a, [2, 1, 0])` names each of 0, 1 and 2 once; `.a[[0, 0, 1]]` selects elements"
+    return error("no-permutation", "this is not the numbers from 0 on, each once", span, help_=help_)
+
+
+def no_divisor(span: Span | None, total: int, size: int) -> Diagnostic:
+    """Groups that do not come out even."""
+    return error("layout-size", f"{total} elements are no groups of {size}", span)
+
+
+def not_flat(span: Span | None, function: str) -> Diagnostic:
+    """A function of an array that is already in rows or planes."""
+    help_ = "use it first: `planar(rows(...), 3)`"
+    return error("layout-order", f"`{function}` needs an array that no other function has put in rows or planes", span, help_=help_)
+
+
+def padded_inside(span: Span | None) -> Diagnostic:
+    """Padding that something else is done to."""
+    help_ = "pad at last: `padded_rows(reversed(.a), ...)`"
+    return error("layout-order", "what has padding cannot be put in another order", span, help_=help_)
+
+
+def two_orders(span: Span | None) -> Diagnostic:
+    """Several arrays in a rule, one of them in rows or planes."""
+    return error("layout-order", "a rule reads one array in rows or planes, and no other besides", span)
+
+
+def no_count(span: Span | None, path: str) -> Diagnostic:
+    """Elements that nothing says the number of."""
+    return error("no-count", f"nothing says how many elements `{path}` has", span, help_=f"set it: `len({path}) = 3`")
+
+
+def open_end(span: Span | None) -> Diagnostic:
+    """A slice to the last element of an array that is being filled, by nothing that has a length."""
+    return error("no-count", "nothing says where this slice ends", span, help_="write its end: `.a[0 to 3]`")
+
+
+def several_layouts(span: Span | None) -> Diagnostic:
+    """Two cases in a rule for one direction."""
+    help_ = "the flag can be set to one; several cases stand in a relation, `.a by .flag <-> { ... }`"
+    return error("several-layouts", "a rule for one direction takes one case", span, help_=help_)
+
+
+def same_layout(span: Span | None) -> Diagnostic:
+    """Two flags for one order, or one flag twice."""
+    return error("same-layout", "two cases with the same flag, or with the same elements in the same order", span, "one of them is wrong")
+
+
+UNKNOWN_FLAG = "the mapping has no layout for this"
+"""Why a holder is refused whose flag no case names."""
+
+OTHER_COUNT = "the arrays have different lengths"
+"""Why a message is refused where two arrays that go together differ."""

@@ -1,0 +1,49 @@
+"""What a relation of whole arrays says besides: which lengths are equal, and which fields its layout reads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.lowering.inverse import fields_in
+from rosetta_jit.lowering.layouts import ARGUMENTS, KEEP_LENGTH
+from rosetta_jit.model.expr import Call, Each, Index, Len, Member, Path
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Expr
+
+
+def equal_lengths(place: Path | Len, value: Expr) -> tuple[Len, Len] | None:
+    """The length of the array in a value, and that of the place, if both have as many elements."""
+    array = value
+    while isinstance(array, Call) and array.function in KEEP_LENGTH:
+        array = array.arguments[0]
+    if not isinstance(place, Path):
+        return None
+    if not _has_each(place):
+        return (Len(array), Len(place, place.span)) if isinstance(array, Path) and _is_plain(array) and _is_plain(place) else None
+    found = [_array(path) for path in fields_in(value) if isinstance(path, Path) and _has_each(path)]
+    wanted = _array(place)
+    return (Len(found[0]), Len(wanted, place.span)) if len(found) == 1 and all(map(_is_plain, (found[0], wanted))) else None
+
+
+def layout_reads(value: Expr) -> list[Path | Len]:
+    """The fields that arguments of functions of arrays read."""
+    match value:
+        case Call(function, (array, *arguments)) if function in ARGUMENTS:
+            return [*layout_reads(array), *(each for argument in arguments for each in fields_in(argument))]
+        case _:
+            return []
+
+
+def _has_each(path: Path) -> bool:
+    return any(isinstance(step, Each) for step in path.steps)
+
+
+def _array(path: Path) -> Path:
+    """What the first `[]` of a path goes through."""
+    number = next(number for number, step in enumerate(path.steps) if isinstance(step, Each))
+    return Path(path.side, path.steps[:number], path.span)
+
+
+def _is_plain(path: Path) -> bool:
+    return all(isinstance(step, Member | Index) for step in path.steps)
