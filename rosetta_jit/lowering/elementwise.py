@@ -110,11 +110,12 @@ class _Expansion:
         place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
         target = view_of(place)
         given = [times(padding[0], padding[2])] if padding else [view.total for view in views.values()]
-        number, before = self.counted(rule, target, given, lengths)
+        refused = [each for view in views.values() for each in view.refused]
+        before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
+        number, counted = self.counted(rule, target, given, lengths)
+        before += counted
         if padding:
             before += _unless_equal(next(iter(views.values())).total, times(padding[0], padding[1]), rule.span)
-        refused = [each for view in views.values() for each in view.refused]
-        before += [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
 
         def expanded(element: Assign, level: int) -> tuple[Rule, ...]:
             if next(self.made) > MAX_MADE:

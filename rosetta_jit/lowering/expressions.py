@@ -123,6 +123,7 @@ def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
     if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
         return _constant(-operand.value, expr.span, scope)
     number = _computable(operand, "-", scope)
+    number = as_int64(number) if number is not None and isinstance(number.type, Int) else number
     return None if number is None else Unary("-", number, number.type, expr.span)
 
 

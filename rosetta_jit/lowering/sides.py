@@ -188,6 +188,8 @@ class WireSide:
         where = Where().members(array).element(number)
         self.writer.expect(inside(number, self.root.size_of(array)), "index", where, "no such element", line=values.line)
         at = Binary("add", region.first, mul(number, region.step))
+        if not isinstance(region.step, Const):  # written down, for it follows from a product
+            self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
         self.writer.require(WIDTH[region.scalar], where, at=at)
         return region, at
 

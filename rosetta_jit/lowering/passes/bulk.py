@@ -13,6 +13,7 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Expect,
     Fill,
     Fits,
     For,
@@ -42,11 +43,15 @@ Move = Copy | Fill
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    """What the rounds of a loop move: the first round's move, the bytes from one round to the next at each address, and a round's size."""
+    """What the rounds of a loop move: the first round's move, the bytes from one round to the next at each address, and a round's size.
+
+    ``checks`` hold in the last round if all rounds lie end to end, and then in every one.
+    """
 
     first: Move
     steps: tuple[Expr, ...]
     size: Expr
+    checks: tuple[Expr, ...] = ()
 
 
 def bulk(kernel: Kernel) -> Kernel:
@@ -62,9 +67,26 @@ def _statement(stmt: Stmt, strides: tuple[int, ...]) -> Block:
     if not isinstance(stmt, For) or reads_memory(stmt.count):
         return (stmt,)
     rounds = rounds_of(stmt)
-    move = _only_move(stmt.body, rounds)
+    move = _only_move(tuple(each for each in stmt.body if not isinstance(each, Expect)), rounds)
     stretch = _stretch(move, rounds, strides) if move is not None else None
-    return (stmt,) if stretch is None else _joined(stmt, stretch)
+    if stretch is None:
+        return (stmt,)
+    checks = [_last(each.condition, stmt, stretch, rounds) for each in stmt.body if isinstance(each, Expect)]
+    known = tuple(check for check in checks if check is not None)
+    return _joined(stmt, replace(stretch, checks=known)) if len(known) == len(checks) else (stmt,)
+
+
+def _last(condition: Expr, loop: For, stretch: _Stretch, rounds: Rounds) -> Expr | None:
+    """A comparison of what grows with the bytes moved, in the last round, where each round begins where the last one ended."""
+    match condition:
+        case Compare("lt" | "le" as op, left, right) if type_of(left) == "i64":
+            value, bound = rounds.affine(left), rounds.fixed(right)
+            if value is None or bound is None or value.step not in stretch.steps:
+                return None
+            moved = Binary("sub", mul(loop.count, stretch.size), stretch.size)
+            return Compare(op, Binary("add", value.base, moved), bound)
+        case _:
+            return None
 
 
 def _joined(loop: For, stretch: _Stretch) -> Block:
@@ -73,7 +95,7 @@ def _joined(loop: For, stretch: _Stretch) -> Block:
     if FALSE in adjoin:
         return (loop,)
     whole = If(Compare("gt", loop.count, index(0)), (replace(stretch.first, size=mul(loop.count, stretch.size)),))
-    open_questions = [question for question in adjoin if question != TRUE]
+    open_questions = [question for question in adjoin if question != TRUE] + [*stretch.checks]
     if not open_questions:
         return (whole,)
     condition: Expr = Fits("mul", loop.count, stretch.size)
