@@ -19,8 +19,8 @@ BLOB = {
 }
 HEAD = 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\n'
 HOLDER = {
-    "h.proto": """syntax = "proto2"; message H { required int32 k = 1; repeated int32 b = 2; repeated int32 c = 3; optional Order order = 4; }
-enum Order { MIXED = 0; PLANES = 1; }"""
+    "h.proto": """syntax = "proto2"; enum Order { MIXED = 0; PLANES = 1; }
+message H { required int32 k = 1; repeated int32 b = 2; repeated int32 c = 3; optional Order order = 4; }"""
 }
 
 
