@@ -14,7 +14,7 @@ from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, List, Literal, Member, Name, Path, Pick, Slice, Unary
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, Via, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -49,15 +49,16 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
     span = context.span(tree)
     match str(tree.data):
         case "assign":
-            place, value = _trees(tree)
-            return Assign(_path(place, context.target, context), _expr(value, context), span)
+            place, value, *via = _trees(tree)
+            return Assign(_path(place, context.target, context), _expr(value, context), span, via=_via(via, context))
         case "set_length":
             place, value = _trees(tree)
             return SetLength(_path(place, context.target, context), _expr(value, context), span)
         case "relation" | "length_relation":
-            left, right = _trees(tree)
+            left, right, *via = _trees(tree)
             place = _path(left, context.target, context)
-            return Relation(place if tree.data == "relation" else Len(place, place.span), _expr(right, context), span)
+            related = place if tree.data == "relation" else Len(place, place.span)
+            return Relation(related, _expr(right, context), span, _via(via, context))
         case "arranged" | "arranged_both":
             return _arranged(tree, context, span)
         case "when":
@@ -83,6 +84,14 @@ def _arranged(tree: Tree[Token], context: Context, span: Span) -> Arranged:
     cases = [tuple(_expr(part, context) for part in _trees(entry)) for entry in entries]
     both = (_path(place, context.target, context), _path(flag, context.target, context))
     return Arranged(*both, tuple((key, value) for key, value in cases), span)
+
+
+def _via(trees: list[Tree[Token]], context: Context) -> Via | None:
+    if not trees:
+        return None
+    name, *depth = (token for token in _tokens(trees[0]) if token.type in {"STRING", "INTEGER"})
+    deepest = _integer(depth[0], context) if depth else None
+    return Via(read_string(name, context.source, context.problems), deepest, context.span(trees[0]))
 
 
 def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:

@@ -49,7 +49,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         scope.problems.append(layouts.out_of_place(expr.span))
         return None
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, "bool", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, "bool", "has", "len", *scope.enums}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

@@ -27,6 +27,8 @@ class LayoutError(Exception):
 
 def plus(left: Expr, right: Expr) -> Expr:
     """``left + right``"""
+    if isinstance(left, Literal):
+        left, right = right, left
     return right if left == ZERO else left if right == ZERO else folded(Binary("+", left, right, left.span or right.span))
 
 

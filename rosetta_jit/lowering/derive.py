@@ -46,8 +46,8 @@ def _unpacked(rule: Rule) -> Rule:
     match rule:
         case Relation(Len(place), value, span):
             return SetLength(place, value, span)
-        case Relation(Path() as place, value, span):
-            return Assign(place, value, span)
+        case Relation(Path() as place, value, span, via):
+            return Assign(place, value, span, via=via)
         case For(body=body):
             return replace(rule, body=_unpacking(body))
         case Arranged(cases=cases):
@@ -138,7 +138,7 @@ class _Packing:
         if unknown:
             self.problems.append(words.unknown_bound(unknown[0].span))
             return ()
-        return (Assign(target, value, rule.span, fits=True),)
+        return (Assign(target, value, rule.span, fits=True, via=rule.via),)
 
     def arranged(self, rule: Arranged) -> tuple[Rule, ...]:
         """The flag says which of the layouts the holder has."""

@@ -17,6 +17,7 @@ from rosetta_jit.lowering.counts import LayoutError, times
 from rosetta_jit.lowering.layouts import ARGUMENTS, PADDED, view_of
 from rosetta_jit.lowering.moves import Moves
 from rosetta_jit.lowering.scope import element_type, members_of
+from rosetta_jit.lowering.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -89,7 +90,8 @@ class _Expansion:
             return self.loops(rule, lengths, level, whole=not is_each)
         except LayoutError as error:
             self.scope.problems.append(error.problem)
-            self.broken.append(tuple(step.name for step in rule.place.steps if isinstance(step, Member)))
+            around = (step.field.name for step in self.scope.base(rule.place.side).steps if isinstance(step, FieldStep))
+            self.broken.append((*around, *(step.name for step in rule.place.steps if isinstance(step, Member))))
             return ()
 
     def chosen(self, rule: Assign, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:

@@ -259,17 +259,19 @@ def _flat(view: View, call: Call) -> Axis:
 
 
 def _split(view: View, sizes: tuple[Expr, ...], call: Call) -> View:
-    """The last axis as one of groups and one for each size within."""
-    *outer, last = view.axes
-    if last.listed is not None:
-        raise LayoutError(words.of_a_list(call.span))
+    """The last axis as one of groups and one for each size within; an axis of such a size is one of them as it is."""
+    outer = [*view.axes]
     inner: list[Axis] = []
-    step = last.step
     for size in reversed(sizes):
-        inner.insert(0, Axis(size, step))
-        step = times(size, step)
-    groups = Axis(over(last.count, reduce(times, sizes), call), step)
-    return replace(view, axes=(*outer, groups, *inner))
+        last = outer.pop()
+        if last.count == size and outer:
+            inner.insert(0, last)
+            continue
+        if last.listed is not None:
+            raise LayoutError(words.of_a_list(call.span))
+        inner.insert(0, Axis(size, last.step))
+        outer.append(Axis(over(last.count, size, call), times(size, last.step)))
+    return replace(view, axes=(*outer, *inner))
 
 
 def _kept(*axes: Axis) -> tuple[Axis, ...]:

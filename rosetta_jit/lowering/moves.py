@@ -13,6 +13,8 @@ from rosetta_jit.lowering.layouts import PADDED, Axis, View
 from rosetta_jit.model.expr import Call, Index, Literal, Name, Path
 from rosetta_jit.model.mapping import Assign, For
 
+SHORT = 16
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -100,17 +102,20 @@ class Moves:
             case _:
                 raise LayoutError(words.two_orders(self.rule.span))
 
-    def nest(self, axes: tuple[Axis, ...], inside: Inside, level: int | None = None, done: tuple[Expr, ...] = ()) -> tuple[Rule, ...]:
-        """Loops over axes around what stands in the innermost."""
-        level = self.level if level is None else level
-        if not axes:
-            return inside([*done], level)
-        axis, *rest = axes
+    def nest(self, axes: tuple[Axis, ...], inside: Inside, level: int | None = None) -> tuple[Rule, ...]:
+        """Loops over axes around what stands in the innermost: the short ones within, for what they read lies together."""
+        order = sorted(range(len(axes)), key=lambda number: _is_short(axes[number]))
+        return self.around(axes, order, inside, {}, self.level if level is None else level)
+
+    def around(self, axes: tuple[Axis, ...], order: list[int], inside: Inside, done: dict[int, Expr], level: int) -> tuple[Rule, ...]:
+        if not order:
+            return inside([done[number] for number in range(len(axes))], level)
+        axis, rest = axes[order[0]], order[1:]
         if axis.listed is not None:
             numbers = [Literal(number, self.rule.span) for number in range(len(axis.listed))]
-            return tuple(made for number in numbers for made in self.nest(tuple(rest), inside, level, (*done, number)))
+            return tuple(made for number in numbers for made in self.around(axes, rest, inside, {**done, order[0]: number}, level))
         name = self.variable(level)
-        body = self.nest(tuple(rest), inside, level + 1, (*done, Name(name)))
+        body = self.around(axes, rest, inside, {**done, order[0]: Name(name)}, level + 1)
         return (For(name, ZERO, axis.count, body, self.rule.span),)
 
     def moved(self, indices: dict[Path | Call, list[Expr]], number: Expr, level: int) -> tuple[Rule, ...]:
@@ -121,15 +126,23 @@ class Moves:
         return self.expanded(rule, level)
 
 
+def _is_short(axis: Axis) -> bool:
+    """Whether an axis is a pixel's channels rather than an image's rows."""
+    return axis.listed is not None or (isinstance(axis.count, Literal) and int(axis.count.value) <= SHORT)
+
+
 def _element(view: View, indices: list[Expr]) -> Path:
-    """One element of a view."""
-    at = view.first
-    for axis, number in zip(view.axes, indices, strict=True):
-        if axis.listed is not None and isinstance(number, Literal):
-            at = plus(at, times(Literal(axis.listed[int(number.value)], number.span), axis.step))
-        else:
-            at = minus(at, number) if axis.step == Literal(-1) else plus(at, times(number, axis.step))
+    """One element of a view. What the outer loops add comes first, so that it can be added outside of the inner ones."""
+    parts = [(axis, _listed(axis, number)) for axis, number in zip(view.axes, indices, strict=True)]
+    (axis, number), *rest = sorted(parts, key=lambda part: _is_short(part[0]))
+    at = minus(view.first, number) if axis.step == Literal(-1) else plus(times(number, axis.step), view.first)
+    for axis, number in rest:
+        at = minus(at, number) if axis.step == Literal(-1) else plus(at, times(number, axis.step))
     return replace(view.array, steps=(*view.array.steps, Index(at, view.array.span), *view.rest))
+
+
+def _listed(axis: Axis, number: Expr) -> Expr:
+    return Literal(axis.listed[int(number.value)], number.span) if axis.listed is not None and isinstance(number, Literal) else number
 
 
 def _dense(indices: list[Expr], axes: tuple[Axis, ...]) -> Expr:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
@@ -38,6 +38,10 @@ class Source(Protocol):
         """Where the bytes of a string or bytes field begin."""
         ...
 
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Values:
@@ -48,9 +52,21 @@ class Values:
     variables: Mapping[str, Expr]
     where: Where = MESSAGE
     line: str = ""
+    decided: dict[typed.Expr, Expr] = field(default_factory=dict["typed.Expr", "Expr"])
+
+    def inside(self) -> Values:
+        """The same, in a block that may not run, or run again: what is decided there is not known behind it."""
+        return replace(self, decided=dict(self.decided))
 
     def of(self, value: typed.Expr) -> Expr:
-        """The kernel expression of a number."""
+        """The kernel expression of a number. What takes statements to decide is decided once: nothing that rules read changes."""
+        if not isinstance(value, typed.IsText | typed.Choice):
+            return self.computed(value)
+        if value not in self.decided:
+            self.decided[value] = self.computed(value)
+        return self.decided[value]
+
+    def computed(self, value: typed.Expr) -> Expr:
         match value:
             case typed.Const(number, type_):
                 return constant(number, scalar_type(type_))
@@ -74,6 +90,8 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.Has(place):
+                return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
             case _:
@@ -86,9 +104,10 @@ class Values:
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
             with writer.nested() as step:
-                holds = self.of(condition)
+                here = self.inside()
+                holds = here.of(condition)
                 with writer.nested() as then:
-                    writer.assign(found, self.of(chosen))
+                    writer.assign(found, here.inside().of(chosen))
                     writer.assign(undecided, Const("bool", value=False))
                 writer.emit(If(holds, block(then)))
             writer.emit(If(undecided, block(step)))
@@ -96,7 +115,7 @@ class Values:
             self.reject(choice.reason, when=undecided)
             return found
         with writer.nested() as other:
-            writer.assign(found, self.of(choice.otherwise))
+            writer.assign(found, self.inside().of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
 

@@ -30,8 +30,8 @@ def widened(stmt: Expect, count: Expr, rounds: Rounds) -> tuple[Expect, ...]:
 
 
 def _checks(condition: Expr, count: Expr, rounds: Rounds) -> tuple[_Check, ...]:
-    if rounds.is_fixed(condition):
-        return (_Check(condition, index(0)),)
+    if (known := rounds.fixed(condition)) is not None:
+        return (_Check(known, index(0)),)
     match condition:
         case Binary("and", left, right):
             first, second = _checks(left, count, rounds), _checks(right, count, rounds)
@@ -39,8 +39,26 @@ def _checks(condition: Expr, count: Expr, rounds: Rounds) -> tuple[_Check, ...]:
         case Compare("lt" | "le" | "gt" | "ge", left, right) if type_of(left) == "i64":
             value, bound = rounds.affine(left), rounds.fixed(right)
             return _extreme(condition, value, bound, count) if value is not None and bound is not None else ()
+        case Fits("add", left, right):
+            parts = rounds.affine(left), rounds.affine(right)
+            return _both_ends(parts[0], parts[1], count) if parts[0] is not None and parts[1] is not None else ()
         case _:
             return ()
+
+
+def _both_ends(left: Affine, right: Affine, count: Expr) -> tuple[_Check, ...]:
+    """A sum that fits in the first round and in the last one fits in those between."""
+    last = add(count, -1)
+    checks = [_Check(Fits("add", left.base, right.base), index(0))]
+    ends: list[Expr] = []
+    for part in (left, right):
+        if not isinstance(part.step, Const):
+            return ()
+        distance = mul(last, int(part.step.value))
+        if part.step.value:
+            checks += _Check(Fits("mul", last, part.step), index(0)), _Check(Fits("add", part.base, distance), index(0))
+        ends.append(add(part.base, distance) if part.step.value else part.base)
+    return *checks, _Check(Fits("add", ends[0], ends[1]), last)
 
 
 def _extreme(condition: Compare, value: Affine, bound: Expr, count: Expr) -> tuple[_Check, ...]:

@@ -78,27 +78,3 @@ def test_joint_state(backend):
     back = STORE.deserialize_ros1(encode(angles), "sensor_msgs/msg/JointState")
     assert list(back.position) == list(positions)
     assert (back.name, len(back.velocity), len(back.effort)) == ([], 0, 0)
-
-
-@pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.parametrize(
-    ("encoding", "channels", "color"), [("mono8", 1, "COLOR_GRAYSCALE"), ("rgb8", 3, "COLOR_RGB"), ("bgr8", 3, "COLOR_BGR")]
-)
-def test_image(encoding, channels, color, backend):
-    decode, encode = programs("image", backend)
-    width, height, padding = 5, 3, 2
-    rows = np.arange(height * (width * channels + padding), dtype=np.uint8).reshape(height, -1)
-    fields = {"height": height, "width": width, "encoding": encoding, "is_bigendian": 0, "step": rows.shape[1], "data": rows.ravel()}
-    image = decode(raw(theirs("sensor_msgs/msg/Image", header=header(), **fields)))
-    pixels = rows[:, : width * channels]
-    assert bytes(image.data) == pixels.tobytes()
-    found = image.to_dict()
-    assert (found["width"], found["height"], found["channels"], found["color_mode"]) == (width, height, channels, color)
-    back = STORE.deserialize_ros1(encode(image), "sensor_msgs/msg/Image")
-    assert (back.width, back.height, back.encoding, back.step) == (width, height, encoding, width * channels)
-    assert bytes(back.data) == pixels.tobytes()
-    image.width = 7
-    with pytest.raises(rj.EncodeError, match="do not fill the image"):
-        encode(image)
-    with pytest.raises(rj.DecodeError, match="no such encoding"):
-        decode(raw(theirs("sensor_msgs/msg/Image", header=header(), **{**fields, "encoding": "bayer_rggb8"})))
