@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.shape import is_large
 from rosetta_jit.kernel.verify import VerificationError, verify
-from rosetta_jit.lowering.passes.bulk import bulk
+from rosetta_jit.lowering.passes.bulk import bulk, group
 from rosetta_jit.lowering.passes.drop import drop
 from rosetta_jit.lowering.passes.hoist import hoist
 from rosetta_jit.lowering.passes.merge import merge
@@ -26,6 +26,8 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     drop,
     hoist,
     drop,
+    group,
+    simplify,
     unroll,
     simplify,
     hoist,

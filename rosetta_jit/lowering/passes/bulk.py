@@ -63,6 +63,23 @@ def bulk(kernel: Kernel) -> Kernel:
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
+def group(kernel: Kernel) -> Kernel:
+    """The kernel with moves in place of short loops whose rounds are known to lie end to end: the bytes of a channel, not yet a row."""
+
+    def block(body: Block) -> Block:
+        return tuple(part for stmt in body for part in short(with_blocks(stmt, block)))
+
+    def short(stmt: Stmt) -> Block:
+        made = _statement(stmt, kernel.strides) if isinstance(stmt, For) and isinstance(stmt.count, Const) else (stmt,)
+        match made:
+            case [If(_, (Copy() | Fill(),), ())]:
+                return made
+            case _:
+                return (stmt,)
+
+    return with_bodies(kernel, tuple(map(block, kernel.bodies)))
+
+
 def _statement(stmt: Stmt, strides: tuple[int, ...]) -> Block:
     if not isinstance(stmt, For) or reads_memory(stmt.count):
         return (stmt,)

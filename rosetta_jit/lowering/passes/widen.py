@@ -85,9 +85,19 @@ def _failure(failure: Failure, check: _Check, rounds: Rounds) -> Failure | None:
 
 
 def _value(expr: Expr, check: _Check, rounds: Rounds) -> Expr | None:
+    """What a failure of all rounds shows of a value. Of what an inner loop reached, the first that lies beyond its bound."""
     found = rounds.affine(expr)
     if found is None:
-        return None
+        return _reached(expr, rounds)
     if found == check.compared and check.reached is not None:
         return check.reached
     return add(found.base, mul(check.round, found.step)) if found.step != index(0) else found.base
+
+
+def _reached(expr: Expr, rounds: Rounds) -> Expr | None:
+    match expr:
+        case Binary("max", value, bound):
+            first, limit = rounds.affine(value), rounds.fixed(bound)
+            return None if first is None or limit is None else Binary("max", first.base, limit)
+        case _:
+            return None
