@@ -17,6 +17,7 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.values import Values
+    from rosetta_jit.model.types import Type
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +44,7 @@ class Runner:
             here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here)
+                    self.assign(place, value, here, rule.change)
                 case typed.SetLength(place, value):
                     self.target.set_length(place, self.count(here.of(value)), here)
                 case typed.For():
@@ -89,16 +91,16 @@ class Runner:
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
         self.writer.emit(For(number.name, count, block(body)))
 
-    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
             case Array(), typed.Access(origin):
-                self.assign_array(place, origin, values)
+                self.assign_array(place, origin, values, change)
             case ((Struct() | Map() | Union()), typed.Access(origin)):
-                self.copy(place, origin, values)
+                self.copy(place, origin, values, change)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
@@ -122,7 +124,7 @@ class Runner:
         self.target.set_length(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 
-    def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
@@ -130,18 +132,19 @@ class Runner:
         target, target_path, _ = self.target.descend(place, values)
         if is_endless(source.layout, source.find(path).slot):
             raise MappingError((endless_copy(place.span),))
-        copy(source, path, target, target_path)
+        copy(source, path, target, target_path, change)
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
-        """An array as a whole: its length, then each element."""
-        element = place.type.element if isinstance(place.type, Array) else place.type
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
+        """An array as a whole: its length, then each element; of one type, from lanes to lanes, as any value."""
+        if isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide) and _same_elements(place.type, origin.type):
+            self.copy(place, origin, values, change)
+            return
         count = self.source.count(origin, values)
         self.target.set_length(place, count, values)
-        variable = typed.Local("element")
-        step = typed.IndexStep(variable)
-        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
-        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if origin_type != element:
-            read = typed.Convert(read, element, "widen")
-        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        rule = element_rule(place, origin, variable, change)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
+
+
+def _same_elements(one: Type, other: Type) -> bool:
+    return isinstance(one, Array) and isinstance(other, Array) and one.element == other.element

@@ -12,7 +12,7 @@ from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
-from rosetta_jit.model.units import MAX_PARTS
+from rosetta_jit.model.units import MAX_PARTS, with_units
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -184,7 +184,7 @@ def _with_units(field: Field, node: Node, problems: list[Diagnostic]) -> Field:
         return field
     match node:
         case Form((_, *names)) if 0 < len(names) <= MAX_PARTS and all(map(_unit_name, names)):
-            return replace(field, part_units=tuple(((number,), _unit_name(name)) for number, name in enumerate(names)))
+            return with_units(field, [_unit_name(name) for name in names])
         case _:
             problems.append(catalogue.malformed_option(node.span, OPTIONS[":units"]))
             return field
