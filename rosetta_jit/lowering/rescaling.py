@@ -11,13 +11,12 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.conversions import FLOAT64
 from rosetta_jit.lowering.units import scaled
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.types import Array
+from rosetta_jit.model.types import Array, Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosetta_jit.lowering.writer import Writer
-    from rosetta_jit.model.types import Type
 
 
 def rescaled(value: Expr, change: typed.Change) -> Expr:
@@ -80,10 +79,6 @@ def _assigned(place: typed.Place, origin: typed.Place, change: typed.Change | No
         converted = scaled(number, place.type, factors)
         assert converted is not None
         return typed.Assign(place, converted)
-    if not _is_same(origin.type, place.type):
+    if isinstance(place.type, Bool | Int | Float | Enum) and origin.type != place.type:
         read = typed.Convert(read, place.type, "widen")
     return typed.Assign(place, read, change=change)
-
-
-def _is_same(source: Type, target: Type) -> bool:
-    return source == target

@@ -32,12 +32,12 @@ def change_within(value: Expr, place: Place, scope: Scope) -> Change | None:
     """What changes within a whole value, None if nothing does; what cannot be is reported."""
     if not (isinstance(value, Access) and isinstance(place.type, Array | Struct | Union | Map)):
         return None
-    origins, targets = contexts_at(value.place), contexts_at(place)
-    if len(origins) > 1 or len(targets) > 1:
+    (origin, *more), (target, *others) = contexts_at(value.place), contexts_at(place)
+    if more or others:
         scope.problems.append(words.mixed(value.span, shown(unit_at(value.place)), shown(unit_at(place))))
         return None
     finder = _Finder(scope, value, place)
-    change = finder.change((value.type, place.type), (origins[0], targets[0]), 0)
+    change = finder.change((value.type, place.type), (origin, target), 0)
     if finder.one_sided and not finder.reported:
         known, wanted = finder.one_sided[0]
         scope.problems.append(words.one_sided(value.span, known or wanted or "", is_source=wanted is None))
@@ -100,12 +100,13 @@ class _Finder:
         return Rescale(known, wanted, *factors)
 
     def elements(self, types: _Types, contexts: _Contexts, depth: int) -> Change | None:
-        def of(number: int | None) -> Change | None:
-            return self.change(types, (contexts[0].element(number), contexts[1].element(number)), depth + 1)
-
-        numbers = sorted({*contexts[0].numbers, *contexts[1].numbers})
-        numbered, rest = tuple((number, of(number)) for number in numbers), of(None)
-        unlike = tuple(each for each in numbered if each[1] != rest)
+        ones, others = contexts[0].elements, contexts[1].elements
+        found = {
+            number: self.change(types, (ones.get(number, ones[None]), others.get(number, others[None])), depth + 1)
+            for number in sorted(number for number in ones | others if number is not None)
+        }
+        rest = self.change(types, (ones[None], others[None]), depth + 1)
+        unlike = tuple(each for each in found.items() if each[1] != rest)
         return EachElement(rest, unlike) if unlike or rest is not None else None
 
     def members(self, ones: tuple[Field, ...], others: tuple[Field, ...], contexts: _Contexts, depth: int) -> Change | None:

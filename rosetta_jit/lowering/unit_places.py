@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.typed import Expr, Place, Step
     from rosetta_jit.model.types import Field, PartUnit
 
-MAX_KINDS = 1000
+MAX_KINDS = 500
 """Kinds of elements that are told apart."""
 
 
@@ -40,19 +40,20 @@ class Context:
         return Context(next((unit for path, unit in below if not path), self.unit), tuple(part for part in below if part[0]))
 
     @property
-    def numbers(self) -> tuple[int, ...]:
-        """The elements that something is said of by number."""
-        return tuple(sorted({path[0] for path, _ in self.parts if isinstance(path[0], int)}))
+    def elements(self) -> dict[int | None, Context]:
+        """The same for all elements, by number; those that nothing is said of last."""
+        numbers = sorted({step for path, _ in self.parts for step in path[:1] if isinstance(step, int)})
+        return {number: self.element(number) for number in (*numbers, None)}
 
     def _below(self, step: str | int | None) -> tuple[PartUnit, ...]:
-        return tuple((path[1:], unit) for path, unit in self.parts if path[0] == step)
+        return tuple((path[1:], unit) for path, unit in self.parts if path[:1] == (step,))
 
 
 @dataclass(frozen=True, slots=True)
 class Mixed:
     """The units of elements of which a rule means any."""
 
-    units: tuple[str, ...]
+    units: tuple[str | None, ...]
 
 
 Unit = str | Mixed | None
@@ -60,8 +61,8 @@ Unit = str | Mixed | None
 
 def unit_at(place: Place) -> Unit:
     """The unit of the values at a place, if it is known."""
-    units = tuple(dict.fromkeys(context.unit or "nothing" for context in contexts_at(place)))
-    return Mixed(units) if len(units) > 1 else None if units == ("nothing",) else units[0]
+    first, *others = dict.fromkeys(context.unit for context in contexts_at(place))
+    return Mixed((first, *others)) if others else first
 
 
 def pairs_in_step(one: Place, other: Place) -> Iterator[tuple[str | None, str | None]]:
@@ -87,7 +88,7 @@ def _is_at(step: Step, variable: Expr) -> TypeGuard[IndexStep]:
 
 def contexts_at(place: Place) -> tuple[Context, ...]:
     """What is known at a place: several where an index is not, and not all elements are alike."""
-    found = (Context(),)
+    found: tuple[Context, ...] = (Context(),)
     for step in place.steps:
         found = tuple(dict.fromkeys(each for context in found for each in _behind(step, context)))[:MAX_KINDS]
     return found
@@ -100,4 +101,4 @@ def _behind(step: Step, context: Context) -> tuple[Context, ...]:
         case _ if isinstance(step.index, Const):
             return (context.element(int(step.index.value)),)
         case _:
-            return tuple(context.element(number) for number in (*context.numbers, None))
+            return tuple(context.elements.values())

@@ -129,7 +129,7 @@ def check_agree(what: str, values: Sequence[Expr], span: Span | None, scope: Sco
 
 def shown(unit: Unit) -> str:
     """A unit as a report names it."""
-    return " or ".join(unit.units[:4]) if isinstance(unit, Mixed) else unit or "nothing"
+    return " or ".join(each or "nothing" for each in unit.units[:4]) if isinstance(unit, Mixed) else unit or "nothing"
 
 
 def _in_step(value: Expr, place: Place) -> bool:

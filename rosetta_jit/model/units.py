@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.types import Field
 
-MAX_PARTS = 1000
+MAX_PARTS = 500
 """Parts of one field that have units of their own; of more, nothing is known."""
 
 

@@ -1,6 +1,7 @@
 """Units of ROS 2: what stands in brackets in a field's comment, ``# start of the scan [rad]``, if nothing else does.
 
-That is how rosidl_adapter (``parser.py``, ``process_comments``) finds the ``@unit`` of the `.idl` file that it makes. ROS 1 has no such rule.
+That is how rosidl_adapter (``parser.py``, ``process_comments``) finds the ``@unit`` of the `.idl` file that it makes. ROS 1 has no such
+rule.
 """
 
 from __future__ import annotations
