@@ -79,21 +79,22 @@ def conversion(source: str, target: str, *, same: bool = True) -> tuple[float, f
 def _conversion(source: str, target: str) -> tuple[float, float] | str | None:
     from pint import PintError, UndefinedUnitError
 
-    registry = _registry()
+    registry, read = _registry(), source
 
     def converted(value: float) -> float:
         return float(registry.Quantity(value, source).to(target).magnitude)
 
     try:
-        if _angles(registry, source) != _angles(registry, target):
+        angles = _angles(registry, source)
+        read = target
+        if angles != _angles(registry, target):
             return None
         zero, one, two = (converted(value) for value in (0.0, 1.0, 2.0))
         if not math.isclose(two - zero, 2 * (one - zero), rel_tol=1e-9):
             return None
         return (one, 0.0) if zero == 0 else (converted(FAR) / FAR, zero)
-    except UndefinedUnitError as error:
-        named = str(cast("Any", error).unit_names)
-        return target if named in target and named not in source else source
+    except UndefinedUnitError:
+        return read
     except (PintError, ArithmeticError):  # pint raises the second for powers that no float holds
         return None
 
