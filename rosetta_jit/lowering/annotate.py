@@ -15,6 +15,7 @@ from rosetta_jit.frontend.unit_file import MAX_PROBLEMS
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.dimensions import conversion, is_unit, known_units
 from rosetta_jit.lowering.scope import Message, members_of
+from rosetta_jit.lowering.unit_places import Context
 from rosetta_jit.model.types import Array, Float, Int, Struct, Union, name_parts
 from rosetta_jit.model.units import MAX_PARTS
 
@@ -95,7 +96,10 @@ class _Adding:
             if problem is not None:
                 self.problems.append(problem)
                 return
-            self.add(struct, (*target.way, number) if len(said.units) > 1 else target.way, unit, target.unit)
+            way, context = target.way, target.context
+            if len(said.units) > 1:
+                way, context = (*way, number), context.element(number)
+            self.add(struct, way, unit, context.unit)
 
     def add(self, struct: Struct, way: Way, unit: Named, declared: str | None) -> None:
         units = self.found[struct.name]
@@ -115,13 +119,13 @@ class _Adding:
 
 @dataclass(slots=True)
 class _Target:
-    """Where a path has led so far: the type there, the way as fields are found, and the unit that the IDL gives the last field."""
+    """Where a path has led so far: the type there, the way as fields are found, and what the IDL says of units there."""
 
     message: Message
     type: Type
     known: dict[str, Members]
     way: Way = ()
-    unit: str | None = None
+    context: Context = field(default_factory=Context)
 
     def step(self, step: Step) -> Diagnostic | None:
         """Go one step further, or say why not."""
@@ -135,8 +139,8 @@ class _Target:
         if name not in members:
             return words.unknown_field(span, name, owner, members.keys())
         found = members[name]
-        self.way = (*self.way, *(each.name for each in found))
-        self.unit = found[-1].unit
+        for each in found:
+            self.way, self.context = (*self.way, each.name), self.context.member(each)
         self.enter(found[-1].type)
         return None
 
@@ -145,7 +149,7 @@ class _Target:
             return words.wrong_step(span, describe(self.type), into="elements")
         if number is not None and number >= (self.most or number + 1):
             return words.index_range(span, self.most or 0)
-        self.way, self.unit = (*self.way, number), None
+        self.way, self.context = (*self.way, number), self.context.element(number)
         self.enter(self.type.element)
         return None
 

@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeGuard
 
 from rosetta_jit.lowering.typed import INT64, Const, FieldStep, IndexStep
+from rosetta_jit.model.types import Array, Optional
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.lowering.typed import Expr, Place, Step
-    from rosetta_jit.model.types import Field, PartUnit
+    from rosetta_jit.model.types import Field, PartUnit, Type
 
 MAX_KINDS = 500
 """Kinds of elements that are told apart."""
@@ -89,16 +90,23 @@ def _is_at(step: Step, variable: Expr) -> TypeGuard[IndexStep]:
 def contexts_at(place: Place) -> tuple[Context, ...]:
     """What is known at a place: several where an index is not, and not all elements are alike."""
     found: tuple[Context, ...] = (Context(),)
+    length = None
     for step in place.steps:
-        found = tuple(dict.fromkeys(each for context in found for each in _behind(step, context)))[:MAX_KINDS]
+        found = tuple(dict.fromkeys(each for context in found for each in _behind(step, context, length)))[:MAX_KINDS]
+        length = _length(step.field.type) if isinstance(step, FieldStep) else None
     return found
 
 
-def _behind(step: Step, context: Context) -> tuple[Context, ...]:
+def _length(type_: Type) -> int | None:
+    return type_.fixed if isinstance(type_, Array) else _length(type_.value) if isinstance(type_, Optional) else None
+
+
+def _behind(step: Step, context: Context, length: int | None) -> tuple[Context, ...]:
     match step:
         case FieldStep(field):
             return (context.member(field),)
         case _ if isinstance(step.index, Const):
             return (context.element(int(step.index.value)),)
         case _:
-            return tuple(context.elements.values())
+            every = context.elements
+            return tuple(found for number, found in every.items() if number is not None or len(every) - 1 != (length or -1))
