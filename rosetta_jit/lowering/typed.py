@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice      each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
     Rule = Assign(Place, Expr, Change?) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
@@ -153,6 +153,15 @@ class IsText:
 
 
 @dataclass(frozen=True, slots=True)
+class Has:
+    """Whether something that can be absent is there: an optional field, a case of a union, and all on the way to it."""
+
+    place: Place
+    type: Type = BOOL
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Choice:
     """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
 
@@ -166,7 +175,7 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice
 
 
 @dataclass(frozen=True, slots=True)

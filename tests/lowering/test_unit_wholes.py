@@ -147,4 +147,5 @@ def test_structs_unions_and_maps(backend):
     assert held["all"][2] == read(message).to_dict()["all"][2]  # nothing is said of the third
     assert read(encode(decode(message))).to_dict() == read(message).to_dict()
     partial = write(write.holder_type.from_dict({"there": {"x": 8.0}}))
-    assert encode(decode(partial)) == partial  # what is absent within stays absent
+    assert encode(decode(partial)) == partial  # what is absent stays absent
+    assert encode(decode(b"")) == b""
