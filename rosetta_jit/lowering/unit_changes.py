@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, EachElement, EachMember, Rescale
+from rosetta_jit.lowering.dimensions import conversion
+from rosetta_jit.lowering.typed import Access, Binary, Const, Convert, EachElement, EachMember, Rescale
 from rosetta_jit.lowering.unit_places import contexts_at, unit_at
-from rosetta_jit.lowering.units import factors_between, shown
+from rosetta_jit.lowering.units import factors_between, shown, unit_of
 from rosetta_jit.model.types import Array, Float, Int, Map, Struct, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.lowering.scope import Message, Scope
-    from rosetta_jit.lowering.typed import Change, Expr, Place
+    from rosetta_jit.lowering.typed import Assign, Change, Expr, Place
     from rosetta_jit.lowering.unit_places import Context
     from rosetta_jit.model.types import Field, Type
 
@@ -119,3 +120,22 @@ class _Finder:
     def report(self, problem: Diagnostic) -> None:
         self.reported = True
         self.scope.problems.append(problem)
+
+
+def inserted(rule: Assign) -> Change | None:
+    """The conversion that the compiler has put into a rule, for whoever explains it."""
+    value = rule.value.operand if isinstance(rule.value, Convert) and rule.value.rule == "nearest" else rule.value
+    offset = 0.0
+    match value:
+        case Binary("+", Binary("*") as product, Const(float(known))):
+            value, offset = product, known
+        case _:
+            pass
+    match value:
+        case Binary("*", operand, Const(float(factor))):
+            source, target = unit_of(operand), unit_at(rule.place)
+            if isinstance(source, str) and isinstance(target, str) and conversion(source, target) == (factor, offset):
+                return Rescale(source, target, factor, offset)
+            return None
+        case _:
+            return rule.change

@@ -6,6 +6,7 @@ itself and by one around it, the outer one counts: it knows more.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeGuard
 
@@ -37,17 +38,31 @@ class Context:
 
     def element(self, index: int | None) -> Context:
         """What is known at an element; None for all that nothing is said of by number."""
-        below = (() if index is None else self._below(index)) + self._below(None)
-        return Context(next((unit for path, unit in below if not path), self.unit), tuple(part for part in below if part[0]))
+        return self._element((() if index is None else self._below(index)) + self._below(None))
 
     @property
     def elements(self) -> dict[int | None, Context]:
         """The same for all elements, by number; those that nothing is said of last."""
-        numbers = sorted({step for path, _ in self.parts for step in path[:1] if isinstance(step, int)})
-        return {number: self.element(number) for number in (*numbers, None)}
+        below: defaultdict[int | None, list[PartUnit]] = defaultdict(list)
+        for path, unit in self.parts:
+            for step in path[:1]:
+                if not isinstance(step, str):
+                    below[step].append((path[1:], unit))
+        each = below.pop(None, [])
+        numbered: dict[int | None, Context] = {
+            number: self._element((*below[number], *each)) for number in sorted(filter(_is_number, below))
+        }
+        return numbered | {None: self._element(tuple(each))}
+
+    def _element(self, below: tuple[PartUnit, ...]) -> Context:
+        return Context(next((unit for path, unit in below if not path), self.unit), tuple(part for part in below if part[0]))
 
     def _below(self, step: str | int | None) -> tuple[PartUnit, ...]:
         return tuple((path[1:], unit) for path, unit in self.parts if path[:1] == (step,))
+
+
+def _is_number(step: int | None) -> TypeGuard[int]:
+    return step is not None
 
 
 @dataclass(frozen=True, slots=True)

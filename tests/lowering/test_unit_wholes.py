@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import time
+
 import pint
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.frontend.search import SearchPath
+from rosetta_jit.lowering.check import check
+from rosetta_jit.lowering.typed import EachElement, Rescale
+from rosetta_jit.lowering.unit_changes import inserted
 
 UREG = pint.UnitRegistry()
 BACKENDS = ["numba", "python", "interpreter"]
@@ -149,3 +157,23 @@ def test_structs_unions_and_maps(backend):
     partial = write(write.holder_type.from_dict({"there": {"x": 8.0}}))
     assert encode(decode(partial)) == partial  # what is absent stays absent
     assert encode(decode(b"")) == b""
+
+
+def test_what_was_inserted_can_be_told():
+    wire = '("t" :double (:unit :degC)) ("x" :double (:unit :mm)) ("y" :double (:unit :mm)) ("a" (:list :double) (:unit :mm))'
+    holder = '("t" :double (:unit :K)) ("x" :float32 (:unit :m)) ("y" :double (:unit :mm)) ("a" (:list :double) (:unit :m))'
+    files = schemas(wire, holder, "unpack-rules:\n  .t = .t\n  .x = .x\n  .y = .y * 2.0\n  .a = .a\n")
+    search = SearchPath(files=tuple(files.items()))
+    checked = check(parse(search.open("m.mapping")), Readers(installed()), search)
+    metres = Rescale("mm", "m", 0.001, 0.0)
+    assert [inserted(rule) for rule in checked.unpack] == [Rescale("degC", "K", 1.0, 273.15), metres, None, EachElement(metres)]
+
+
+def test_many_units_take_no_time(tmp_path):
+    units = " ".join(f":{'m' if number % 2 else 'mm'}" for number in range(500))
+    rules = "".join(f"  .b{number} = .a[len(.a) - {number}]\n" for number in range(500))
+    fields = " ".join(f'("b{number}" :double (:unit :m))' for number in range(500))
+    files = schemas(f'("a" (:list :double) (:units {units}))', fields, f"unpack-rules:\n{rules}")
+    start = time.perf_counter()
+    assert {code for code, _ in found(files, tmp_path)} == {"unit"}
+    assert time.perf_counter() - start < 30
