@@ -33,6 +33,7 @@ from rosetta_jit.lowering.typed import (
     SetLength,
     When,
 )
+from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
@@ -195,7 +196,9 @@ class _Block:
         if fitting is None:
             self.broken.append(field_names(place))
             return None
-        return _by_case(place, fitting, rule.span)
+        change = change_within(fitting, place, scope)
+        made = _by_case(place, fitting, rule.span)
+        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
 
     def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
         place = self.place(rule, scope)
