@@ -10,16 +10,17 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
-from rosetta_jit.request import Request
+from rosetta_jit.request import GivenFunction, Request
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
 from rosetta_jit.runtime.callable import callable_class
+from rosetta_jit.runtime.function_digest import digest_of
 from rosetta_jit.runtime.holder import holder_class_of
 from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from rosetta_jit.pipeline import Build, Stage
     from rosetta_jit.request import Backend, ByteOrder, Direction
@@ -79,6 +80,8 @@ class Options(TypedDict, total=False):
         What to forgive, by name: ``rosetta-jit frameworks`` lists what each encoding can be asked for.
     borrow : bool
         Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
+    functions : mapping of str to callable
+        The functions that the mapping declares, by name: Python functions of numbers, or numba's. They are compiled into the kernel.
     backend : {"numba", "llvm", "python", "interpreter"}
         What runs the kernel; numba where it is installed, else LLVM.
     """
@@ -91,6 +94,7 @@ class Options(TypedDict, total=False):
     byte_order: ByteOrder | None
     lenient: Iterable[str]
     borrow: bool
+    functions: Mapping[str, Callable[..., Any]]
     backend: Backend | None
 
 
@@ -172,6 +176,7 @@ def _request(direction: Direction, options: Options, *, mapping: str | None = No
         borrow=options.get("borrow", False),
         byte_order=options.get("byte_order"),
         lenient=tuple(sorted(options.get("lenient", ()))),
+        functions=tuple(GivenFunction(name, digest_of(each), each) for name, each in sorted(options.get("functions", {}).items())),
         backend=options.get("backend"),
     )
 
@@ -262,6 +267,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         size_sites=_sites(header, 1),
         library=library,
         borrow=header["entry"] == "borrow",
+        told=header["told"],
     )
 
 
@@ -275,21 +281,25 @@ def _interpreted(build: Build) -> Loaded:
         size=kernels[1] if len(kernels) > 1 else None,
         size_sites=_sites(build.header, 1),
         borrow=build.request.borrow,
+        told=build.header["told"],
     )
 
 
 def _python_kernel(build: Build, number: int) -> run.Run:
+    from rosetta_jit.kernel.host import in_python
+
     kernel = build.kernels[number]
+    functions = {each.name: in_python(each) for each in build.functions}
     if build.request.backend == "python":
         from rosetta_jit.backends.python import compile_python
 
         with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
-            return run.python_run(compile_python(kernel))
+            return run.python_run(compile_python(kernel, functions))
     from functools import partial
 
     from rosetta_jit.kernel.interpret import run as interpret
 
-    return run.python_run(partial(interpret, kernel))
+    return run.python_run(partial(interpret, kernel, functions=functions))
 
 
 def _holder_type(header: Mapping[str, Any]) -> type[Holder]:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frontend.idl import FrontEnds
     from rosetta_jit.frontend.search import SearchPath
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.mapping import Import, Mapping
@@ -42,6 +43,7 @@ class Checked:
     wire: Message
     unpack: tuple[Rule, ...] | None
     pack: tuple[Rule, ...] | None
+    functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
 
 
@@ -84,7 +86,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         raise MappingError(_sorted(problems))
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, _sorted(problems))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.functions import signatures
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import (
     Access,
@@ -37,10 +38,12 @@ from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
 
@@ -70,9 +73,10 @@ class Resolved:
     pack: TypedRules | None
     enums: frozenset[str]
     problems: tuple[Diagnostic, ...]
+    functions: Mapping[str, Signature]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[Diagnostic, ...]:
+def resolve(mapping: model.Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message."""
     problems: list[Diagnostic] = []
     holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
@@ -82,10 +86,11 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named)
+    functions = signatures(mapping.functions, problems)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions)
     unpack = _block(mapping.unpack_rules, scope)
     pack = _block(mapping.pack_rules, replace(scope, target="wire"))
-    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:

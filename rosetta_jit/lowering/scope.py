@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
@@ -45,6 +46,7 @@ class Scope:
     locals: tuple[str, ...]
     problems: list[Diagnostic]
     named_enums: set[str]
+    functions: Mapping[str, Signature]
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))

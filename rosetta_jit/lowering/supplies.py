@@ -170,7 +170,7 @@ def _array_places(node: object) -> list[typed.Place]:
             return _array_places(operand)
         case typed.Binary(_, left, right):
             return _array_places((left, right))
-        case typed.Call(_, arguments, _):
+        case typed.Call(_, arguments, _) | typed.HostCall(_, arguments, _):
             return _array_places(arguments)
         case _:
             return []

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, HostCall, If, Local, Scalar, Told, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
 from rosetta_jit.lowering.fields import scalar_name
@@ -76,6 +76,10 @@ class Values:
                 return is_text(self, place, text.encode())
             case typed.Choice():
                 return self.choice(value)
+            case typed.Told(what):
+                return Told(what)
+            case typed.HostCall(function, arguments, type_):
+                return self.host_call(function, tuple(map(self.of, arguments)), scalar_type(type_))
             case _:
                 assert_never(value)
 
@@ -98,6 +102,13 @@ class Values:
         with writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
+        return found
+
+    def host_call(self, function: str, arguments: tuple[Expr, ...], result: Scalar) -> Expr:
+        """What a function of the host gives; where it refuses, so does the mapping."""
+        found = Local(result, self.writer.fresh(function))
+        failure = self.writer.failure("rejected", self.where, f"`{function}` raised an exception", line=self.line)
+        self.writer.emit(HostCall(function, arguments, found, failure))
         return found
 
     def reject(self, reason: str, *, when: Expr | None = None) -> None:

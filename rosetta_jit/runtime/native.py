@@ -18,6 +18,13 @@ from llvmlite import binding
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+MATHEMATICS = (
+    *("acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "copysign", "cos", "cosh", "erf", "erfc", "exp", "exp2", "expm1"),
+    *("fabs", "fma", "fmax", "fmin", "frexp", "hypot", "ldexp", "lgamma", "log", "log10", "log1p", "log2", "nearbyint", "pow", "round"),
+    *("roundeven", "sin", "sincos", "sinh", "tan", "tanh", "tgamma"),
+)
+"""Functions of the C library that users' functions call; those of float32 end in f."""
+
 ALLOWED = frozenset(
     [
         "PyBuffer_Release",
@@ -32,9 +39,11 @@ ALLOWED = frozenset(
         "PyObject_Vectorcall",
         "Py_DecRef",
         "Py_IncRef",
+        "clock_gettime",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
         *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
+        *(f"{name}{suffix}" for suffix in ("", "f") for name in MATHEMATICS),
     ]
 )
 """Everything that object code may take from the process: what the entries call, and what LLVM turns intrinsics into."""
