@@ -12,11 +12,11 @@ define internal void @tell(ptr %context, ptr %state) alwaysinline {
   %rest = load i64, ptr %rest.at
   %whole = mul i64 %seconds, 1000000000
   %now = add i64 %whole, %rest
-  %now.at = getelementptr i64, ptr %state, i64 10
+  %now.at = getelementptr i64, ptr %state, i64 12
   store i64 %now, ptr %now.at
   %made.at = getelementptr i64, ptr %context, i64 5
   %made = load i64, ptr %made.at
-  %number.at = getelementptr i64, ptr %state, i64 11
+  %number.at = getelementptr i64, ptr %state, i64 13
   store i64 %made, ptr %number.at
   ret void
 }
