@@ -18,7 +18,7 @@ from rosetta_jit.frontend.mapping import parse as parse_mapping
 from rosetta_jit.frontend.search import Reading, SearchPath
 from rosetta_jit.given import called_functions, check_compiled, check_given
 from rosetta_jit.kernel.printer import to_text
-from rosetta_jit.kernel.shape import is_told
+from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import Mapped, lower
@@ -169,6 +169,7 @@ class Build:
             "entry": self.entry,
             "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
+            "host": our_functions(self.kernels),
         }
 
     def image(self) -> bytes:

@@ -17,10 +17,12 @@ from rosetta_jit.runtime.cache_names import entry_name, request_name
 from rosetta_jit.runtime.callable import callable_class
 from rosetta_jit.runtime.function_digest import digest_of
 from rosetta_jit.runtime.holder import holder_class_of
+from rosetta_jit.runtime.host_table import fill
+from rosetta_jit.runtime.images import image_functions
 from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from rosetta_jit.pipeline import Build, Stage
     from rosetta_jit.request import Backend, ByteOrder, Direction
@@ -257,7 +259,7 @@ def _shared(name: str, cache: Cache) -> Loaded:
 def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
     """A program from its object code."""
     holder_type = _holder_type(header)
-    library = native.load(image, SYMBOLS[header["entry"]])
+    library = _library(image, SYMBOLS[header["entry"]], header["host"])
     size = run.native_run(library["size"]) if header["entry"] == "encode" else None
     return Loaded(
         holder_type=holder_type,
@@ -269,6 +271,14 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         borrow=header["entry"] == "borrow",
         told=header["told"],
     )
+
+
+def _library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> native.Library:
+    """The code, with the functions of ours that it calls."""
+    if not called:
+        return native.load(image, symbols)
+    functions = image_functions()
+    return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
 
 
 def _interpreted(build: Build) -> Loaded:
@@ -290,6 +300,8 @@ def _python_kernel(build: Build, number: int) -> run.Run:
 
     kernel = build.kernels[number]
     functions = {each.name: in_python(each) for each in build.functions}
+    if build.header["host"]:
+        functions |= image_functions()
     if build.request.backend == "python":
         from rosetta_jit.backends.python import compile_python
 

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Literal
 from llvmlite import binding, ir
 
 from rosetta_jit.backends import llvm
-from rosetta_jit.kernel.shape import calls_to_host, is_large, is_told
+from rosetta_jit.backends.host_table import TABLE, table_text
+from rosetta_jit.kernel.shape import calls_to_host, is_large, is_told, our_functions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -93,9 +94,11 @@ def optimised(
         from rosetta_jit.backends.functions import compile_function
 
         module.link_in(compile_function(function))
+    if our_functions(kernels):
+        module.link_in(binding.parse_assembly(table_text(kernels)))
     templates = (*TEMPLATES[entry], "told.ll" if is_told(kernels) else "untold.ll")
     module.link_in(binding.parse_assembly("\n".join(map(_template, templates))))
-    _make_private(module, SYMBOLS[entry])
+    _make_private(module, (*SYMBOLS[entry], TABLE))
     options = binding.create_pipeline_tuning_options(speed_level=3)
     options.loop_vectorization, options.slp_vectorization = True, True
     passes = binding.create_pass_builder(machine, options)

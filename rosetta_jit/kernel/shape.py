@@ -147,6 +147,11 @@ def calls_to_host(kernels: Iterable[Kernel]) -> list[HostCall]:
     return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, HostCall)]
 
 
+def our_functions(kernels: Iterable[Kernel]) -> list[str]:
+    """The names of the functions that kernels ask and that are not the user's, in order."""
+    return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})
+
+
 def is_told(kernels: Iterable[Kernel]) -> bool:
     """Whether kernels ask for what the host tells of a message."""
     stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Literal, cast
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
+from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS, type_image_call
 from rosetta_jit.lowering.typed import INT64, Call, Const, Convert, Told
 from rosetta_jit.lowering.units import check_argument
 from rosetta_jit.model.expr import Name
@@ -47,8 +48,10 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if target is not None:
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
+    if expr.function in IMAGE_FUNCTIONS:
+        return type_image_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "len", *scope.enums, *scope.functions}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *IMAGE_FUNCTIONS, "bool", "len", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

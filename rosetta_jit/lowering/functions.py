@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import functions as words
 from rosetta_jit.lowering.calls import FLOATS, FUNCTIONS, INTEGERS, named_type
 from rosetta_jit.lowering.conversions import convert, describe, word_for
+from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS
 from rosetta_jit.lowering.typed import HostCall
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 SCALARS = (*INTEGERS, *FLOATS, "bool")
+TAKEN = frozenset((*FUNCTIONS, *IMAGE_FUNCTIONS, *SCALARS))
 MAX_PARAMETERS = 32
 
 
@@ -46,7 +48,7 @@ def signatures(declared: Iterable[Function], problems: list[Diagnostic]) -> dict
     for function in declared:
         types = [_scalar(each, problems) for each in (*function.parameters, function.result)]
         known = [each for each in types if each is not None]
-        if function.name in FUNCTIONS or function.name in SCALARS or "." in function.name:
+        if function.name in TAKEN or "." in function.name:
             problems.append(words.taken(function.span, function.name))
         elif function.name in found:
             problems.append(words.repeated(function.span, function.name, found[function.name].span))

@@ -13,7 +13,22 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, HostCall, IsText, LenOf, Local, Told, Unary
+from rosetta_jit.lowering.typed import (
+    Access,
+    Binary,
+    Call,
+    Choice,
+    Const,
+    Convert,
+    FieldStep,
+    HostCall,
+    ImageCall,
+    IsText,
+    LenOf,
+    Local,
+    Told,
+    Unary,
+)
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
@@ -157,6 +172,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case HostCall(function, arguments):
             return atom(f"{function}()", *map(polynomial_of, arguments))
+        case ImageCall(function, image, _, _, numbers):
+            return atom(function, *map(polynomial_of, (image, *numbers)))
         case Told(what):
             return atom(f"{what}()")
         case IsText(place, text):

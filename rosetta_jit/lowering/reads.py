@@ -107,6 +107,9 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Call(_, arguments) | typed.HostCall(_, arguments):
             for argument in arguments:
                 yield from _in(argument)
+        case typed.ImageCall(_, image, _, _, numbers):
+            for part in (image, *numbers):
+                yield from _in(part)
         case typed.Choice(cases, otherwise):
             for part in (part for case in cases for part in case):
                 yield from _in(part)

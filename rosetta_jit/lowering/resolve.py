@@ -18,6 +18,7 @@ from rosetta_jit.lowering.defaults import default_rules
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.functions import signatures
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
@@ -28,6 +29,7 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     For,
     Ignore,
+    ImageCall,
     Local,
     Reject,
     SetLength,
@@ -304,6 +306,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Choice):
         value = _adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None

@@ -17,6 +17,7 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
@@ -95,6 +96,8 @@ class Runner:
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((Bytes() | Array()), typed.ImageCall()):
+                self.assign_image(place, value, values)
             case Array(), typed.Access(origin):
                 self.assign_array(place, origin, values)
             case ((Struct() | Map() | Union()), typed.Access(origin)):
@@ -121,6 +124,17 @@ class Runner:
             return
         self.target.set_length(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
+
+    def assign_image(self, place: typed.Place, value: typed.ImageCall, values: Values) -> None:
+        """An image or its pixels. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError(())
+        made = bytes_of(value, values)
+        if isinstance(place.type, Array | Bytes) and isinstance(place.type.length, int):
+            fits = Compare("eq", made.size, index(place.type.length))
+            self.writer.expect(fits, "length", values.where, f"the image has not {place.type.length} bytes", line=values.line)
+        self.target.set_length(place, made.size, values)
+        self.writer.emit(Copy(self.target.address(place, values), made.address, made.size))
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
         """A message, union or map as a whole."""

@@ -1,6 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Told | HostCall      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
+         | Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
          | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
@@ -168,6 +169,21 @@ class HostCall:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+ImageFunction = OneOf["decompress", "compress", "image_width", "image_height", "image_channels", "image_depth"]
+
+
+@dataclass(frozen=True, slots=True)
+class ImageCall:
+    """Bytes as an image, or as the pixels of one: ``numbers`` are their width, height, channels and quality, if it is compressed."""
+
+    function: ImageFunction
+    bytes: Expr
+    type: Type
+    format: str = ""
+    numbers: tuple[Expr, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 @dataclass(frozen=True, slots=True)
 class Choice:
     """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
@@ -182,7 +198,7 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Told | HostCall
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Told | HostCall | ImageCall
 
 
 @dataclass(frozen=True, slots=True)

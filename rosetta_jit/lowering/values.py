@@ -11,6 +11,7 @@ from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
 from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.images import measured
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -76,6 +77,8 @@ class Values:
                 return is_text(self, place, text.encode())
             case typed.Choice():
                 return self.choice(value)
+            case typed.ImageCall():
+                return measured(value, self)
             case typed.Told(what):
                 return Told(what)
             case typed.HostCall(function, arguments, type_):
