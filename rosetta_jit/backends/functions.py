@@ -56,7 +56,7 @@ def compile_function(declared: UserFunction) -> binding.ModuleRef:
             if not _widens(found, declared.result):
                 raise FunctionTypeError(f"it gives {_shown(dispatcher)}, not {NUMBA_TYPES[declared.result]}")
             dispatcher = compiled(NUMBA_TYPES[declared.result](*arguments))
-    except NumbaError as error:
+    except (NumbaError, TypeError, NotImplementedError) as error:  # the others are what numba raises on arguments, and on bytecode
         raise FunctionTypeError(_reason(error)) from error
     return _module(declared.name, dispatcher)
 
@@ -88,10 +88,11 @@ def _widens(found: str, wanted: str) -> bool:
         return False
     if found[0] == wanted[0]:
         return WIDTH[found] < WIDTH[wanted]
-    return found[0] == "u" and wanted[0] == "i" and WIDTH[found] < WIDTH[wanted]
+    to_signed, to_float = found[0] == "u" and wanted[0] == "i", found[0] in "iu" and wanted[0] == "f"
+    return (to_signed or to_float) and WIDTH[found] < WIDTH[wanted]
 
 
-def _reason(error: NumbaError) -> str:
+def _reason(error: Exception) -> str:
     """What numba says, on one line."""
     lines = [line.strip() for line in str(error).splitlines()]
     return "numba: " + " ".join(line for line in lines if line)[:MAX_REASON]

@@ -65,9 +65,11 @@ def _of_type(found: object, result: Scalar) -> Value:
     match found:
         case bool() | np.bool_() if result == "bool":
             return bool(found)
-        case float() | np.floating() if result in FLOATS:
+        case bool() | np.bool_():
+            raise RefusedError
+        case int() | float() | np.integer() | np.floating() if result in FLOATS:
             return constant(result, float(found))
-        case int() | np.integer() if result not in FLOATS and result != "bool" and limits(result)[0] <= int(found) <= limits(result)[1]:
+        case int() | np.integer() if result != "bool" and limits(result)[0] <= int(found) <= limits(result)[1]:
             return int(found)
         case _:
             raise RefusedError

@@ -206,6 +206,29 @@ def test_a_warm_start_and_lifetimes(monkeypatch):
 @pytest.mark.parametrize("backend", ["numba", "interpreter"])
 def test_without_the_library(monkeypatch, backend):
     monkeypatch.setattr("rosetta_jit.runtime.images.find_spec", lambda _: None)
+    files = {
+        **FILES,
+        "m.mapping": FILES["m.mapping"].replace("\npack-rules", '\n  reject "wide" when image_width(.data) == 12345\npack-rules', 1),
+    }
     with pytest.raises(rj.MappingError, match="Pillow") as error:
-        rj.Decoder("m.mapping", schema={**FILES, "m.mapping": FILES["m.mapping"] + "\n\n"}, encoding="yarp4", backend=backend)
+        rj.Decoder("m.mapping", schema=files, encoding="yarp3", backend=backend)
     assert error.value.diagnostics[0].help == "pip install rosetta-jit[images]"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_ros_and_rst(backend):
+    encode = rj.Encoder("ros1/compressed_image.mapping", backend=backend)
+    decode = rj.Decoder("ros1/compressed_image.mapping", backend=backend)
+    read = rj.Decoder.of("sensor_msgs/CompressedImage", framework="ros1", backend="interpreter")
+    image = picture("RGB")
+    raw = {"data": image.tobytes(), "width": 13, "height": 7, "channels": 3, "depth": "DEPTH_8U", "color_mode": "COLOR_RGB"}
+    raw["data_order"] = "DATA_INTERLEAVED"
+    message = encode(encode.holder_type.from_dict(raw))
+    assert Image.open(io.BytesIO(bytes(read(message).data))).tobytes() == image.tobytes()
+    assert decode(message).to_dict() == raw
+    deep = np.arange(91, dtype=np.uint16) * 700
+    grey = {**raw, "data": deep.tobytes(), "channels": 1, "depth": "DEPTH_16U", "color_mode": "COLOR_GRAYSCALE"}
+    assert decode(encode(encode.holder_type.from_dict(grey))).to_dict() == grey
+    write = rj.Encoder.of("sensor_msgs/CompressedImage", framework="ros1", backend="interpreter")
+    with pytest.raises(rj.DecodeError, match="transparency"):
+        decode(write(write.holder_type.from_dict({"format": "png", "data": saved(picture("RGBA"))})))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.runtime.function_digest import digest_of
 
 BACKENDS = ["numba", "llvm", "python", "interpreter"]
 FILES = {
@@ -157,3 +158,120 @@ def test_another_function_is_another_program():
         return lambda x, i: x * factor + i
 
     assert [decoder(UNPACK, "numba", f=scaled(factor))(write(x=1.0)).f for factor in (1.0, 2.0, 3.0)] == [2.0, 4.0, 6.0]
+
+
+def failed(head=HEAD, rules=UNPACK, backend="numba", **functions):
+    with pytest.raises(rj.MappingError) as error:
+        decoder(rules, backend, head, **functions)
+    return error.value.diagnostics
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "column"),
+    [
+        ("f(.x, .i)", "f(.x)", "arguments", 8),
+        ("f(.x, .i)", "f(.x, .i, .i)", "arguments", 8),
+        ("f(.x, .i)", "f(.i, .x)", "argument-type", 14),
+        ("f(.x, .i)", "f(.x, .b)", "argument-type", 14),
+        ("f(.x, .i)", "g(.x, .i)", "unknown-function", 8),
+        ("f(.x, .i)", "now(.x)", "arguments", 8),
+        ("f(.x, .i)", "decompress(.x)", "no-bytes", 19),
+        ("f(.x, .i)", "image_width()", "arguments", 8),
+        ("f(.x, .i)", 'compress(.x, "png", 1, 1, 1)', "no-bytes", 17),
+    ],
+)
+def test_wrong_calls(old, new, code, column):
+    (found,) = (each for each in failed(rules=UNPACK.replace(old, new), f=calibrate) if each.code == code)
+    assert found.span.source.line_column(found.span.start) == (7, column)
+
+
+@pytest.mark.parametrize(
+    ("declared", "code"),
+    [
+        ("function f(float64, int32): text", "no-scalar"),
+        ("function f(float): float64", "no-scalar"),
+        ("function sqrt(float64): float64", "function-name"),
+        ("function a.b(float64): float64", "function-name"),
+        ("function decompress(float64): float64", "function-name"),
+        ("function f(float64, int32): float64\nfunction f(float64): float64", "repeated-function"),
+        (f"function f({', '.join(['float64'] * 40)}): float64", "many-parameters"),
+        ("function f(float64", "syntax"),
+        ("function (float64): float64", "syntax"),
+    ],
+)
+def test_wrong_declarations(declared, code):
+    assert code in {each.code for each in failed(HEAD.replace("function f(float64, int32): float64", declared), f=calibrate)}
+
+
+def test_functions_and_declarations_belong_together():
+    (missing,) = failed()
+    assert (missing.code, missing.span.source.line_column(missing.span.start)[0]) == ("function-missing", 3)
+    (unknown,) = failed(f=calibrate, ff=calibrate)
+    assert (unknown.code, unknown.help) == ("function-unknown", "did you mean `f`?")
+    with pytest.raises(TypeError, match="neither"):
+        decoder(UNPACK, "numba", f=math.sin)
+
+
+@pytest.mark.parametrize(
+    ("function", "why"),
+    [
+        (lambda x, i: (x, i), "it gives"),
+        (lambda _, i: i + 1, "it gives int64, not float64"),
+        (lambda x, i: x if i else None, "it gives"),
+        (lambda x, _: open(x), "numba"),  # noqa: SIM115, PTH123 - what numba cannot compile
+        (lambda x: x, "numba"),
+        (lambda x, i: np.ones(3)[i] * x, "cannot call"),
+    ],
+)
+@pytest.mark.parametrize("backend", ["numba", "llvm"])
+def test_what_does_not_compile(function, why, backend):
+    (found,) = failed(backend=backend, f=function)
+    assert (found.code, found.span.source.line_column(found.span.start)[0]) == ("function-type", 3)
+    assert why in found.notes[0]
+
+
+@pytest.mark.parametrize("backend", ["numba", "llvm"])
+def test_without_numba(monkeypatch, backend):
+    monkeypatch.setattr("rosetta_jit.given.find_spec", lambda _: None)
+    (found,) = failed(backend=backend, f=lambda x, i: x - i)
+    assert found.code == "no-numba"
+
+
+@pytest.mark.parametrize("backend", ["python", "interpreter"])
+def test_results_of_another_type_are_refused(backend):
+    for wrong in (lambda *_: None, lambda *_: "1", lambda *_: True, lambda x, _: x / 0):
+        with pytest.raises(rj.DecodeError, match="raised an exception"):
+            decoder(UNPACK, backend, f=wrong)(write(x=1.0))
+
+
+def test_what_a_digest_covers():
+    def outer(value, table=(1, 2)):
+        def inner(x):
+            return x * value + table[0] + OFFSET
+
+        return inner
+
+    alike = digest_of(outer(1.0)), digest_of(outer(1.0)), digest_of(numba.njit(outer(1.0)).py_func)
+    assert len(set(alike)) == 1
+    others = {
+        digest_of(each)
+        for each in (outer(2.0), outer(1), outer(1.0, (3, 2)), outer(np.float32(1)), outer(np.arange(2)), outer(np.arange(3)))
+    }
+    assert len({*others, alike[0]}) == 7
+    assert digest_of(numba.njit(fastmath=True)(outer(1.0))) != alike[0]
+    assert digest_of(outer(calibrate)) == digest_of(outer(calibrate))
+    assert digest_of(outer(calibrate)) != digest_of(outer(outer(1.0)))
+    assert digest_of(outer(object())) != digest_of(outer(object()))
+    assert digest_of(outer(recursive)) == digest_of(outer(recursive))
+
+
+def recursive(x):
+    return recursive(x - 1) if x else 0
+
+
+def test_check_needs_no_functions(tmp_path):
+    from rosetta_jit.pipeline import check_mapping
+
+    for name, text in {**FILES, "m.mapping": HEAD + UNPACK}.items():
+        (tmp_path / name).write_text(text)
+    assert check_mapping(str(tmp_path / "m.mapping")) == ()
