@@ -51,7 +51,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if expr.function in IMAGE_FUNCTIONS:
         return type_image_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *IMAGE_FUNCTIONS, "bool", "len", *scope.enums, *scope.functions}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *IMAGE_FUNCTIONS, "bool", "has", "len", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

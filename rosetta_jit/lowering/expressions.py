@@ -15,9 +15,9 @@ from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describ
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.functions import type_host_call
 from rosetta_jit.lowering.scope import Broken, resolve_path
-from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Scope
@@ -51,6 +51,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return _binary(expr, scope)
         case model.Call(function) if function in scope.functions:
             return type_host_call(expr, scope.functions[function], scope, type_expr)
+        case model.Call("has", (model.Path() as path,)):
+            return _presence(path, expr.span, scope)
         case model.Call():
             return type_call(expr, scope, type_expr)
         case model.Choice():
@@ -108,11 +110,22 @@ def _length(expr: model.Len, scope: Scope) -> Expr | None:
     match place.type:
         case Array(length=int(length)):
             return Const(length, INT64, expr.span)
-        case Array() | Bytes() | String():
+        case Array() | Bytes() | String() | Map():
             return LenOf(place, INT64, expr.span)
         case other:
             scope.problems.append(words.no_length(expr.path.span, describe(other)))
             return None
+
+
+def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
+    place = resolve_path(path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    schema = scope.messages[place.side].schema
+    if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
+        return Has(place, span=span)
+    scope.problems.append(words.always_there(span, describe(place.type)))
+    return None
 
 
 def _negative(expr: model.Unary, scope: Scope) -> Expr | None:

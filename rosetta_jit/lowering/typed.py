@@ -1,7 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
-         | Told | HostCall | ImageCall
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Asked      each with `type`
+    Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
          | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
@@ -151,6 +151,15 @@ class IsText:
 
 
 @dataclass(frozen=True, slots=True)
+class Has:
+    """Whether something that can be absent is there: an optional field, a case of a union, and all on the way to it."""
+
+    place: Place
+    type: Type = BOOL
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Told:
     """When this message came, in ns since 1970, or how many came before it; int64."""
 
@@ -198,7 +207,10 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Told | HostCall | ImageCall
+Asked = Told | HostCall | ImageCall
+"""What the kernel's host answers."""
+
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Asked
 
 
 @dataclass(frozen=True, slots=True)

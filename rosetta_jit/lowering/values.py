@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, HostCall, If, Local, Scalar, Told, Unary, index, type_of
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
+from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import scalar_name
-from rosetta_jit.lowering.images import measured
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -37,6 +37,10 @@ class Source(Protocol):
 
     def address(self, place: typed.Place, values: Values) -> Address:
         """Where the bytes of a string or bytes field begin."""
+        ...
+
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there."""
         ...
 
 
@@ -75,14 +79,12 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.Has(place):
+                return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
-            case typed.ImageCall():
-                return measured(value, self)
-            case typed.Told(what):
-                return Told(what)
-            case typed.HostCall(function, arguments, type_):
-                return self.host_call(function, tuple(map(self.of, arguments)), scalar_type(type_))
+            case typed.Told() | typed.HostCall() | typed.ImageCall():
+                return asked(value, self)
             case _:
                 assert_never(value)
 
@@ -105,13 +107,6 @@ class Values:
         with writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
-        return found
-
-    def host_call(self, function: str, arguments: tuple[Expr, ...], result: Scalar) -> Expr:
-        """What a function of the host gives; where it refuses, so does the mapping."""
-        found = Local(result, self.writer.fresh(function))
-        failure = self.writer.failure("rejected", self.where, f"`{function}` raised an exception", line=self.line)
-        self.writer.emit(HostCall(function, arguments, found, failure))
         return found
 
     def reject(self, reason: str, *, when: Expr | None = None) -> None:

@@ -275,3 +275,11 @@ def test_check_needs_no_functions(tmp_path):
     for name, text in {**FILES, "m.mapping": HEAD + UNPACK}.items():
         (tmp_path / name).write_text(text)
     assert check_mapping(str(tmp_path / "m.mapping")) == ()
+
+
+@pytest.mark.parametrize("value", ["now()", "counter()", "now() + .i", "int64(.x) if .b else now()"])
+def test_no_relation_to_what_changes(value):
+    codes = [
+        each.code for each in failed(rules=f"rules:\n  .n <-> {value}\n  .f <-> .x\n  .g <-> .b\nunpack-rules:\n  ignore .i\n", f=calibrate)
+    ]
+    assert "no-inverse" in codes
