@@ -283,3 +283,8 @@ def test_no_relation_to_what_changes(value):
         each.code for each in failed(rules=f"rules:\n  .n <-> {value}\n  .f <-> .x\n  .g <-> .b\nunpack-rules:\n  ignore .i\n", f=calibrate)
     ]
     assert "no-inverse" in codes
+
+
+def test_a_kernel_of_its_own_has_no_host():
+    with pytest.raises(ValueError, match="calls functions"):
+        _ = decoder(UNPACK, "numba", f=calibrate).kernel
