@@ -28,7 +28,7 @@ def taken(span: Span | None, name: str) -> Diagnostic:
 
 
 def repeated(span: Span | None, name: str, first: Span | None) -> Diagnostic:
-    """A function that is declared twice."""
+    """A function that is declared twice, within one mapping or with other types in another one that is used."""
     return error("repeated-function", f"`{shorten(name)}` is declared twice", span, "again", notes=_declared(first))
 
 
@@ -78,4 +78,4 @@ def _declared(span: Span | None) -> tuple[str, ...]:
     if span is None:
         return ()
     line, _ = span.source.line_column(span.start)
-    return (f"declared in line {line}",)
+    return (f"declared at {span.source.name}, line {line}",)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Scope
     from rosetta_jit.lowering.typed import Expr
     from rosetta_jit.model import expr as model
-    from rosetta_jit.model.mapping import Function, TypeName
+    from rosetta_jit.model.mapping import Function, Mapping, TypeName
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -42,10 +42,21 @@ class Signature:
     span: Span | None
 
 
-def signatures(declared: Iterable[Function], problems: list[Diagnostic]) -> dict[str, Signature]:
-    """The declared functions by name. One whose types are wrong is reported and left out."""
+def signatures(mappings: Iterable[Mapping], problems: list[Diagnostic]) -> dict[str, Signature]:
+    """The functions by name that a mapping and those that it uses declare: where several declare one, all mean the same."""
     found: dict[str, Signature] = {}
-    for function in declared:
+    for mapping in mappings:
+        for name, signature in _declared(mapping.functions, problems).items():
+            first = found.setdefault(name, signature)
+            if (first.parameters, first.result) != (signature.parameters, signature.result):
+                problems.append(words.repeated(signature.span, name, first.span))
+    return found
+
+
+def _declared(functions: Iterable[Function], problems: list[Diagnostic]) -> dict[str, Signature]:
+    """The functions of one mapping. One whose types are wrong is reported and left out."""
+    found: dict[str, Signature] = {}
+    for function in functions:
         types = [_scalar(each, problems) for each in (*function.parameters, function.result)]
         known = [each for each in types if each is not None]
         if function.name in TAKEN or "." in function.name:

@@ -288,3 +288,21 @@ def test_no_relation_to_what_changes(value):
 def test_a_kernel_of_its_own_has_no_host():
     with pytest.raises(ValueError, match="calls functions"):
         _ = decoder(UNPACK, "numba", f=calibrate).kernel
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_in_a_mapping_that_another_one_uses(backend):
+    files = {
+        "a.proto": """syntax = "proto3"; message P { double x = 1; } message Q { double y = 1; }
+message Ps { repeated P ps = 1; } message Qs { repeated Q qs = 1; int64 when = 2; }""",
+        "one.mapping": 'import "a.proto"\nfunction f(float64): float64\ndata-holder: Q\nwire-schema: P\nunpack-rules:\n  .y = f(.x)\n',
+        "m.mapping": 'import "a.proto"\ndata-holder: Qs\nwire-schema: Ps\n'
+        'unpack-rules:\n  .qs = .ps via "one.mapping"\n  .when = counter()\n',
+    }
+    decode = rj.Decoder("m.mapping", schema=files, backend=backend, functions={"f": lambda x: x * 3.0})
+    encode = rj.Encoder.of("Ps", schema=files, imports=["a.proto"], backend="interpreter")
+    message = encode(encode.holder_type.from_dict({"ps": [{"x": 1.0}, {"x": 2.0}]}))
+    assert [each.y for each in decode(message).qs] == [3.0, 6.0]
+    other = {**files, "m.mapping": "function f(float32): float32\n" + files["m.mapping"]}
+    with pytest.raises(rj.MappingError, match="declared twice"):
+        rj.Decoder("m.mapping", schema=other, backend=backend, functions={"f": lambda x: x})
