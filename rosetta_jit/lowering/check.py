@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError, ReportError
+from rosetta_jit.frontend import unit_file
 from rosetta_jit.frontend.search import Reading, refusal
-from rosetta_jit.frontend.unit_file import SUFFIX
-from rosetta_jit.frontend.unit_file import parse as parse_units
 from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
+from rosetta_jit.lowering.others import SUFFIX, read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema, name_parts
@@ -74,12 +74,20 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
-    mapping = derive(mapping, problems)
-    imports = _Imports(mapping.source, front_ends, search, reading or Reading())
+    mapping, reading = derive(mapping, problems), reading or Reading()
+    derived = len(problems)
+    others = read_others(mapping, search, reading, problems)
+    imports = _Imports(mapping.source, front_ends, search, reading)
     imported = _imports(mapping, imports, problems)
-    complete = len(imported) == len({statement.path for statement in mapping.imports})
-    schema = annotated(_merged(imported, problems), [file for each in imported for file in each.units], imports.has, problems)
-    resolved = resolve(mapping, schema, schema) if complete else ()
+    theirs = [
+        each
+        for other in {other.source.name: other for other in others.found.values()}.values()
+        for each in _imports(other, _Imports(other.source, front_ends, search, reading), problems)
+    ]
+    merged = _merged([*imported, *theirs], problems)
+    complete = not any(problem.severity == "error" for problem in problems[derived:])
+    schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
+    resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
     problems += resolved.problems
@@ -106,22 +114,16 @@ class _Imports:
         """Whether there is a file that a type of this name is likely declared in."""
         return any(not refusal(name) and self.search.find(name, self.importer) is not None for name in self.front_ends.guesses(type_))
 
-    def units(self, statement: Import) -> _Imported | Diagnostic:
-        source = self.search.loader(self.reading, self.importer)(statement.path)
-        if source is None:
-            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
-        problems: list[Diagnostic] = []
-        file = parse_units(source, problems)
-        if problems:
-            raise MappingError(tuple(problems))
-        return _Imported(statement, Schema({}), (file,))
-
     def read(self, statement: Import) -> _Imported | Diagnostic:
-        if statement.path.endswith(SUFFIX):
-            return self.units(statement)
         source = self.search.loader(self.reading, self.importer)(statement.path)
         if source is None:
             return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
+        if source.name.endswith(unit_file.SUFFIX):
+            problems: list[Diagnostic] = []
+            units = unit_file.parse(source, problems)
+            if problems:
+                raise MappingError(tuple(problems))
+            return _Imported(statement, Schema({}), (units,))
         front_end = self.front_ends.find(source.name)
         if front_end is None:
             return words.import_suffix(statement.span, statement.path, self.front_ends.suffixes)
@@ -132,6 +134,8 @@ def _imports(mapping: Mapping, imports: _Imports, problems: list[Diagnostic]) ->
     imported: list[_Imported] = []
     seen: set[str] = set()
     for statement in mapping.imports:
+        if statement.path.endswith(SUFFIX):
+            continue
         if statement.path in seen:
             problems.append(words.import_repeated(statement.span, statement.path))
             continue
@@ -184,7 +188,7 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
 
 def _unused(imported: list[_Imported], resolved: Resolved) -> list[Diagnostic]:
     used = {resolved.holder.root.name, resolved.wire.root.name, *resolved.enums}
-    known = {name_parts(name) for one in imported for name in one.schema.types}
+    known = {name_parts(name) for name in resolved.holder.schema.types}
     return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
 
 
