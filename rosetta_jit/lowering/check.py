@@ -5,7 +5,7 @@ Imports are read by the front ends, names and types resolved, and each direction
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
@@ -15,7 +15,7 @@ from rosetta_jit.frontend.search import Reading, refusal
 from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
-from rosetta_jit.lowering.others import SUFFIX, read_others
+from rosetta_jit.lowering.others import MAPPING_SUFFIX, read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema, name_parts
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.idl import FrontEnds
     from rosetta_jit.frontend.search import SearchPath
     from rosetta_jit.frontend.unit_file import UnitFile
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.mapping import Import, Mapping
@@ -46,6 +47,7 @@ class Checked:
     wire: Message
     unpack: tuple[Rule, ...] | None
     pack: tuple[Rule, ...] | None
+    functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
 
 
@@ -79,14 +81,11 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
     others = read_others(mapping, search, reading, problems)
     imports = _Imports(mapping.source, front_ends, search, reading)
     imported = _imports(mapping, imports, problems)
-    theirs = [
-        each
-        for other in {other.source.name: other for other in others.found.values()}.values()
-        for each in _imports(other, _Imports(other.source, front_ends, search, reading), problems)
-    ]
-    merged = _merged([*imported, *theirs], problems)
+    theirs = [each for other in others.mappings() for each in _imports(other, replace(imports, importer=other.source), problems)]
+    everything = [*imported, *theirs]
+    merged = _merged(everything, problems)
     complete = not any(problem.severity == "error" for problem in problems[derived:])
-    schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
+    schema = annotated(merged, [file for each in everything for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
@@ -98,7 +97,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         raise MappingError(_sorted(problems))
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, _sorted(problems))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +133,7 @@ def _imports(mapping: Mapping, imports: _Imports, problems: list[Diagnostic]) ->
     imported: list[_Imported] = []
     seen: set[str] = set()
     for statement in mapping.imports:
-        if statement.path.endswith(SUFFIX):
+        if statement.path.endswith(MAPPING_SUFFIX):
             continue
         if statement.path in seen:
             problems.append(words.import_repeated(statement.span, statement.path))
