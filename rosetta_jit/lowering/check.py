@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError, ReportError
+from rosetta_jit.frontend import unit_file
 from rosetta_jit.frontend.search import Reading, refusal
-from rosetta_jit.frontend.unit_file import SUFFIX
-from rosetta_jit.frontend.unit_file import parse as parse_units
 from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
@@ -84,8 +83,9 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
     imported = _imports(mapping, imports, problems)
     theirs = [each for other in others.mappings() for each in _imports(other, replace(imports, importer=other.source), problems)]
     everything = [*imported, *theirs]
-    schema = annotated(_merged(everything, problems), [file for each in everything for file in each.units], imports.has, problems)
+    merged = _merged(everything, problems)
     complete = not any(problem.severity == "error" for problem in problems[derived:])
+    schema = annotated(merged, [file for each in everything for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
@@ -113,22 +113,16 @@ class _Imports:
         """Whether there is a file that a type of this name is likely declared in."""
         return any(not refusal(name) and self.search.find(name, self.importer) is not None for name in self.front_ends.guesses(type_))
 
-    def units(self, statement: Import) -> _Imported | Diagnostic:
-        source = self.search.loader(self.reading, self.importer)(statement.path)
-        if source is None:
-            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
-        problems: list[Diagnostic] = []
-        file = parse_units(source, problems)
-        if problems:
-            raise MappingError(tuple(problems))
-        return _Imported(statement, Schema({}), (file,))
-
     def read(self, statement: Import) -> _Imported | Diagnostic:
-        if statement.path.endswith(SUFFIX):
-            return self.units(statement)
         source = self.search.loader(self.reading, self.importer)(statement.path)
         if source is None:
             return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
+        if source.name.endswith(unit_file.SUFFIX):
+            problems: list[Diagnostic] = []
+            units = unit_file.parse(source, problems)
+            if problems:
+                raise MappingError(tuple(problems))
+            return _Imported(statement, Schema({}), (units,))
         front_end = self.front_ends.find(source.name)
         if front_end is None:
             return words.import_suffix(statement.span, statement.path, self.front_ends.suffixes)
@@ -193,7 +187,7 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
 
 def _unused(imported: list[_Imported], resolved: Resolved) -> list[Diagnostic]:
     used = {resolved.holder.root.name, resolved.wire.root.name, *resolved.enums}
-    known = {name_parts(name) for one in imported for name in one.schema.types}
+    known = {name_parts(name) for name in resolved.holder.schema.types}
     return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
 
 
