@@ -285,6 +285,3 @@ def test_errors_of_making_programs():
         rj.Encoder(TORSO)
     with pytest.raises(rj.SchemaError, match="unknown-type"):
         rj.Decoder.of("rst.vision.Imag", imports=["rst/vision/Image.proto"])
-
-
-LISTS = '"x" (("points" (:list (:bottle ("name" :string) ("at" :double)))))'
