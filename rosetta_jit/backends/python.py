@@ -20,6 +20,7 @@ from rosetta_jit.kernel.ir import (
     Block,
     Call,
     Copy,
+    Digits,
     Expect,
     Expr,
     Failure,
@@ -28,11 +29,13 @@ from rosetta_jit.kernel.ir import (
     If,
     Kernel,
     Let,
+    Nearest,
     Order,
     Require,
     Reserve,
     Return,
     Routine,
+    Scale,
     SetField,
     Stmt,
     Store,
@@ -42,6 +45,7 @@ from rosetta_jit.kernel.ir import (
     Wire,
     type_of,
 )
+from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 
 if TYPE_CHECKING:
@@ -55,7 +59,8 @@ IMPORTS = (
     "from rosetta_jit.backends.python_support import Failed, has_room, is_text, quotient, remainder, reserve, run_attempts",
     "from rosetta_jit.kernel.arithmetic import binary, convert, fits, from_bytes, to_bytes, unary, wrapped",
 )
-CALLED = frozenset(name.strip(",") for line in IMPORTS for name in line.partition(" import ")[2].split())
+OF_DECIMALS = "from rosetta_jit.kernel.decimals import digits, nearest, scale"
+CALLED = frozenset(name.strip(",") for line in (*IMPORTS, OF_DECIMALS) for name in line.partition(" import ")[2].split())
 PARAMETERS = "buffer, begin, end, state, lanes, row"
 
 
@@ -76,7 +81,7 @@ def python_text(kernel: Kernel) -> str:
     """The kernel as the source of a Python module, the same for the same kernel."""
     writer = Writer()
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
-    for line in IMPORTS:
+    for line in (*IMPORTS, *([OF_DECIMALS] if _has_decimals(kernel) else [])):
         writer.line(line)
     for routine in kernel.routines:
         writer.line()
@@ -93,6 +98,13 @@ def python_text(kernel: Kernel) -> str:
         attempts = "".join(f"attempt_{number}, " for number in range(len(kernel.bodies))).rstrip()
         writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row)")
     return writer.text()
+
+
+def _has_decimals(kernel: Kernel) -> bool:
+    """Whether a kernel reads or writes floats in decimal."""
+    blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
+    expressions = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
+    return any(isinstance(part, Nearest | Digits | Scale) for expr in expressions for part, _ in subexpressions(expr))
 
 
 def _reserved(kernel: Kernel) -> frozenset[str]:

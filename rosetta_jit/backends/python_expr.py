@@ -18,14 +18,17 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Convert,
+    Digits,
     Expr,
     Fits,
     Get,
     IsText,
     Load,
     Local,
+    Nearest,
     Place,
     Scalar,
+    Scale,
     Select,
     Unary,
     Used,
@@ -94,6 +97,20 @@ def expression(names: Names, expr: Expr) -> str:
             return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
         case IsText(address, size):
             return f"is_text({part(names, address, expression(names, size))})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(names, expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(names: Names, expr: Nearest | Digits | Scale) -> str:
+    match expr:
+        case Nearest(address, size, exponent):
+            return f"nearest({part(names, address, expression(names, size))}, {expression(names, exponent)})"
+        case Digits(value, places):
+            return f'digits("{type_of(value)}", {expression(names, value)}, {places})'
+        case Scale(value):
+            return f'scale("{type_of(value)}", {expression(names, value)})'
         case _:
             assert_never(expr)
 

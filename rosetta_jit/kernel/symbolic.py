@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel import integers
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
+from rosetta_jit.kernel.decimals import MAX_PLACES, MAX_SCALE, MOST_DIGITS
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Binary,
@@ -18,12 +19,15 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Convert,
+    Digits,
     Fits,
     Get,
     IsText,
     Load,
     Local,
+    Nearest,
     Place,
+    Scale,
     Select,
     Unary,
     Used,
@@ -225,6 +229,25 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case IsText(address, size):
             check_extent(scope, address, integer(scope, size))
             return "bool", None
+        case Nearest() | Digits() | Scale():
+            return _decimal(scope, expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:
+    match expr:
+        case Nearest(address, size, exponent):
+            check_extent(scope, address, integer(scope, size))
+            integer(scope, exponent)
+            return "f64", None
+        case Digits(value, places):
+            demand(evaluate(scope, value)[0] in FLOATS, "digits of an integer")
+            demand(places is None or 0 <= places <= MAX_PLACES, "too many decimals")
+            return "u64", scope.facts.fresh(0, MOST_DIGITS if places is None else limits("u64")[1])
+        case Scale(value):
+            demand(evaluate(scope, value)[0] in FLOATS, "the scale of an integer")
+            return "i64", scope.facts.fresh(-MAX_SCALE, MAX_SCALE)
         case _:
             assert_never(expr)
 

@@ -34,6 +34,7 @@ ALLOWED = frozenset(
         "Py_IncRef",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
+        *("snprintf", "strtod", "strtoll"),
         *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
     ]
 )
