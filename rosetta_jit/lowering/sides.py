@@ -8,8 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.pipeline import unmappable_place
-from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -29,7 +27,7 @@ from rosetta_jit.kernel.ir import (
     index,
     mul,
 )
-from rosetta_jit.lowering.bound import EACH
+from rosetta_jit.lowering.bound import EACH, NotInPlaceError
 from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where
@@ -43,7 +41,6 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.layout import Member
     from rosetta_jit.model.types import Constant, Field
-    from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
@@ -165,9 +162,9 @@ class WireSide:
         if not indices:
             found = self.root.get(key)
             if found is None:
-                raise MappingError((unmappable_place(place.span),))
+                raise NotInPlaceError(key)
             return found
-        region, at = self.element(key, indices, values, place.span)
+        region, at = self.element(key, indices, values)
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
 
     def count(self, place: typed.Place, values: Values) -> Expr:
@@ -177,12 +174,15 @@ class WireSide:
     def address(self, place: typed.Place, values: Values) -> Address:
         """Where the bytes of a string or bytes field begin."""
         del values
-        return Wire(self.root.found.regions[(*wire_key(place)[0], EACH)].first)
+        key = (*wire_key(place)[0], EACH)
+        if key not in self.root.found.regions:
+            raise NotInPlaceError(key)
+        return Wire(self.root.found.regions[key].first)
 
-    def element(self, key: Path, indices: list[typed.Expr], values: Values, span: Span | None) -> tuple[Region, Expr]:
+    def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
         """How the elements of an array lie, and where one of them is; it is checked to be there."""
         if len(indices) != 1 or key not in self.root.found.regions:
-            raise MappingError((unmappable_place(span),))
+            raise NotInPlaceError(key)
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = values.of(indices[0])
         where = Where().members(array).element(number)
@@ -197,7 +197,7 @@ class WireSide:
         """Numbers outside arrays were written by the walk."""
         key, indices = wire_key(place)
         if indices:
-            region, at = self.element(key, indices, values, place.span)
+            region, at = self.element(key, indices, values)
             self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
 
     def is_open(self, place: typed.Place) -> bool:
