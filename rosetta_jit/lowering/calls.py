@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal, cast
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
+from rosetta_jit.lowering.type_texts import NAMES, type_length, type_text_call
 from rosetta_jit.lowering.typed import INT64, Call, Const, Convert
 from rosetta_jit.lowering.units import check_argument
 from rosetta_jit.model.expr import Name
@@ -43,8 +44,12 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if target is not None:
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
+    if expr.function == "len":
+        return type_length(expr, scope, type_expr)
+    if expr.function in NAMES:
+        return type_text_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *NAMES, "bool", "len", *scope.enums}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

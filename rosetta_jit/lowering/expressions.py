@@ -14,6 +14,7 @@ from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.scope import Broken, resolve_path
+from rosetta_jit.lowering.type_texts import concatenation, is_textual
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
@@ -126,6 +127,8 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
     if left is None or right is None:
         return None
+    if expr.operator == "+" and (is_textual(left.type) or is_textual(right.type)):
+        return concatenation(left, right, expr.span, scope)
     if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
         scope.problems.append(words.zero_division(right.span))
         return None

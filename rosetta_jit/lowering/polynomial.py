@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, IsText, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, IsText, LenOf, Local, TextCall, Unary
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
@@ -155,6 +155,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
         case Call(function, arguments):
             return atom(function, *(polynomial_of(argument) for argument in arguments))
+        case TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Choice(cases, otherwise):

@@ -16,6 +16,7 @@ from rosetta_jit.lowering.conversions import convert, describe, other_way, same,
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
@@ -29,6 +30,7 @@ from rosetta_jit.lowering.typed import (
     Local,
     Reject,
     SetLength,
+    TextCall,
     When,
 )
 from rosetta_jit.lowering.units import in_unit
@@ -293,6 +295,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Choice):
         value = _adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None

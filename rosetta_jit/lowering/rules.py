@@ -19,6 +19,8 @@ from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.supplies import shown
+from rosetta_jit.lowering.text_values import checked, text_of
+from rosetta_jit.lowering.views import placed
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
 
@@ -95,6 +97,8 @@ class Runner:
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((String() | Bytes() | Array()), typed.TextCall()):
+                self.assign_computed(place, value, values)
             case Array(), typed.Access(origin):
                 self.assign_array(place, origin, values)
             case ((Struct() | Map() | Union()), typed.Access(origin)):
@@ -121,6 +125,20 @@ class Runner:
             return
         self.target.set_length(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
+
+    def assign_computed(self, place: typed.Place, value: typed.TextCall, values: Values) -> None:
+        """A text that is made of others. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError
+        view = placed(self.writer, text_of(value, values))
+        if isinstance(place.type, String) and place.type.encoding == "utf-8":
+            view = checked(view, values)
+        size = self.count(view.size)
+        if isinstance(place.type, Array | Bytes) and isinstance(place.type.length, int):
+            fits = Compare("eq", size, index(place.type.length))
+            self.writer.expect(fits, "length", values.where, f"the text has not {place.type.length} bytes", line=values.line)
+        self.target.set_length(place, size, values)
+        self.writer.emit(Copy(self.target.address(place, values), view.address, size))
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
         """A message, union or map as a whole."""

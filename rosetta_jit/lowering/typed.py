@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | TextCall | Choice      each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
          | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
@@ -32,6 +32,12 @@ target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``near
 
 Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
 Function = OneOf["radians", "degrees", Angular, "atan2", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
+
+OfTexts = OneOf["lower", "upper", "strip", "replace", "slice", "part", "until_nul", "padded", "concatenated", "decoded", "bytes"]
+FromText = OneOf[
+    "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
+]
+TextFunction = OneOf[OfTexts, FromText, "written", "iso8601"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +156,16 @@ class IsText:
 
 
 @dataclass(frozen=True, slots=True)
+class TextCall:
+    """A function that takes texts or gives one: strings, bytes, arrays of 8-bit integers. ``compared`` is below, at or above 0."""
+
+    function: TextFunction
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Choice:
     """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
 
@@ -163,7 +179,7 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | TextCall | Choice
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
 from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -74,6 +75,8 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.TextCall():
+                return number_of(value, self)
             case typed.Choice():
                 return self.choice(value)
             case _:
@@ -85,7 +88,7 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with writer.nested() as step:
+            with forgetting(self.source), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
@@ -95,7 +98,7 @@ class Values:
         if choice.otherwise is None:
             self.reject(choice.reason, when=undecided)
             return found
-        with writer.nested() as other:
+        with forgetting(self.source), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found

@@ -1,0 +1,243 @@
+"""Typed expressions of texts as places in memory, and what is asked of texts as numbers."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Unary, Used, Wire, index
+from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.number_text import Read, read_float, read_integer
+from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
+from rosetta_jit.lowering.sides import HolderSide
+from rosetta_jit.lowering.text_making import padded, replaced, with_case
+from rosetta_jit.lowering.text_search import compared, find, part, parts, stripped
+from rosetta_jit.lowering.type_texts import BLANKS
+from rosetta_jit.lowering.views import TRUE, Quoted, Text, View, byte_at, joined, lane_of, placed
+from rosetta_jit.lowering.writer import block
+from rosetta_jit.model.types import Float, String
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+
+    from rosetta_jit.kernel.ir import Expr, Local
+    from rosetta_jit.lowering.values import Source, Values
+
+LARGEST = 18
+"""Digits that a float of so many decimals may have in all."""
+
+
+def text_of(value: typed.Expr, values: Values) -> Text:
+    """A text that is written down, lies in a field, or is computed."""
+    match value:
+        case typed.Const(str(text)):
+            return Quoted(text.encode())
+        case typed.Access(place):
+            return _field(place, values)
+        case typed.Choice():
+            return _chosen(value, values)
+        case typed.TextCall("concatenated"):
+            return joined(values.writer, [text_of(piece, values) for piece in _pieces(value)])
+        case typed.TextCall():
+            return _called(value, values)
+        case _:
+            raise AssertionError(value)
+
+
+def _field(place: typed.Place, values: Values) -> View:
+    writer = values.writer
+    size = writer.let("size", values.source.count(place, values))
+    address = values.source.address(place, values)
+    if isinstance(address, Wire):
+        writer.require(size, values.where, at=address.at)  # known to be there: said again where the proof may have lost it
+        return View(None, address.at, writer.let("after", Binary("add", address.at, size)))
+    return View(address.lane, address.row, writer.let("after", Binary("add", address.row, size)))
+
+
+def _pieces(value: typed.Expr) -> Sequence[typed.Expr]:
+    """The texts of a sum of sums."""
+    match value:
+        case typed.TextCall("concatenated", (left, right)):
+            return [*_pieces(left), *_pieces(right)]
+        case _:
+            return [value]
+
+
+def _chosen(choice: typed.Choice, values: Values) -> View:
+    """Only the text that is chosen is made, behind the others of the hidden lane."""
+    writer, lane = values.writer, lane_of(values.writer)
+    first, size, undecided = writer.var("first", index(0)), writer.var("size", index(0)), writer.var("undecided", TRUE)
+
+    def choose(value: typed.Expr) -> None:
+        made = joined(writer, (text_of(value, values),))
+        writer.assign(first, made.first)
+        writer.assign(size, made.size)
+        writer.assign(undecided, Const("bool", value=False))
+
+    for condition, value in choice.cases:
+        with forgetting(values.source), writer.nested() as step:
+            holds = values.of(condition)
+            with writer.nested() as then:
+                choose(value)
+            writer.emit(If(holds, block(then)))
+        writer.emit(If(undecided, block(step)))
+    if choice.otherwise is None:
+        values.reject(choice.reason, when=undecided)
+    else:
+        with forgetting(values.source), writer.nested() as other:
+            choose(choice.otherwise)
+        writer.emit(If(undecided, block(other)))
+    for kept in (Compare("ge", first, index(0)), Compare("ge", size, index(0)), Compare("le", size, Used(lane))):
+        _expect(values, kept, "length", "the text is not where it was put")
+    _expect(values, Compare("le", first, Binary("sub", Used(lane), size)), "length", "the text is not where it was put")
+    return View(lane, first, writer.let("after", Binary("add", first, size)))
+
+
+@contextmanager
+def forgetting(source: Source) -> Generator[None]:
+    """Around statements that may not run: what is looked up within them is not known behind them."""
+    if not isinstance(source, HolderSide):
+        yield
+        return
+    known = dict(source.arrays)
+    yield
+    source.arrays = known
+
+
+def _called(call: typed.TextCall, values: Values) -> Text:
+    writer, arguments = values.writer, call.arguments
+    match call.function:
+        case "written":
+            return _written(call, values)
+        case "lower" | "upper" as case:
+            return with_case(writer, _placed(arguments[0], values), case)
+        case "strip":
+            characters = _quoted(arguments[1]) if len(arguments) > 1 else BLANKS.encode()
+            return stripped(writer, _placed(arguments[0], values), characters)
+        case "replace":
+            return replaced(writer, _placed(arguments[0], values), _quoted(arguments[1]), _quoted(arguments[2]))
+        case "slice":
+            return _slice(call, values)
+        case "part":
+            found, there = part(writer, _placed(arguments[0], values), _quoted(arguments[1]), values.of(arguments[2]))
+            _expect(values, there, "index", "the text has no such part")
+            return found
+        case "until_nul":
+            view = _placed(arguments[0], values)
+            return View(view.lane, view.first, find(writer, view.lane, view.first, view.after, b"\0"), view.valid)
+        case "padded":
+            return _padded(call, values)
+        case _:
+            raise AssertionError(call)
+
+
+def _written(call: typed.TextCall, values: Values) -> View:
+    number, decimals = call.arguments[0], call.arguments[1:]
+    value = values.of(number)
+    if not isinstance(number.type, Float):
+        return written_integer(values.writer, value)
+    places = next((int(each.value) for each in decimals if isinstance(each, typed.Const)), None)
+    if places is None:
+        return written_float(values.writer, value, None)
+    known = values.writer.let("number", value)
+    fits = Compare("lt", Unary("abs", known), Const(known.type, 10.0 ** (LARGEST - places)))
+    _expect(values, Binary("or", fits, is_special(known)), "range", f"a number of more than {LARGEST} digits")
+    return written_float(values.writer, known, places)
+
+
+def _slice(call: typed.TextCall, values: Values) -> View:
+    """A part by its first and last byte, where characters begin."""
+    writer = values.writer
+    text, start, stop = call.arguments
+    view = _placed(text, values)
+    size = writer.let("size", view.size)
+    low, high = writer.let("start", values.of(start)), writer.let("stop", values.of(stop))
+    for within in (Compare("ge", low, index(0)), Compare("le", low, high), Compare("le", high, size)):
+        _expect(values, within, "index", "the text has no such bytes")
+    first, after = (writer.let(name, Binary("add", view.first, at)) for name, at in (("first", low), ("after", high)))
+    if not isinstance(call.type, String):
+        return View(view.lane, first, after)
+    for at in (first, after):
+        with writer.nested() as inside:
+            byte = byte_at(view.lane, at)
+            begins = Compare("ne", Binary("and", byte, Const("u8", 0xC0)), Const("u8", 0x80))
+            _expect(values, begins, "text", "a character is cut")
+        writer.emit(If(Compare("lt", at, view.after), block(inside)))
+    return View(view.lane, first, after, view.valid)
+
+
+def _padded(call: typed.TextCall, values: Values) -> View:
+    text, size = call.arguments
+    assert isinstance(size, typed.Const)
+    view = _placed(text, values)
+    _expect(values, Compare("le", view.size, index(int(size.value))), "length", f"the text has more than {int(size.value)} bytes")
+    return padded(values.writer, view, int(size.value))
+
+
+def _placed(value: typed.Expr, values: Values) -> View:
+    return placed(values.writer, text_of(value, values))
+
+
+def _quoted(value: typed.Expr) -> bytes:
+    assert isinstance(value, typed.Const)
+    assert isinstance(value.value, str)
+    return value.value.encode()
+
+
+# --- numbers of texts ----------------------------------------------------------------------------------------------------
+
+
+def number_of(call: typed.TextCall, values: Values) -> Expr:
+    """What a function of texts gives that gives no text."""
+    writer, arguments = values.writer, call.arguments
+    match call.function:
+        case "size":
+            return writer.let("size", _placed(arguments[0], values).size)
+        case "compared":
+            left, right = (_placed(each, values) for each in arguments)
+            return compared(writer, left, right)
+        case "starts_with" | "ends_with" as end:
+            return _has_at(end, _placed(arguments[0], values), _placed(arguments[1], values), values)
+        case "contains":
+            view = _placed(arguments[0], values)
+            return Compare("lt", find(writer, view.lane, view.first, view.after, _quoted(arguments[1])), view.after)
+        case "parts":
+            return parts(writer, _placed(arguments[0], values), _quoted(arguments[1]))
+        case "integer":
+            return _read(read_integer(writer, _placed(arguments[0], values)), "an integer", "int64", values)
+        case "number":
+            return _read(read_float(writer, _placed(arguments[0], values)), "a number", "float64", values)
+        case _:
+            raise AssertionError(call)
+
+
+def _has_at(end: Literal["starts_with", "ends_with"], view: View, other: View, values: Values) -> Local:
+    """Whether one text is the begin or the end of another."""
+    writer = values.writer
+    found = writer.var("found", Const("bool", value=False))
+    size = writer.let("size", other.size)
+    with writer.nested() as long_enough:
+        if end == "starts_with":
+            ends = View(view.lane, view.first, Binary("add", view.first, size))
+        else:
+            ends = View(view.lane, Binary("sub", view.after, size), view.after)
+        writer.assign(found, Compare("eq", compared(writer, ends, other), index(0)))
+    writer.emit(If(Compare("le", size, view.size), block(long_enough)))
+    return found
+
+
+def _read(read: Read, what: str, target: str, values: Values) -> Expr:
+    _expect(values, Unary("not", read.is_none), "text", f"the text is not {what}")
+    _expect(values, Unary("not", read.is_too_large), "range", f"the number does not fit {target}")
+    return read.value
+
+
+def _expect(values: Values, condition: Expr, kind: str, detail: str) -> None:
+    values.writer.expect(condition, kind, values.where, detail, line=values.line)
+
+
+def checked(view: View, values: Values) -> View:
+    """A text that is UTF-8, or an error."""
+    if not view.valid:
+        _expect(values, IsText(view.address, view.size), "text", "not valid UTF-8")
+    return view
