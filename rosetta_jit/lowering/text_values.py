@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Unary, Used, Wire, index
 from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
+from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.number_text import Read, read_float, read_integer
 from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
 from rosetta_jit.lowering.sides import HolderSide
@@ -112,7 +115,7 @@ def _called(call: typed.TextCall, values: Values) -> Text:
         case "lower" | "upper" as case:
             return with_case(writer, _placed(arguments[0], values), case)
         case "strip":
-            characters = _quoted(arguments[1]) if len(arguments) > 1 else BLANKS.encode()
+            characters = next(map(_quoted, arguments[1:]), BLANKS.encode())
             return stripped(writer, _placed(arguments[0], values), characters)
         case "replace":
             return replaced(writer, _placed(arguments[0], values), _quoted(arguments[1]), _quoted(arguments[2]))
@@ -127,6 +130,10 @@ def _called(call: typed.TextCall, values: Values) -> Text:
             return View(view.lane, view.first, find(writer, view.lane, view.first, view.after, b"\0"), view.valid)
         case "padded":
             return _padded(call, values)
+        case "decoded" | "bytes":
+            return _recoded(call, values)
+        case "iso8601":
+            return _dated(call, values)
         case _:
             raise AssertionError(call)
 
@@ -174,6 +181,43 @@ def _padded(call: typed.TextCall, values: Values) -> View:
     return padded(values.writer, view, int(size.value))
 
 
+def _recoded(call: typed.TextCall, values: Values) -> View:
+    """Bytes read as text, or text as bytes of an encoding."""
+    writer, encoding = values.writer, _quoted(call.arguments[1]).decode()
+    view = _placed(call.arguments[0], values)
+    if call.function == "bytes" or encoding == "utf-8":
+        view = checked(view, values)
+    match encoding, call.function:
+        case "utf-8", _:
+            return view
+        case "ascii", _:
+            made = Recoded(replace(view, valid=True), is_ascii(writer, view))
+        case "latin-1", "decoded":
+            made = from_latin(writer, view)
+        case "latin-1", _:
+            made = to_latin(writer, view)
+        case _, "decoded":
+            made = from_utf16(writer, view, big=encoding.endswith("be"))
+        case _:
+            made = to_utf16(writer, view, big=encoding.endswith("be"))
+    _expect(values, made.good, "text", f"not valid {encoding}" if call.function == "decoded" else f"a character that {encoding} lacks")
+    return made.view
+
+
+def _dated(call: typed.TextCall, values: Values) -> View:
+    """A point in time: nanoseconds, or seconds and the nanoseconds behind them."""
+    writer = values.writer
+    if len(call.arguments) == 1:
+        seconds, nanoseconds = split(writer, values.of(call.arguments[0]))
+    else:
+        seconds, nanoseconds = (writer.let("time", values.of(each)) for each in call.arguments)
+        within = Binary("and", Compare("ge", nanoseconds, index(0)), Compare("lt", nanoseconds, index(SECOND)))
+        _expect(values, within, "range", "the nanoseconds are not less than a second")
+    years = Binary("and", Compare("ge", seconds, index(LEAST_SECONDS)), Compare("le", seconds, index(MOST_SECONDS)))
+    _expect(values, years, "range", "a time before the year 0 or after 9999")
+    return written_date(writer, seconds, nanoseconds)
+
+
 def _placed(value: typed.Expr, values: Values) -> View:
     return placed(values.writer, text_of(value, values))
 
@@ -207,8 +251,21 @@ def number_of(call: typed.TextCall, values: Values) -> Expr:
             return _read(read_integer(writer, _placed(arguments[0], values)), "an integer", "int64", values)
         case "number":
             return _read(read_float(writer, _placed(arguments[0], values)), "a number", "float64", values)
+        case "seconds" | "fraction" | "nanoseconds":
+            return _time(call, values)
         case _:
             raise AssertionError(call)
+
+
+def _time(call: typed.TextCall, values: Values) -> Expr:
+    """What a date says, from 1970 on: whole seconds, the nanoseconds behind them, or all of it in nanoseconds."""
+    read = read_date(values.writer, _placed(call.arguments[0], values))
+    _expect(values, Unary("not", read.is_none), "text", "the text is no date with a time and its offset")
+    _expect(values, Unary("not", read.is_too_fine), "range", "the date is finer than nanoseconds")
+    if call.function != "nanoseconds":
+        return read.seconds if call.function == "seconds" else read.nanoseconds
+    whole = values.writer.checked("mul", read.seconds, index(SECOND), values.where, line=values.line)
+    return values.writer.checked("add", whole, read.nanoseconds, values.where, line=values.line)
 
 
 def _has_at(end: Literal["starts_with", "ends_with"], view: View, other: View, values: Values) -> Local:
