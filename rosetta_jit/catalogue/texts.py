@@ -31,7 +31,8 @@ def listed(kinds: Sequence[str], optional: int) -> str:
 
 def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
     """A number where a text is meant."""
-    hint = "`text(...)` writes a number" if found.startswith(("int", "uint", "float", "bool")) else ""
+    is_number = found.startswith(("int", "uint", "float", "bool"))
+    hint = "`text(...)` writes a number, `integer(...)` and `number(...)` read one" if is_number else ""
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
 
 

@@ -37,7 +37,7 @@ from rosetta_jit.kernel.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.prove import All, Any, Facts, bounded, equal, negated
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Kernel, Scalar
+    from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Scalar
     from rosetta_jit.kernel.prove import Formula
 
 MAX_POSITION = 1 << 60
@@ -70,15 +70,15 @@ class Scope:
     capacity: list[Linear] = field(default_factory=list[Linear])
 
 
-def entry(kernel: Kernel) -> Scope:
+def entry(strides: tuple[int, ...]) -> Scope:
     """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
-    scope = Scope(kernel.strides)
+    scope = Scope(strides)
     facts = scope.facts
     begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
     end = plus(begin, length)
     facts.assume(shifted(times(end, -1), MAX_POSITION))
     scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
-    for _ in kernel.strides:
+    for _ in strides:
         capacity, used = facts.fresh(0, MAX_ROWS), facts.fresh(0, MAX_ROWS)
         facts.assume(minus(capacity, used))
         scope.capacity.append(capacity)

@@ -13,6 +13,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
+from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.type_texts import concatenation, is_textual
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
@@ -50,7 +51,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Binary():
             return _binary(expr, scope)
         case model.Call():
-            return type_call(expr, scope, type_expr)
+            return type_call(for_comparison(expr), scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
         case _:
@@ -59,7 +60,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
 
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
     """An expression that must be an integer, as int64."""
-    typed = type_expr(expr, scope)
+    typed = type_expr(for_type(expr, INT64), scope)
     if typed is None:
         return None
     integer = as_int64(typed)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Fits, If, Nearest, Select, Unary, add, index, mul
 from rosetta_jit.lowering.number_writing import INFINITE, NAN
-from rosetta_jit.lowering.views import TRUE, Scan, View, between, byte_at, is_between, is_one_of, parameters, scanning, within
+from rosetta_jit.lowering.views import TRUE, Scan, View, between, byte_at, is_between, is_one_of, parameters, scanning, sound, within
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def read_float(writer: Writer, view: View) -> Read:
 
 def _as_float(writer: Writer, view: View, results: tuple[Local, ...]) -> Read:
     start, stop, exponent, sign, special, state = results
-    digits = View(view.lane, start, stop)
+    digits = sound(writer, View(view.lane, start, stop))
     read = writer.let("read", Nearest(digits.address, digits.size, exponent))
     named = Select(Compare("eq", special, index(NAN)), Const("f64", math.nan), Const("f64", math.inf))
     size = writer.let("size", Select(Compare("ne", special, index(0)), named, read))

@@ -16,6 +16,7 @@ from rosetta_jit.lowering.conversions import convert, describe, other_way, same,
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.inverse_texts import for_type
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.typed import (
@@ -179,6 +180,8 @@ class _Block:
 
     def assign(self, rule: model.Assign, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
+        if place is not None and rule.fits:
+            rule = replace(rule, value=for_type(rule.value, place.type))
         value = type_expr(rule.value, scope)
         if place is None:
             return None

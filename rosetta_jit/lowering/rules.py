@@ -118,6 +118,8 @@ class Runner:
         if isinstance(self.target, WireSide) and not self.target.is_open(place):
             return
         size, source = self.source.count(origin, values), self.source.address(origin, values)
+        if isinstance(source, Wire):
+            self.writer.require(size, values.where, at=source.at)  # it is there: said again where the proof may have lost it
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             self.writer.expect(IsText(source, size), "text", values.where, "not valid UTF-8", line=values.line)
         if isinstance(source, Wire) and isinstance(place.type, Bytes) and isinstance(self.target, HolderSide) and self.target.borrows:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Const, Copy, Fill, If, Place, Select, While, add, index, mul
 from rosetta_jit.lowering.text_search import find, next_start, parts
-from rosetta_jit.lowering.views import View, has_room, is_between, kept, lane_of, parameters, put, room, scanning
+from rosetta_jit.lowering.views import LOST, View, has_room, is_between, kept, lane_of, parameters, put, room, scanning
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 
 if TYPE_CHECKING:
@@ -55,6 +55,8 @@ def replaced(writer: Writer, view: View, old: bytes, new: bytes) -> View:
     size = writer.let("size", Binary("add", view.size, mul(found, longer)))
     start = room(writer, size)
     limit = writer.let("limit", Binary("add", start, size))
+    if view.lane == lane_of(writer):
+        writer.expect(Compare("le", view.after, start), "length", MESSAGE, LOST)
 
     def make(inner: Writer) -> Contract:
         first, after, known = parameters(inner, view.lane)

@@ -13,6 +13,7 @@ from rosetta_jit.lowering.views import (
     is_one_of,
     parameters,
     scanning,
+    sound,
     within,
 )
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
@@ -92,7 +93,7 @@ def stripped(writer: Writer, view: View, characters: bytes) -> View:
         return Contract((first, after), (begin, end), known, within(first, begin, end, after=after))
 
     first, after = writer.call(f"strip_{view.memory}_{characters.hex()}", make, (view.first, view.after), MESSAGE)
-    return View(view.lane, first, after, view.valid)
+    return sound(writer, View(view.lane, first, after, view.valid))
 
 
 def next_start(writer: Writer, found: Expr, after: Expr, pattern: bytes) -> Expr:
@@ -122,7 +123,7 @@ def part(writer: Writer, view: View, pattern: bytes, number: Expr) -> tuple[View
 
     name = f"part_{view.memory}_{pattern.hex()}"
     first, after, there = writer.call(name, make, (view.first, view.after, number), MESSAGE)
-    return View(view.lane, first, after, view.valid), Compare("eq", there, index(1))
+    return sound(writer, View(view.lane, first, after, view.valid)), Compare("eq", there, index(1))
 
 
 def parts(writer: Writer, view: View, pattern: bytes) -> Local:

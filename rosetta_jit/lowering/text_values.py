@@ -16,7 +16,7 @@ from rosetta_jit.lowering.sides import HolderSide
 from rosetta_jit.lowering.text_making import padded, replaced, with_case
 from rosetta_jit.lowering.text_search import compared, find, part, parts, stripped
 from rosetta_jit.lowering.type_texts import BLANKS
-from rosetta_jit.lowering.views import TRUE, Quoted, Text, View, byte_at, joined, lane_of, placed
+from rosetta_jit.lowering.views import LOST, TRUE, Quoted, Text, View, byte_at, joined, lane_of, lies_in, placed, sound
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.types import Float, String
 
@@ -52,9 +52,9 @@ def _field(place: typed.Place, values: Values) -> View:
     size = writer.let("size", values.source.count(place, values))
     address = values.source.address(place, values)
     if isinstance(address, Wire):
-        writer.require(size, values.where, at=address.at)  # known to be there: said again where the proof may have lost it
-        return View(None, address.at, writer.let("after", Binary("add", address.at, size)))
-    return View(address.lane, address.row, writer.let("after", Binary("add", address.row, size)))
+        writer.require(size, values.where, at=address.at)  # it is there: said again where the proof may have lost it
+        return sound(writer, View(None, address.at, writer.let("after", Binary("add", address.at, size))))
+    return sound(writer, View(address.lane, address.row, writer.let("after", Binary("add", address.row, size))))
 
 
 def _pieces(value: typed.Expr) -> Sequence[typed.Expr]:
@@ -90,10 +90,10 @@ def _chosen(choice: typed.Choice, values: Values) -> View:
         with forgetting(values.source), writer.nested() as other:
             choose(choice.otherwise)
         writer.emit(If(undecided, block(other)))
-    for kept in (Compare("ge", first, index(0)), Compare("ge", size, index(0)), Compare("le", size, Used(lane))):
-        _expect(values, kept, "length", "the text is not where it was put")
-    _expect(values, Compare("le", first, Binary("sub", Used(lane), size)), "length", "the text is not where it was put")
-    return View(lane, first, writer.let("after", Binary("add", first, size)))
+    for known in (Compare("ge", first, index(0)), Compare("ge", size, index(0)), Compare("le", size, Used(lane))):
+        writer.expect(known, "length", values.where, LOST)
+    writer.expect(Compare("le", first, Binary("sub", Used(lane), size)), "length", values.where, LOST)
+    return sound(writer, View(lane, first, writer.let("after", Binary("add", first, size))))
 
 
 @contextmanager
@@ -125,9 +125,11 @@ def _called(call: typed.TextCall, values: Values) -> Text:
             found, there = part(writer, _placed(arguments[0], values), _quoted(arguments[1]), values.of(arguments[2]))
             _expect(values, there, "index", "the text has no such part")
             return found
+        case "behind" | "before" as side:
+            return _without(side, _placed(arguments[0], values), _quoted(arguments[1]), values)
         case "until_nul":
             view = _placed(arguments[0], values)
-            return View(view.lane, view.first, find(writer, view.lane, view.first, view.after, b"\0"), view.valid)
+            return sound(writer, replace(view, after=find(writer, view.lane, view.first, view.after, b"\0")))
         case "padded":
             return _padded(call, values)
         case "decoded" | "bytes":
@@ -162,15 +164,24 @@ def _slice(call: typed.TextCall, values: Values) -> View:
     for within in (Compare("ge", low, index(0)), Compare("le", low, high), Compare("le", high, size)):
         _expect(values, within, "index", "the text has no such bytes")
     first, after = (writer.let(name, Binary("add", view.first, at)) for name, at in (("first", low), ("after", high)))
-    if not isinstance(call.type, String):
-        return View(view.lane, first, after)
-    for at in (first, after):
+    found = sound(writer, View(view.lane, first, after, view.valid and isinstance(call.type, String)))
+    for at in (first, after) if isinstance(call.type, String) else ():
         with writer.nested() as inside:
-            byte = byte_at(view.lane, at)
-            begins = Compare("ne", Binary("and", byte, Const("u8", 0xC0)), Const("u8", 0x80))
+            begins = Compare("ne", Binary("and", byte_at(view.lane, at), Const("u8", 0xC0)), Const("u8", 0x80))
             _expect(values, begins, "text", "a character is cut")
-        writer.emit(If(Compare("lt", at, view.after), block(inside)))
-    return View(view.lane, first, after, view.valid)
+        writer.emit(If(Binary("and", Compare("lt", at, view.after), lies_in(view.lane, at)), block(inside)))
+    return found
+
+
+def _without(side: Literal["behind", "before"], view: View, known: bytes, values: Values) -> View:
+    """A text without the begin, or the end, that it must have."""
+    end, where = ("starts_with", "begin") if side == "behind" else ("ends_with", "end")
+    there = _has_at(end, view, placed(values.writer, Quoted(known)), values)
+    _expect(values, there, "text", f"the text does not {where} as it must")
+    size = index(len(known))
+    if side == "behind":
+        return sound(values.writer, replace(view, first=Binary("add", view.first, size)))
+    return sound(values.writer, replace(view, after=Binary("sub", view.after, size)))
 
 
 def _padded(call: typed.TextCall, values: Values) -> View:
@@ -275,10 +286,10 @@ def _has_at(end: Literal["starts_with", "ends_with"], view: View, other: View, v
     size = writer.let("size", other.size)
     with writer.nested() as long_enough:
         if end == "starts_with":
-            ends = View(view.lane, view.first, Binary("add", view.first, size))
+            part_of_it = View(view.lane, view.first, Binary("add", view.first, size))
         else:
-            ends = View(view.lane, Binary("sub", view.after, size), view.after)
-        writer.assign(found, Compare("eq", compared(writer, ends, other), index(0)))
+            part_of_it = View(view.lane, Binary("sub", view.after, size), view.after)
+        writer.assign(found, Compare("eq", compared(writer, sound(writer, part_of_it), other), index(0)))
     writer.emit(If(Compare("le", size, view.size), block(long_enough)))
     return found
 

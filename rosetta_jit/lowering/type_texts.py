@@ -1,6 +1,7 @@
 """Types of text expressions: the functions that take or give texts, concatenation, and comparison.
 
 lower upper until_nul (s)   strip (s [, "chars"])   replace (s, "old", "new")   slice (s, start, stop)   part (s, "by", n)   padded (s, 16)
+behind (s, "begin")   before (s, "end")
 text (number)   text (float, decimals)   text (bytes, "encoding")   bytes (s, "encoding")   iso8601 (ns)   iso8601 (secs, nsecs)
 integer number seconds fraction nanoseconds (s)   parts (s, "by")   starts_with ends_with (s, t)   contains (s, "t")
 
@@ -58,6 +59,8 @@ FORMS: dict[TextFunction, Form] = {
     "replace": Form(("text", "pattern", "quoted"), None),
     "slice": Form(("text", "integer", "integer"), None),
     "part": Form(("text", "pattern", "integer"), None),
+    "behind": Form(("text", "pattern"), None),
+    "before": Form(("text", "pattern"), None),
     "until_nul": Form(("text",), None),
     "padded": Form(("text", "size"), None),
     "parts": Form(("text", "pattern"), INT64),

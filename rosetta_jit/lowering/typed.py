@@ -33,7 +33,9 @@ target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``near
 Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
 Function = OneOf["radians", "degrees", Angular, "atan2", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
 
-OfTexts = OneOf["lower", "upper", "strip", "replace", "slice", "part", "until_nul", "padded", "concatenated", "decoded", "bytes"]
+OfTexts = OneOf[
+    "lower", "upper", "strip", "replace", "slice", "part", "behind", "before", "until_nul", "padded", "concatenated", "decoded", "bytes"
+]
 FromText = OneOf[
     "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
 ]

@@ -28,7 +28,7 @@ from rosetta_jit.kernel.ir import (
     add,
     index,
 )
-from rosetta_jit.lowering.writer import block
+from rosetta_jit.lowering.writer import MESSAGE, block
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable
@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 
 LANE = "texts"
 """The hidden lane of what is computed: one byte a row."""
+
+LOST = "a text is not where it was put"
+"""What no message brings about."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +89,12 @@ def byte_at(lane: int | None, at: Expr) -> Expr:
     return Load("u8", at) if lane is None else Get("u8", Place(lane, at))
 
 
+def lies_in(lane: int | None, at: Expr) -> Expr:
+    """Whether there is such a byte."""
+    low, high = (BEGIN, END) if lane is None else (index(0), Capacity(lane))
+    return Binary("and", Compare("ge", at, low), Compare("lt", at, high))
+
+
 def put(writer: Writer, at: Expr, byte: Expr | int) -> None:
     """Write a byte of the hidden lane."""
     writer.emit(SetField(Place(lane_of(writer), at), Const("u8", byte) if isinstance(byte, int) else byte))
@@ -99,9 +108,22 @@ def room(writer: Writer, size: Expr) -> Local:
 
 def kept(writer: Writer, start: Expr, first: Expr, after: Expr, *, valid: bool) -> View:
     """The view of what was written from ``first`` to ``after``, into the room that starts there or before."""
-    end = writer.let("after", after)
-    writer.emit(Advance(lane_of(writer), Binary("sub", end, start)))
-    return View(lane_of(writer), first, end, valid)
+    lane, end = lane_of(writer), writer.let("after", after)
+    count = writer.let("written", Binary("sub", end, start))
+    writer.emit(Reserve(lane, count), Advance(lane, count))  # there is room: said again where the proof may have lost it
+    return sound(writer, View(lane, first, end, valid))
+
+
+def sound(writer: Writer, view: View) -> View:
+    """A view that lies where it says. That follows from how it was made; written down, each use of it is proven at a glance."""
+    known = [Compare("le", view.first, view.after)]
+    if view.lane is None:
+        known += [Compare("ge", view.first, BEGIN), Compare("le", view.after, END)]
+    else:
+        known += [Compare("ge", view.first, index(0)), Compare("le", view.after, Capacity(view.lane))]
+    for each in known:
+        writer.expect(each, "length", MESSAGE, LOST)
+    return view
 
 
 def append(writer: Writer, text: Text) -> None:
@@ -115,6 +137,8 @@ def append(writer: Writer, text: Text) -> None:
         return
     size = writer.let("size", text.size)
     start = room(writer, size)
+    if text.lane == lane:
+        writer.expect(Compare("le", text.after, start), "length", MESSAGE, LOST)
     writer.emit(Copy(Place(lane, start), text.address, size), Advance(lane, size))
 
 
@@ -125,7 +149,7 @@ def joined(writer: Writer, texts: Iterable[Text]) -> View:
     for piece in pieces:
         append(writer, piece)
     valid = all(isinstance(piece, Quoted) or piece.valid for piece in pieces)
-    return View(lane_of(writer), start, writer.let("after", Used(lane_of(writer))), valid)
+    return sound(writer, View(lane_of(writer), start, writer.let("after", Used(lane_of(writer))), valid))
 
 
 def placed(writer: Writer, text: Text) -> View:

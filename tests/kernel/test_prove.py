@@ -208,7 +208,7 @@ def test_masks(data):
 
 def scope_with(*values):
     """A scope whose locals x0, x1, … are any i64 between two bounds."""
-    scope = entry(kernel(()))
+    scope = entry(kernel(()).strides)
     for number, (low, high) in enumerate(values):
         scope.locals[f"x{number}"] = "i64", scope.facts.fresh(low, high)
     return scope
