@@ -49,7 +49,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if expr.function in NAMES:
         return type_text_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *NAMES, "bool", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *NAMES, "bool", "has", "len", *scope.enums}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

@@ -39,6 +39,10 @@ class Source(Protocol):
         """Where the bytes of a string or bytes field begin."""
         ...
 
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Values:
@@ -77,6 +81,8 @@ class Values:
                 return is_text(self, place, text.encode())
             case typed.TextCall():
                 return number_of(value, self)
+            case typed.Has(place):
+                return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
             case _:
