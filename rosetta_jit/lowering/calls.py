@@ -4,7 +4,7 @@ int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate])     of a float
 float32 float64 (x)   bool (x)   enum.name (x)
 radians degrees sqrt sin cos tan asin acos atan (x) atan2 (y, x) of float64
-floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide (x, y)
+floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide floor_divide modulo (x, y)
 """
 
 from __future__ import annotations
@@ -35,7 +35,23 @@ if TYPE_CHECKING:
 INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
 FLOATS = ("float32", "float64")
 ANGULAR = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
-FUNCTIONS = ("radians", "degrees", *ANGULAR, "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide")
+DIVISIONS = ("divide", "floor_divide", "modulo")
+FUNCTIONS = (
+    "radians",
+    "degrees",
+    *ANGULAR,
+    "sqrt",
+    "floor",
+    "ceil",
+    "round",
+    "abs",
+    "min",
+    "max",
+    "align",
+    "divide",
+    "floor_divide",
+    "modulo",
+)
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -132,7 +148,7 @@ def _arity(expr: model.Call, scope: Scope) -> bool:
             fits, expected = found >= 2, "two or more values"
         case "align":
             fits, expected = found == 2, "a number and a quantum"
-        case "divide" | "atan2":
+        case "divide" | "floor_divide" | "modulo" | "atan2":
             fits, expected = found == 2, "two numbers"
         case _:
             fits, expected = found == 1, "one value"
@@ -156,7 +172,7 @@ def _function(expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | N
 def _candidates(function: str) -> tuple[Int | Float, ...]:
     """The types in which a function is computed, narrowest first."""
     match function:
-        case "align":
+        case "align" | "floor_divide" | "modulo":
             return (INT64,)
         case "abs" | "min" | "max" | "divide":
             return (INT64, Float(32), FLOAT64)
@@ -179,7 +195,7 @@ def _narrows(arguments: list[Expr], target: Int | Float, targets: tuple[Int | Fl
 def _folded(expr: model.Call, arguments: list[Expr], target: Int | Float) -> Expr:
     function = cast("Function", expr.function)
     numbers = [argument.value for argument in arguments if isinstance(argument, Const) and isinstance(argument.value, int)]
-    if isinstance(target, Int) and len(numbers) == len(arguments) and function != "divide":
+    if isinstance(target, Int) and len(numbers) == len(arguments) and function not in DIVISIONS:
         known = _of_integers(function, numbers)
         if conversions.holds(target, known):
             return Const(known, target, expr.span)

@@ -31,7 +31,23 @@ ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate"
 target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
 
 Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
-Function = OneOf["radians", "degrees", Angular, "atan2", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
+Function = OneOf[
+    "radians",
+    "degrees",
+    Angular,
+    "atan2",
+    "sqrt",
+    "floor",
+    "ceil",
+    "round",
+    "abs",
+    "min",
+    "max",
+    "align",
+    "divide",
+    "floor_divide",
+    "modulo",
+]
 
 OfTexts = OneOf[
     "lower", "upper", "strip", "replace", "slice", "part", "behind", "before", "until_nul", "padded", "concatenated", "decoded", "bytes"

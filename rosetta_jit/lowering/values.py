@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
-from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
+from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
@@ -61,8 +61,9 @@ class Values:
                 return constant(number, scalar_type(type_))
             case typed.Local(name):
                 return self.variables[name]
-            case typed.Access(place):
-                return self.source.number(place, self)
+            case typed.Access(place, type_):
+                number = self.source.number(place, self)
+                return converted(number, "bool") if isinstance(type_, Bool) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
@@ -148,6 +149,8 @@ class Values:
                 return result
             case "divide":
                 return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case "floor_divide" | "modulo":
+                return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:
