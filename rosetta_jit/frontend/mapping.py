@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MAX_NESTING = 64
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
-NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "loop", "when"))
+NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "length", "index", "loop", "when"))
 """Rules of the grammar that one of their kind can stand in."""
 
 

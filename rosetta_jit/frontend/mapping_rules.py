@@ -130,7 +130,8 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
         case "path":
             return _path(tree, context.origin, context)
         case "length":
-            return Len(_path(_trees(tree)[0], context.origin, context), span)
+            measured = _expr(_trees(tree)[0], context)
+            return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
         case "negative" | "inversion":
             return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
         case "conditional":

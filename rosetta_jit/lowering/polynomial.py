@@ -27,6 +27,7 @@ from rosetta_jit.lowering.typed import (
     IsText,
     LenOf,
     Local,
+    TextCall,
     Told,
     Unary,
 )
@@ -173,6 +174,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
+        case TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):

@@ -42,6 +42,7 @@ ALLOWED = frozenset(
         "clock_gettime",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
+        *("snprintf", "strtod", "strtoll"),
         *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
         *(f"{name}{suffix}" for suffix in ("", "f") for name in MATHEMATICS),
     ]
