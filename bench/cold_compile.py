@@ -9,10 +9,12 @@ import json
 import sys
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
+
+    from rosetta_jit.request import Backend
 
 STAGES = ("import", "import numba", "parse and check", "lower", "verify", "numba", "LLVM", "load")
 
@@ -21,41 +23,41 @@ class Clock:
     """Milliseconds by stage. What an inner stage takes is not the outer one's."""
 
     def __init__(self) -> None:
-        self.ms = dict.fromkeys(STAGES, 0.0)
+        self.ms: dict[str, float] = dict.fromkeys(STAGES, 0.0)
         self._inner = [0.0]
 
     @contextmanager
     def stage(self, name: str) -> Generator[None]:
-        started = time.perf_counter()
+        started = time.process_time()
         self._inner.append(0.0)
         yield
-        took = 1000 * (time.perf_counter() - started)
+        took = 1000 * (time.process_time() - started)
         self.ms[name] += took - self._inner.pop()
         self._inner[-1] += took
 
-    def timed(self, name: str, function: Callable[..., object]) -> Callable[..., object]:
+    def timed(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """The same function, its time counted for a stage."""
 
-        def timed(*arguments: object, **options: object) -> object:
+        def timed(*arguments: Any, **options: Any) -> Any:
             with self.stage(name):
                 return function(*arguments, **options)
 
         return timed
 
 
-def main(mapping: str, backend: str) -> dict[str, float]:
+def main(mapping: str, backend: Backend) -> dict[str, float]:
     clock = Clock()
     with clock.stage("import"):
-        from rosetta_jit.backends import link
+        from rosetta_jit.backends.link import SYMBOLS
         from rosetta_jit.lowering import passes
         from rosetta_jit.pipeline import Build
-        from rosetta_jit.programs import _linked
         from rosetta_jit.request import Request
+        from rosetta_jit.runtime import native
     if backend == "numba":
         with clock.stage("import numba"):
-            import rosetta_jit.backends.numba  # noqa: F401 - that it is imported is all that is wanted
+            from rosetta_jit.backends import numba
+        numba.typed, numba.library = clock.timed("numba", numba.typed), clock.timed("numba", numba.library)
     passes.verify = clock.timed("verify", passes.verify)
-    link._typed = clock.timed("numba", link._typed)
     build = Build(Request("decode", mapping=mapping, encoding="yarp3", backend=backend))
     with clock.stage("parse and check"):
         _ = build.types
@@ -64,9 +66,9 @@ def main(mapping: str, backend: str) -> dict[str, float]:
     with clock.stage("LLVM"):
         image = build.image()
     with clock.stage("load"):
-        _linked(build.header, image)
+        native.load(image, SYMBOLS[build.entry])
     return clock.ms
 
 
 if __name__ == "__main__":
-    print(json.dumps(main(*sys.argv[1:])))
+    print(json.dumps(main(sys.argv[1], "numba" if sys.argv[2] == "numba" else "llvm")))

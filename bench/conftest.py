@@ -14,6 +14,9 @@ from bench.report.readme import insert_in_readme
 from bench.turns import Call, Effort
 
 ROOT = Path(__file__).resolve().parent.parent
+ORDER = ("native_bottle", "native_image", "peers", "start", "memory", "limits", "curves")
+"""The modules as they are run and reported: what users ask first comes first."""
+
 FOUND = pytest.StashKey[dict[str, list]]()
 
 
@@ -25,6 +28,10 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.stash[FOUND] = {"rows": [], "comparisons": [], "curves": []}
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: ORDER.index(item.path.stem.removeprefix("test_")))
 
 
 def pytest_benchmark_update_json(config, output_json):

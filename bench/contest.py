@@ -38,10 +38,6 @@ class Outcome:
     def fastest(self, names: Sequence[str]) -> str:
         return min(names, key=lambda name: self.took(name).median)
 
-    def without(self, who: str, other: str) -> tuple[float, ...]:
-        """What is left of a contender's rounds without those of another: the work without its call. A nanosecond at the least."""
-        return tuple(max(a - b, 1.0) for a, b in zip(self.rounds_ns[who], self.rounds_ns[other], strict=True))
-
 
 def held(effort: Effort, contenders: Sequence[Contender], *, rounds: int | None = None) -> Outcome:
     """Measure them in turns."""

@@ -85,6 +85,14 @@ class Comparison:
     figures: tuple[Figure, ...]
 
 
+def chapters(comparisons: Sequence[Comparison]) -> dict[str, list[Comparison]]:
+    """The comparisons by chapter, in the order in which they were made."""
+    found: dict[str, list[Comparison]] = {}
+    for each in comparisons:
+        found.setdefault(each.chapter, []).append(each)
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class Series:
     """One line of a curve: (x, cost), costs positive."""
@@ -127,14 +135,16 @@ def to_json(report: Report) -> dict[str, Any]:
 def from_json(data: Mapping[str, Any]) -> Report:
     """The report that `to_json` wrote."""
     return Report(
-        tuple(Row(**{**row, "measured": Spread(**row["measured"])}) for row in data["rows"]),
-        tuple(
-            Comparison(each["chapter"], each["title"], tuple(Figure(**{**f, "rounds_ns": tuple(f["rounds_ns"])}) for f in each["figures"]))
-            for each in data["comparisons"]
-        ),
-        tuple(Curve(**{**each, "series": tuple(map(_series, each["series"]))}) for each in data["curves"]),
+        tuple(Row(each["what"], Spread(**each["measured"]), each["at_most"], each["unit"], each["detail"]) for each in data["rows"]),
+        tuple(Comparison(each["chapter"], each["title"], tuple(map(_figure, each["figures"]))) for each in data["comparisons"]),
+        tuple(map(_curve, data["curves"])),
     )
 
 
-def _series(data: Mapping[str, Any]) -> Series:
-    return Series(data["who"], data["role"], tuple((x, Spread(**cost)) for x, cost in data["points"]))
+def _figure(data: Mapping[str, Any]) -> Figure:
+    return Figure(data["who"], data["role"], data["makes"], tuple(data["rounds_ns"]))
+
+
+def _curve(data: Mapping[str, Any]) -> Curve:
+    series = tuple(Series(each["who"], each["role"], tuple((x, Spread(**cost)) for x, cost in each["points"])) for each in data["series"])
+    return Curve(data["title"], data["x"], data["y"], series, data["may_grow"], data["note"], data["parts"])

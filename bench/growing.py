@@ -55,7 +55,7 @@ def nested_tagged(depth: int) -> Subject:
 
 def varint(value: int) -> bytes:
     """As protobuf writes unsigned numbers."""
-    groups = []
+    groups: list[int] = []
     while value >= 0x80:
         groups.append(value & 0x7F | 0x80)
         value >>= 7

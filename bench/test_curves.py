@@ -117,7 +117,9 @@ def test_threads(tmp_path, effort, draw):
         def measure(number):
             shares = [decoder.many(buffer, offsets) for _ in range(number)]
             work = effort.call(
-                lambda: list(pool.map(lambda rows: decoder.many(buffer, offsets, into=rows), shares)), messages=number * count
+                lambda: list(pool.map(lambda rows: decoder.many(buffer, offsets, into=rows), shares)),
+                messages=number * count,
+                threaded=True,
             )
             return spreads(effort, {"decode": work}, rounds=7)
 

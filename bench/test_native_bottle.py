@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from bench import yarp_python
 from bench.contest import Contender
 from bench.messages import batch, joints_mapping, repeated, specialised, tagged
+from bench.peers import bottle_by_hand
 from bench.peers.yarp_native import Peers
 
 CHAPTER = "Native bottle parsing"
@@ -55,8 +55,8 @@ def many(decoder, rows, into):
 def test_24_specialised_doubles(decoders, effort, compare, record):
     decoder, message, peers, count = decoders[24], specialised(24), Peers(), series(effort)
     assert decoder(message).angles == pytest.approx(np.radians([10.0 * index - 7.25 for index in range(24)]), rel=1e-6)
-    array, by_hand = np.frombuffer(message, np.uint8), yarp_python.numba_by_hand()
-    kernel, state = yarp_python.numba_kernel(decoder, message)
+    array, by_hand = np.frombuffer(message, np.uint8), bottle_by_hand.numba_by_hand()
+    kernel, state = bottle_by_hand.numba_kernel(decoder, message)
     assert by_hand(array, np.empty(24, np.float32)) == len(message)
     assert kernel(array, state) >= 0
     outcome = compare(
@@ -68,9 +68,11 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
             Contender(COPY, "peer", "an array of float64 degrees, used again", lambda: peers.copy(message, 266)(count)),
             Contender("numba by hand", "peer", "an array, used again", effort.call(by_hand, array, np.empty(24, np.float32), count=count)),
             Contender("our kernel through numba's dispatcher", "peer", HOLDER, effort.call(kernel, array, state, count=count)),
-            Contender("numpy.frombuffer", "peer", "a view of float64 degrees", effort.call(yarp_python.frombuffer, message, count=count)),
-            Contender("numpy, as radians", "peer", "an array, anew", effort.call(yarp_python.frombuffer_radians, message, count=count)),
-            Contender("struct", "peer", "a tuple of degrees", effort.call(yarp_python.struct_unpack(24), message, count=count)),
+            Contender(
+                "numpy.frombuffer", "peer", "a view of degrees", effort.call(bottle_by_hand.frombuffer, message, count=count)
+            ),
+            Contender("numpy, as radians", "peer", "an array, anew", effort.call(bottle_by_hand.frombuffer_radians, message, count=count)),
+            Contender("struct", "peer", "a tuple of degrees", effort.call(bottle_by_hand.struct_unpack(24), message, count=count)),
         ],
         rounds=SERIES,
     )
@@ -96,7 +98,7 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
         [
             *bottle_contenders(effort, decoder, message, peers),
             Contender(TAGGED, "peer", "an array of float32 radians, used again", lambda: peers.tagged_loop(message, 10)(series(effort))),
-            Contender("struct", "peer", "a tuple of tags and degrees", effort.call(yarp_python.struct_tagged(16), message)),
+            Contender("struct", "peer", "a tuple of tags and degrees", effort.call(bottle_by_hand.struct_tagged(16), message)),
         ],
         rounds=SERIES,
     )

@@ -32,9 +32,9 @@ FIRST_COMPILE = """
 import sys, time
 import numba
 import rosetta_jit as rj
-started = time.perf_counter()
+started = time.process_time()
 rj.Decoder(sys.argv[1], encoding="yarp3")
-print(time.perf_counter() - started)
+print(time.process_time() - started)
 """
 
 

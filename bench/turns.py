@@ -1,11 +1,13 @@
 """Measures contenders in turns, so that a busy moment of the machine hits all alike.
 
 Absolute times do not travel between machines; how many `len()` or `memmove` a decode costs does, roughly. A contender is a function without
-arguments that returns the nanoseconds a message took: Python's are timed here, native ones time their own loops.
+arguments that returns the nanoseconds a message took: Python's are timed here, native ones time their own loops. Time is the
+thread's on a processor: while others have it, no clock runs.
 """
 
 from __future__ import annotations
 
+import time
 import timeit
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -50,12 +52,15 @@ class Effort:
                 taken[name].append(timed())
         return {name: tuple(values) for name, values in taken.items()}
 
-    def call(self, function: Callable[..., object], *arguments: object, count: int | None = None, messages: int = 1) -> Call:
-        """A contender: a function and its arguments, called ``count`` times a round, or as often as fills one."""
+    def call(
+        self, function: Callable[..., object], *arguments: object, count: int | None = None, messages: int = 1, threaded: bool = False
+    ) -> Call:
+        """A contender: a function that is called ``count`` times a round, or as often as fills one. Threads need a common clock."""
         names = [f"argument{number}" for number in range(len(arguments))]
         given = {"given_function": function, **{f"given_{name}": argument for name, argument in zip(names, arguments, strict=True)}}
         setup = "; ".join(f"{name} = given_{name}" for name in ("function", *names))
-        timer = timeit.Timer(f"function({', '.join(names)})", setup, globals=given)
+        clock = time.perf_counter if threaded else time.thread_time
+        timer = timeit.Timer(f"function({', '.join(names)})", setup, clock, given)
         return Call(function, arguments, timer, count or self._count(timer), messages)
 
     def _count(self, timer: timeit.Timer) -> int:

@@ -6,7 +6,7 @@ import ctypes
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,7 +61,7 @@ def rounds_of(job: Callable[[int], float], round_s: float) -> Callable[[], float
     return partial(job, count)
 
 
-def _nanoseconds(function: ctypes._NamedFuncPointer, subject: Subject, iterations: int) -> float:
+def _nanoseconds(function: Any, subject: Subject, iterations: int) -> float:
     function.restype = ctypes.c_double
     took = function(subject.type.encode(), subject.message, ctypes.c_int64(len(subject.message)), ctypes.c_int64(iterations))
     if took < 0:

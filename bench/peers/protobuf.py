@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -31,13 +33,13 @@ def peers(subject: Subject) -> tuple[Peer, ...]:
 
 def _message_class(name: str) -> Any:
     from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
-    from grpc_tools import protoc
 
     pool, files = descriptor_pool.DescriptorPool(), descriptor_pb2.FileDescriptorSet()
     with TemporaryDirectory() as folder:
         target = Path(folder) / "set"
-        if protoc.main(["protoc", *(f"-I{each}" for each in FOLDERS), f"--descriptor_set_out={target}", *FILES]) != 0:
-            raise ValueError("protoc refuses the benchmarks' files")
+        # In a process of its own: it brings another libprotobuf than the C++ peer, and a process bears but one.
+        protoc = [sys.executable, "-m", "grpc_tools.protoc", *(f"-I{each}" for each in FOLDERS)]
+        subprocess.run([*protoc, f"--descriptor_set_out={target}", *FILES], check=True)
         files.ParseFromString(target.read_bytes())
     for file in files.file:
         pool.Add(file)

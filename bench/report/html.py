@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from html import escape
-from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.figures import ratio
+from bench.figures import chapters, ratio
 from bench.report import plot, words
 from bench.slopes import exponent, too_steep
 
@@ -18,7 +17,8 @@ if TYPE_CHECKING:
 
 HOW = (
     "All contenders of a job were measured in turns. Figures are medians over the rounds with their quartiles; ratios are those of single "
-    "rounds, so that a busy moment of the machine hits both alike. Bars and curves have logarithmic axes."
+    "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread on a processor. "
+    "Bars and curves have logarithmic axes."
 )
 STYLE = Path(__file__).with_name("style.css")
 
@@ -37,7 +37,7 @@ def _body(report: Report, about: Mapping[str, str]) -> Iterator[str]:
     yield _table((), about.items())
     yield "<h2>Targets</h2>"
     yield _table(("what", "measured", "at most", "", ""), map(_target, report.rows))
-    for chapter, comparisons in groupby(report.comparisons, key=lambda each: each.chapter):
+    for chapter, comparisons in chapters(report.comparisons).items():
         yield f"<h2>{escape(chapter)}</h2>"
         yield from map(_comparison, comparisons)
     yield "<h2>How costs grow</h2><p>The exponent k of x<sup>k</sup> is fitted over the upper half of each curve.</p>"

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import groupby
 from typing import TYPE_CHECKING
 
-from bench.figures import ratio
+from bench.figures import chapters, ratio
 from bench.report import words
 from bench.slopes import exponent, too_steep
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 def page(report: Report, about: Mapping[str, str]) -> str:
     """The whole report."""
     parts = ["# Benchmarks\n", table(("", ""), about.items()), "\n## Targets\n", targets(report.rows)]
-    for chapter, comparisons in groupby(report.comparisons, key=lambda each: each.chapter):
+    for chapter, comparisons in chapters(report.comparisons).items():
         parts += [f"\n## {chapter}\n", *(f"\n### {each.title}\n\n{contenders(each)}" for each in comparisons)]
     parts += ["\n## How costs grow\n", slopes(report.curves)]
     return "\n".join(parts)
@@ -26,7 +25,7 @@ def page(report: Report, about: Mapping[str, str]) -> str:
 
 def targets(rows: Sequence[Row]) -> str:
     """The table of the README: ratios against their limits."""
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for row in rows:
         target = "" if row.at_most is None else f"{row.at_most:.3g} {row.unit}"
         mark = "" if row.at_most is None else "met" if row.met else "**missed**"
@@ -51,7 +50,7 @@ def contenders(comparison: Comparison) -> str:
 
 def slopes(curves: Sequence[Curve]) -> str:
     """The exponent of each series, and what is superlinear."""
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for curve in curves:
         steep = too_steep(curve)
         for each in curve.series:

@@ -14,7 +14,7 @@ HEADER = 8
 DEGREE = np.float32(np.pi / 180)
 
 
-def numba_by_hand() -> Callable[[Any, Any], int]:
+def numba_by_hand() -> Any:
     """Header check and loop in numba, without any of ours: from an array of bytes into an array of angles."""
     import numba
 
@@ -33,7 +33,7 @@ def numba_by_hand() -> Callable[[Any, Any], int]:
     return decode
 
 
-def numba_kernel(decoder: Any, message: bytes) -> tuple[Callable[[Any, Any], int], Any]:
+def numba_kernel(decoder: Any, message: bytes) -> tuple[Any, Any]:
     """Our kernel, called through numba's dispatcher instead of our entry; and the state of a holder that is large enough."""
     import numba
 
