@@ -69,4 +69,4 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 native: $(VENV)/.bench ## build the native peers: YARP or the model of it, and the C++ of each framework that is installed
-	$(MAKE) --directory bench/native OUTPUT=$(abspath $(NATIVE)) LCM_GEN=$(firstword $(wildcard $(VENV)/lib/python*/site-packages/bin/lcm-gen))
+	$(MAKE) --directory bench/native OUTPUT=$(abspath $(NATIVE)) LCM_GEN=$(abspath $(firstword $(wildcard $(VENV)/lib/python*/site-packages/bin/lcm-gen)))

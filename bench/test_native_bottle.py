@@ -68,9 +68,7 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
             Contender(COPY, "peer", "an array of float64 degrees, used again", lambda: peers.copy(message, 266)(count)),
             Contender("numba by hand", "peer", "an array, used again", effort.call(by_hand, array, np.empty(24, np.float32), count=count)),
             Contender("our kernel through numba's dispatcher", "peer", HOLDER, effort.call(kernel, array, state, count=count)),
-            Contender(
-                "numpy.frombuffer", "peer", "a view of degrees", effort.call(bottle_by_hand.frombuffer, message, count=count)
-            ),
+            Contender("numpy.frombuffer", "peer", "a view of degrees", effort.call(bottle_by_hand.frombuffer, message, count=count)),
             Contender("numpy, as radians", "peer", "an array, anew", effort.call(bottle_by_hand.frombuffer_radians, message, count=count)),
             Contender("struct", "peer", "a tuple of degrees", effort.call(bottle_by_hand.struct_unpack(24), message, count=count)),
         ],
