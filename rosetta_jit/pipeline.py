@@ -6,12 +6,12 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from functools import cached_property
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping

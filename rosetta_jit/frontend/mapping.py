@@ -6,7 +6,6 @@ an index within the place included, is on the other side: a target has nothing t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, cast
@@ -15,6 +14,7 @@ from lark import Token, Tree
 from lark.lark import PostLex
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
 from rosetta_jit.frontend.parsers import parser_of

@@ -17,9 +17,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Name, Path, Unary
 
 if TYPE_CHECKING:

@@ -5,10 +5,11 @@ A side can be read (`values.Source`) and be written; which one is which depends 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import (
     WIDTH,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue.pipeline import unmappable_field
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
 from rosetta_jit.lowering import typed

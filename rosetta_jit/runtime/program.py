@@ -7,11 +7,11 @@ not the common case, other holders, many messages.
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import CAPACITY, USED, VALID, lane_word
 from rosetta_jit.runtime import run

@@ -9,7 +9,6 @@ r"""S-expressions: text into nested forms with their places.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, cast
 from lark import UnexpectedCharacters
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.source import Span

@@ -6,7 +6,6 @@ wrong one were not there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from lark.lark import PostLex
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.source import Source, Span
 
