@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from functools import cached_property
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
@@ -126,7 +125,8 @@ class Build:
 
     @cached_property
     def backend(self) -> Backend:
-        return self.request.backend or ("numba" if find_spec("numba") is not None else "llvm")
+        """The one that was asked for, or LLVM: what numba adds, a type for users' own functions, `Decoder.kernel` has in any case."""
+        return self.request.backend or "llvm"
 
     @cached_property
     def text(self) -> str:

@@ -80,7 +80,7 @@ class Options(TypedDict, total=False):
     borrow : bool
         Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
     backend : {"numba", "llvm", "python", "interpreter"}
-        What runs the kernel; numba where it is installed, else LLVM.
+        What runs the kernel; LLVM by default. numba types it on its way to LLVM, which takes longer and gives the same code.
     """
 
     encoding: str | None

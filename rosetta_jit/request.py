@@ -45,7 +45,7 @@ class Request:
     lenient
         What the encoding is asked to forgive, by name.
     backend
-        What runs the kernels; None for numba where it is installed, else LLVM.
+        What runs the kernels; None for LLVM.
     """
 
     direction: Direction
