@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, USED, lane_word
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, USED, lane_word
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -109,6 +109,7 @@ class Frame:
     builder: ir.IRBuilder
     parameters: Parameters
     strides: tuple[int, ...]
+    own_lanes: int
     loaded: dict[tuple[int, int], ir.Value]
     done: Exit
     failed: Exit
@@ -125,11 +126,17 @@ class Frame:
         """How many rows the lane has room for."""
         return self._word(lane, CAPACITY, I64, f"capacity{lane}")
 
+    def told(self, what: str) -> ir.Value:
+        """What the host tells of the message; messages of one call are numbered by their rows."""
+        word = NOW if what == "now" else NUMBER
+        value = self.builder.load(state_word(self.builder, self.parameters.state, word), typ=I64, align=8, name=what)
+        return value if what == "now" else self.builder.add(value, self.parameters.row)
+
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length; each body starts with what the state says, and decoding into row 0 with nothing."""
         if lane not in self.used:
-            start = self._load(self.entry, lane, USED, I64, f"used{lane}")
-            if self.decodes and lane:
+            start = constant(0) if self.is_hidden(lane) else self._load(self.entry, lane, USED, I64, f"used{lane}")
+            if self.decodes and lane and not self.is_hidden(lane):
                 first = self.entry.icmp_signed("==", self.parameters.row, constant(0))
                 start = self.entry.select(first, constant(0), start)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
@@ -137,6 +144,10 @@ class Frame:
             if self.is_crowded:
                 self.entry.asm(ESCAPED, "", "r", [self.used[lane]], side_effect=True)
         return self.used[lane]
+
+    def is_hidden(self, lane: int) -> bool:
+        """Whether the lane is not the holder's."""
+        return lane >= self.own_lanes
 
     @property
     def is_crowded(self) -> bool:
@@ -160,6 +171,10 @@ class Frame:
         return self.loaded[key]
 
     def _load(self, builder: ir.IRBuilder, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        if self.is_hidden(lane):
+            hidden = builder.load(state_word(builder, self.parameters.state, HIDDEN), typ=POINTER, align=8, name="hidden")
+            value = builder.load(state_word(builder, hidden, lane_word(lane - self.own_lanes, word) - LANES), typ=type_, align=8, name=name)
+            return value if word == ADDRESS else builder.udiv(value, constant(self.strides[lane]))
         return builder.load(state_word(builder, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name)
 
 

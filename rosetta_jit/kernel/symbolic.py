@@ -26,6 +26,7 @@ from rosetta_jit.kernel.ir import (
     Local,
     Place,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -215,6 +216,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Capacity(lane):
             check_lane(scope, lane)
             return "i64", scope.capacity[lane]
+        case Told(what):
+            return "i64", scope.facts.named(("told", what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
         case Fits(op, left, right):

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.inverse import NoInverseError, fields_in, reads_in_index, replaced, solve
+from rosetta_jit.lowering.calls import TOLD
+from rosetta_jit.lowering.inverse import NoInverseError, calls_in, fields_in, reads_in_index, replaced, solve
 from rosetta_jit.model.expr import Binary, Len, Path
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -44,8 +45,8 @@ def _unpacked(rule: Rule) -> Rule:
     match rule:
         case Relation(Len(place), value, span):
             return SetLength(place, value, span)
-        case Relation(Path() as place, value, span):
-            return Assign(place, value, span)
+        case Relation(Path() as place, value, span, via):
+            return Assign(place, value, span, via=via)
         case For(body=body):
             return replace(rule, body=_unpacking(body))
         case _:
@@ -106,6 +107,9 @@ class _Packing:
     def relation(self, rule: Relation) -> tuple[Rule, ...]:
         place = rule.place.path if isinstance(rule.place, Len) else rule.place
         fields = fields_in(rule.value)
+        if (told := next((call for call in calls_in(rule.value) if call.function in TOLD), None)) is not None:
+            self.problems.append(words.changes(told.span, told.function))
+            return ()
         for path in (place, *(each.path if isinstance(each, Len) else each for each in fields)):
             if (read := reads_in_index(path)) is not None:
                 self.problems.append(words.index_reads(read))
@@ -126,7 +130,7 @@ class _Packing:
 def _setting(target: Path | Len, value: Expr, rule: Relation) -> tuple[Rule, ...]:
     if isinstance(target, Len):
         return (SetLength(target.path, value, rule.span),)
-    return (Assign(target, value, rule.span, fits=True),)
+    return (Assign(target, value, rule.span, fits=True, via=rule.via),)
 
 
 def _side(place: Path | Len) -> str:

@@ -15,8 +15,12 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
+from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.functions import signatures
+from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
@@ -27,30 +31,32 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     For,
     Ignore,
+    ImageCall,
     Local,
     Reject,
     SetLength,
     When,
 )
+from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
+    from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
 
 
 MAX_TEXTS = 50
 """Cases of a choice among texts."""
-
-MAX_NESTED = 20
-"""Structs within each other that are looked into for what has no default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +77,14 @@ class Resolved:
     pack: TypedRules | None
     enums: frozenset[str]
     problems: tuple[Diagnostic, ...]
+    functions: Mapping[str, Signature]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[Diagnostic, ...]:
-    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message."""
+def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
+
+    ``others`` are the mappings that its rules may use.
+    """
     problems: list[Diagnostic] = []
     holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
     wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
@@ -83,10 +93,11 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named)
+    functions = signatures((mapping, *others.mappings()), problems)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
     unpack = _block(mapping.unpack_rules, scope)
     pack = _block(mapping.pack_rules, replace(scope, target="wire"))
-    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
@@ -110,7 +121,7 @@ class _Block:
         for rule, behind in pairwise(rules):
             if isinstance(rule, model.Reject):
                 scope.problems.append(words.rules_behind_reject(behind.span))
-        typed = [self.rule(rule, scope) for rule in rules]
+        typed = [made for rule in rules for made in self.made(rule, scope)]
         found = tuple(rule for rule in typed if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
         scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
@@ -118,16 +129,26 @@ class _Block:
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
         """Rules for the fields of the message that no other rule sets, and that the other side has too."""
-        origin, aim = (scope.messages[side].root for side in (_other(scope.target), scope.target))
+        origin, aim = (scope.messages[side].root for side in (scope.origin, scope.target))
         names = {field.name for field in origin.fields}
         excepted = [resolve_path(path, scope, type_index) for path in rule.but]
         set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
-        taken = {fields[0] for fields in (*set_already, *self.broken) if fields}
+        around = len(field_names(scope.base(scope.target)))
+        taken = {fields[around] for fields in (*set_already, *self.broken) if len(fields) > around}
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
-        made = [self.assign(_same_name(name, scope.target, rule.span), scope) for name in wanted]
+        made = (each for name in wanted for each in self.made(_same_name(name, scope.target, rule.span), scope))
         return [each for each in made if each is not None]
+
+    def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
+        """The rules that one of the mapping stands for."""
+        if isinstance(rule, model.Assign):
+            nested = nest(rule, scope, self.rules)
+            if nested is not None:
+                return [*nested]
+        found = self.rule(rule, scope)
+        return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
         match rule:
@@ -157,7 +178,7 @@ class _Block:
             return None
         if isinstance(rule, model.Ignore):
             return Ignore(place, rule.span)
-        if scope.target == "wire" and _has_fixed_array(place.type, scope.messages["wire"]):
+        if has_array(place.type, scope.messages[scope.target].schema, told=True):
             scope.problems.append(words.no_default(rule.span, describe(place.type)))
             return None
         return Default(place, rule.span)
@@ -183,7 +204,9 @@ class _Block:
         if fitting is None:
             self.broken.append(field_names(place))
             return None
-        return _by_case(place, fitting, rule.span)
+        change = change_within(fitting, place, scope)
+        made = _by_case(place, fitting, rule.span)
+        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
 
     def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
         place = self.place(rule, scope)
@@ -215,7 +238,7 @@ class _Block:
             scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
-        return For(Local(rule.variable), start, stop, body, rule.span)
+        return For(Local(rule.variable + scope.suffix), start, stop, body, rule.span)
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
@@ -251,23 +274,8 @@ def _places(rule: Rule) -> list[Place]:
 
 
 def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
-    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in (_other(target), target))
+    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in ("wire" if target == "holder" else "holder", target))
     return model.Assign(here, there, span)
-
-
-def _has_fixed_array(type_: Type, message: Message, depth: int = 0) -> bool:
-    """Whether a type has elements that are there whatever their count: the wire has no default for them."""
-    match message.value_type(type_):
-        case Array(length=length, element=element):
-            return length is not None or _has_fixed_array(element, message, depth + 1)
-        case Bytes(length=int()):
-            return True
-        case Struct(fields=fields) if depth <= MAX_NESTED:
-            return any(_has_fixed_array(field.type, message, depth + 1) for field in fields)
-        case Struct():
-            return True
-        case _:
-            return False
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
@@ -294,6 +302,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Choice):
         value = _adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None
@@ -327,7 +337,7 @@ def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
 
 def _whole(source: Type, target: Type, scope: Scope) -> bool:
     """Whether an array, struct, text or blob can be assigned as a whole."""
-    origin, aim = (scope.messages[side] for side in (_other(scope.target), scope.target))
+    origin, aim = (scope.messages[side] for side in (scope.origin, scope.target))
     source, target = origin.value_type(source), aim.value_type(target)
     match source, target:
         case ((String() | Bytes()), (String() | Bytes())):
@@ -340,10 +350,6 @@ def _whole(source: Type, target: Type, scope: Scope) -> bool:
             return source == target
         case _:
             return False
-
-
-def _other(side: Side) -> Side:
-    return "wire" if side == "holder" else "holder"
 
 
 def _mismatch(value: Expr, target: Type) -> Diagnostic:
@@ -367,7 +373,7 @@ def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
         case Array(length=int(length)) if not (isinstance(value, Const) and value.value == length):
             scope.problems.append(words.length_not_settable(place.span, describe(place.type)))
             return False
-        case Array() | Bytes():
+        case Array() | Bytes() | Map():
             return True
         case other:
             scope.problems.append(words.length_not_settable(place.span, describe(other)))

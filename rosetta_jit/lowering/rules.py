@@ -6,21 +6,28 @@ lays out the message (`supplies`), and the rules then fill the elements into the
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.catalogue.pipeline import endless_copy
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
-from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
+from rosetta_jit.lowering.bound import NotInPlaceError
+from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.images import bytes_of
+from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
+from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.values import Values
 
@@ -38,9 +45,9 @@ class Runner:
             here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here)
+                    self.assign(place, value, here, rule.change)
                 case typed.SetLength(place, value):
-                    self.target.set_length(place, self.count(here.of(value)), here)
+                    self.take(place, self.count(here.of(value)), here)
                 case typed.For():
                     self.loop(rule, here)
                 case typed.When(condition, (typed.Reject(text, span),), ()):
@@ -57,15 +64,38 @@ class Runner:
 
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
         """Rules that run or not; what is looked up within them is forgotten behind them."""
-        known = dict(self.holder.arrays)
-        with self.writer.nested() as body:
+        with self.forgetting(), self.writer.nested() as body:
             self.run(rules, values)
-        self.holder.arrays = known
         return block(body)
+
+    @contextmanager
+    def forgetting(self) -> Generator[None]:
+        """Around statements that may not run, or run again: what is looked up within them is not known behind them."""
+        known = [(side, dict(side.arrays)) for side in (self.source, self.target) if isinstance(side, HolderSide)]
+        yield
+        for side, arrays in known:
+            side.arrays = arrays
 
     def count(self, value: Expr) -> Expr:
         """A length that is used more than once."""
         return self.writer.let("length", value)
+
+    def take(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """Room for so many elements or bytes, if the target's type can have as many; those of a wire in place are bounded by the walk."""
+        if isinstance(self.target, HolderSide):
+            self.bound(place, count, values)
+        self.target.set_length(place, count, values)
+
+    def bound(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """A number of elements that the type of a place allows."""
+        kind = "count" if isinstance(place.type, Array | Map) else "length"
+        match place.type:
+            case Array(length=int(length)) | Bytes(length=int(length)):
+                self.writer.expect(Compare("eq", count, index(length)), kind, values.where, f"must be {length}", line=values.line)
+            case Array(maximum=int(most)) | Bytes(maximum=int(most)) | String(maximum=int(most)) | Map(maximum=int(most)):
+                self.writer.expect(Compare("le", count, index(most)), kind, values.where, f"at most {most}", line=values.line)
+            case _:
+                pass
 
     def loop(self, rule: typed.For, values: Values) -> None:
         """A loop; what is looked up within it is forgotten behind it."""
@@ -74,30 +104,30 @@ class Runner:
         self.writer.expect(Compare("ge", stop, start), "count", values.where, "the loop ends before it starts", line=values.line)
         count = stop if start == index(0) else binary(self.writer, "-", stop, start, values.where, values.line)
         number = Local("i64", self.writer.fresh(rule.variable.name))
-        known = dict(self.holder.arrays)
-        with self.writer.nested() as body:
+        with self.forgetting(), self.writer.nested() as body:
             variable = number if start == index(0) else self.writer.let(rule.variable.name, add(number, start))
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
-        self.holder.arrays = known
         self.writer.emit(For(number.name, count, block(body)))
 
-    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((Bytes() | Array()), typed.ImageCall()):
+                self.assign_image(place, value, values)
+            case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
+                self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
-                self.assign_array(place, origin, values)
-            case ((Struct() | Map() | Union()), _):
-                raise MappingError((unmappable_place(place.span),))
+                self.assign_array(place, origin, values, change)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
                 self.target.set_number(place, values.of(value), values)
 
     def assign_text(self, place: typed.Place, text: bytes, values: Values) -> None:
-        self.target.set_length(place, index(len(text)), values)
+        self.take(place, index(len(text)), values)
         for number, byte in enumerate(text):
             self.target.set_byte(place, number, byte, values)
 
@@ -111,28 +141,36 @@ class Runner:
         if isinstance(source, Wire) and isinstance(place.type, Bytes) and isinstance(self.target, HolderSide) and self.target.borrows:
             self.target.borrow(place, source.at, size, values)
             return
-        self.target.set_length(place, size, values)
+        self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_image(self, place: typed.Place, value: typed.ImageCall, values: Values) -> None:
+        """An image or its pixels. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError(())
+        made = bytes_of(value, values)
+        self.take(place, made.size, values)
+        self.writer.emit(Copy(self.target.address(place, values), made.address, made.size))
+
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
+        """A message, union or map as a whole."""
+        if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
+            raise NotInPlaceError
+        source, path, _ = self.source.descend(origin, values)
+        target, target_path, _ = self.target.descend(place, values)
+        if is_endless(source.layout, source.find(path).slot):
+            raise MappingError((endless_copy(place.span),))
+        if isinstance(place.type, Array | Map):
+            self.bound(place, self.source.count(origin, values), values)
+        with self.writer.nested() as there:
+            copy(source, path, target, target_path, change)
+        present = presence(source, path, outer=True)
+        self.writer.emit(*there if present is None else (If(present, block(there)),))
+
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""
-        element = place.type.element if isinstance(place.type, Array) else place.type
         count = self.source.count(origin, values)
-        self.target.set_length(place, count, values)
-        variable = typed.Local("element")
-        step = typed.IndexStep(variable)
-        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
-        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if origin_type != element:
-            read = typed.Convert(read, element, "widen")
-        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        self.take(place, count, values)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        rule = element_rule(place, origin, variable, change)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
-
-    @property
-    def holder(self) -> HolderSide:
-        return self.source if isinstance(self.source, HolderSide) else _holder(self.target)
-
-
-def _holder(side: Side) -> HolderSide:
-    assert isinstance(side, HolderSide)
-    return side
