@@ -7,9 +7,10 @@ exception, and one that is only moved keeps all bits of a NaN.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,

@@ -7,10 +7,11 @@ lays out the message (`supplies`), and the rules then fill the elements into the
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue.pipeline import endless_copy
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
 from rosetta_jit.lowering import typed

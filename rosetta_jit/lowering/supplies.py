@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.bound import NotInPlaceError

@@ -16,10 +16,11 @@ text is checked, and a length that the target fixes is checked.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import Bool, Int
 
 if TYPE_CHECKING:
