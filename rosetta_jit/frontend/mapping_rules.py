@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
 
+OTHERWISE = ("otherwise", "otherwise_of_both")
+
 MAX_DIGITS = 400
 """The longest number that is looked at: a float64 has at most 309 digits before its point."""
 
@@ -58,7 +60,7 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
             left, right = _trees(tree)
             place = _path(left, context.target, context)
             return Relation(place if tree.data == "relation" else Len(place, place.span), _expr(right, context), span)
-        case "when":
+        case "when" | "when_of_both":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)
         case "ignore":
@@ -77,8 +79,8 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
 
 
 def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:
-    then = tuple(read_rule(rule, context) for rule in body if rule.data != "otherwise")
-    others = (rule for block in body if block.data == "otherwise" for rule in _trees(block))
+    then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
+    others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
     return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
 
 

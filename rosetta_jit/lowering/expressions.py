@@ -13,6 +13,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
+from rosetta_jit.lowering.held import type_held
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
 from rosetta_jit.model import expr as model
@@ -52,6 +53,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_call(expr, scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
+        case model.Held():
+            return type_held(expr, scope, type_expr, type_index)
         case _:
             assert_never(expr)
 
@@ -119,7 +122,8 @@ def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
     if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
         return _constant(-operand.value, expr.span, scope)
     number = _computable(operand, "-", scope)
-    return None if number is None else Unary("-", number, number.type, expr.span)
+    wide = as_int64(number) if number is not None and isinstance(number.type, Int) else number
+    return None if wide is None else Unary("-", wide, wide.type, expr.span)
 
 
 def _binary(expr: model.Binary, scope: Scope) -> Expr | None:

@@ -115,10 +115,11 @@ def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
     """A number of the type of a field that rules set."""
     rule = _rule_for(path, rules)
     match rule:
-        case typed.Assign(place):
+        case typed.Assign(place) | typed.Default(place) if isinstance(place.type, Int | Float | Bool | Enum):
             return constant(0, scalar_type(place.type))
         case typed.When(_, then, otherwise):
-            return _zero(path, (*then, *otherwise))
+            blocks = [block for block in (then, otherwise) if _rule_for(path, block) is not None]
+            return next((zero for block in blocks if (zero := _zero(path, block)) != index(0)), index(0))
         case _:
             return index(0)
 

@@ -57,7 +57,8 @@ class Values:
             case typed.Local(name):
                 return self.variables[name]
             case typed.Access(place):
-                return self.source.number(place, self)
+                found = self.source.number(place, self)
+                return Convert("bool", found) if isinstance(place.type, Bool) and type_of(found) != "bool" else found
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):

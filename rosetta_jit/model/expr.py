@@ -1,6 +1,6 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
-    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | Held
     Path = Root, Step*         Step = Member(name) | Index(Expr)
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
@@ -118,4 +118,13 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A value as a place holds it: in its unit, of its type. No text has one; rules for both directions are made of them."""
+
+    place: Path
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | Held

@@ -69,6 +69,8 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Choice(cases, otherwise, reason):
             last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
+        case expr.Held(_, held):
+            return show_expr(held)
         case _:
             assert_never(value)
 
