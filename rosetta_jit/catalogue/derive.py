@@ -92,6 +92,12 @@ def too_many_blocks(span: Span | None, most: int) -> Diagnostic:
     return error("too-many-ways", message, span, help_="relate what the conditions read by rules of their own, or use `when`")
 
 
+def too_complex(span: Span | None) -> Diagnostic:
+    """Relations that name each other's fields more often than is followed."""
+    help_ = "relate fields to the holder one by one, and write the rest in `unpack-rules:` and `pack-rules:`"
+    return error("too-complex", "to pack, these relations are too large to be turned round", span, help_=help_)
+
+
 def _by_hand(places: Sequence[str]) -> str:
     """What to write where nothing can be derived."""
     rules = ", ".join(f"`{shorten(place)} = ...`" for place in places[:MAX_SHOWN])

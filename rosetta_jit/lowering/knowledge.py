@@ -11,10 +11,14 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.expr import Expr, Held, Index, Len, Name, Path
-from rosetta_jit.model.walk import Field, names_of, path_of, rebuilt, renamed, with_indices
+from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 
 if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Relation
+
+
+MAX_PARTS = 100_000
+"""Parts of all expressions that are put in place of fields."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,27 +39,41 @@ Shape = tuple[bool, tuple[str, ...]]
 
 
 @dataclass(slots=True)
+class Budget:
+    """How much may still be put in place of fields: what is known of one may have fields of which something is known."""
+
+    parts: int = MAX_PARTS
+
+
+@dataclass(slots=True)
 class Knowledge:
     """Which relation sets each field of the wire, to what, and what is known of fields by expressions of the holder alone."""
 
     setters: dict[Key, tuple[Relation, Expr]] = field(default_factory=dict["Key", "tuple[Relation, Expr]"])
     values: dict[Key, Expr] = field(default_factory=dict["Key", "Expr"])
     shapes: dict[Shape, list[Key]] = field(default_factory=dict["Shape", "list[Key]"])
+    sizes: dict[Key, int] = field(default_factory=dict["Key", int])
+    budget: Budget = field(default_factory=Budget)
 
     def inside(self) -> Knowledge:
         """The same, for a block that may know more."""
-        return Knowledge(dict(self.setters), dict(self.values), {shape: list(keys) for shape, keys in self.shapes.items()})
+        shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
+        return Knowledge(dict(self.setters), dict(self.values), shapes, dict(self.sizes), self.budget)
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""
         key, names = key_of(place, loops)
         if key not in self.values:
             self.values[key] = renamed(value, names)
+            self.sizes[key] = sum(1 for _ in parts(value))
             self.shapes.setdefault(_shape(place), []).append(key)
 
     def value(self, place: Field, loops: Loops) -> Expr | None:
-        """What is known of a field."""
+        """What is known of a field; nothing when the budget is spent."""
         key, names = key_of(place, loops)
+        self.budget.parts -= self.sizes.get(key, 1)
+        if self.budget.parts < 0:
+            return None
         if key in self.values:
             return renamed(self.values[key], {number.name: Name(name) for name, number in names.items()})
         alike = self.shapes.get(_shape(place), [])

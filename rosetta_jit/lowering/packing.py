@@ -16,10 +16,11 @@ from rosetta_jit.lowering.branches import facts_of, test_between
 from rosetta_jit.lowering.folding import FALSE, TRUE, folded
 from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.lowering.knowledge import Knowledge, Loop, Loops, key_of
-from rosetta_jit.model.expr import Binary, Choice, Held, Len, Path, Unary
+from rosetta_jit.lowering.learning import learn
+from rosetta_jit.model.expr import Binary, Held, Len, Path, Unary
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.walk import Field, fields_of, names_of, path_of, rebuilt
+from rosetta_jit.model.walk import Field, fields_of, names_of, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -69,66 +70,11 @@ class Packing:
 
     def block(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
         """The rules of a block, when all of its relations are known."""
-        self.learn(rules, loops)
-        return self.rules(rules, loops)
-
-    # --- what the relations say ----------------------------------------------------------------------------------------
-
-    def learn(self, rules: tuple[Rule, ...], loops: Loops) -> None:
-        """Relations of one field first, then those that have one left when the others are known."""
-        relations = list(_relations(rules, loops))
-        later = [each for each in relations if not self.solve(*each)]
-        for _ in range(2):
-            later = [each for each in later if not self.solve_rest(*each)]
-
-    def solve(self, rule: Relation, loops: Loops) -> bool:
-        """A relation of one field, whatever else is known."""
-        if len(fields_of(rule.value, "wire")) != 1 or fields_of(rule.place, "wire") or condition_in(rule.value):
-            return False
-        return self.set_by(rule, rule.value, rule.place, loops)
-
-    def solve_rest(self, rule: Relation, loops: Loops) -> bool:
-        place, value = self.known.replaced(rule.place, loops), rule.value
-        if fields_of(place, "wire"):
-            return False
-        fields = [each for each in fields_in(value) if self.known.value(each, loops) is None]
-        if len(fields) != 1:
-            return False
-        conditional = condition_in(value)
-        if conditional is not None:
-            return self.solve_choice(rule, conditional, place, loops)
-        (unknown,) = fields
-        rest = _with_known(value, unknown, self.known, loops)
-        return self.set_by(rule, rest, place, loops)
-
-    def solve_choice(self, rule: Relation, parts: tuple[Expr, Expr, Expr], place: Expr, loops: Loops) -> bool:
-        """`a if condition else b`, of one field in both and with a condition that is known."""
-        condition = self.known.replaced(parts[0], loops)
-        if fields_of(condition, "wire") or any(condition_in(part) for part in parts[1:]):
-            return False
-        try:
-            found = [solve(part, place) for part in parts[1:] if len(fields_in(part)) == 1]
-        except NoInverseError:
-            return False
-        if len(found) != 2 or found[0].place != found[1].place:
-            return False
-        choice = Choice(((condition, found[0].value),), found[1].value, span=rule.span)
-        self.say(rule, found[0].place, choice, loops)
-        return True
-
-    def set_by(self, rule: Relation, expr: Expr, place: Expr, loops: Loops) -> bool:
-        try:
-            solution = solve(expr, place)
-        except NoInverseError:
-            return False
-        self.say(rule, solution.place, solution.value, loops)
-        return True
-
-    def say(self, rule: Relation, place: Field, value: Expr, loops: Loops) -> None:
-        self.known.setters.setdefault(key_of(place, loops)[0], (rule, value))
-        self.known.learn(place, value, loops)
-        if isinstance(rule.place, Path) and isinstance(place, Path) and value == rule.place:
-            self.known.learn(Len(place), Len(rule.place, rule.span), loops)  # arrays that are equal have equal lengths
+        learn(self.known, rules, loops)
+        found = self.rules(rules, loops)
+        if self.known.budget.parts < 0:
+            self.problems.append(words.too_complex(rules[0].span))
+        return found
 
     # --- rules ---------------------------------------------------------------------------------------------------------
 
@@ -240,7 +186,7 @@ class Packing:
     def enter(self, block: tuple[Rule, ...], loops: Loops, facts: Mapping[Field, Expr] = NOTHING, owed: _Owed | None = None) -> _Block:
         """A block, with the facts that it has set and the conditions that it is owed checked."""
         inner = replace(self, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
-        inner.learn(block, loops)
+        learn(inner.known, block, loops)
         settings = [inner.fact(place, value, loops) for place, value in facts.items()]
         guards = inner.settle(loops)
         rules = inner.rules(block, loops)
@@ -288,26 +234,6 @@ def with_known_indices(place: Field, known: Knowledge, loops: Loops) -> Field:
     """A place of the holder whose indices packing can compute."""
     found = known.placed(path_of(place), loops)
     return Len(found, place.span) if isinstance(place, Len) else found
-
-
-def _with_known(value: Expr, unknown: Field, known: Knowledge, loops: Loops) -> Expr:
-    """An expression with all fields but one replaced."""
-    if value == unknown:
-        return value
-    if isinstance(value, Path | Len):
-        return known.replaced(value, loops)
-    return rebuilt(value, lambda part: _with_known(part, unknown, known, loops))
-
-
-def _relations(rules: tuple[Rule, ...], loops: Loops) -> list[tuple[Relation, Loops]]:
-    """All relations that hold whatever conditions say, with the loops around them."""
-    found: list[tuple[Relation, Loops]] = []
-    for rule in rules:
-        if isinstance(rule, Relation):
-            found.append((rule, loops))
-        elif isinstance(rule, For):
-            found += _relations(rule.body, (*loops, Loop(rule.variable, rule.start, rule.stop)))
-    return found
 
 
 def _setting(place: Path, value: Expr, span: Span | None, *, length: bool) -> Rule:

@@ -392,3 +392,11 @@ pack-rules:
   .b = .a
 """
     assert codes(WIRE, HOLDER, rules) == ["alike-blocks"]
+
+
+def test_relations_that_multiply_are_bounded():
+    """What is known of each field names the one before twice."""
+    wire = " ".join(f'("f{number}" :double)' for number in range(60))
+    holder = " ".join(f"required double f{number} = {number + 1};" for number in range(60))
+    rules = "".join(f"  .f{number} <-> .f{number} + .f{number - 1} + .f{number - 1}\n" for number in range(1, 60))
+    assert "too-complex" in codes(wire, holder, f"rules:\n  .f0 <-> .f0\n{rules}")
