@@ -92,8 +92,12 @@ class Build:
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types = self.types
-        mapped = None if types.rules is None else Mapped(types.rules, self._layout(types.wire))
+        mapped = None if types.rules is None else self._mapped(types.rules)
         return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
+
+    def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
+        types = self.types
+        return Mapped(rules, types.schema, Ref(types.holder.name), Ref(types.wire.name), self._layout(types.wire))
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """What the request says about the encoding, if the encoding leaves it to say."""

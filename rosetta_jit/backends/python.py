@@ -124,12 +124,9 @@ class _Attempt:
             start = f"int(state[{lane_word(lane, USED)}])"
             outer.line(f"used_{lane} = {start} if row else 0" if lane and self.kernel.direction == "decode" else f"used_{lane} = {start}")
         for lane in sorted(self.names.capacities):
-            known = (
-                f"int(state[{lane_word(lane, CAPACITY)}])"
-                if lane < self.kernel.lanes
-                else f"len(lanes[{lane}]) // {self.kernel.strides[lane]}"
-            )
-            outer.line(f"capacity_{lane} = {known}")
+            own, stride = lane < self.kernel.lanes, self.kernel.strides[lane]
+            capacity = f"int(state[{lane_word(lane, CAPACITY)}])" if own else f"len(lanes[{lane}]) // {stride}"
+            outer.line(f"capacity_{lane} = {capacity}")
         outer.lines += self.writer.lines
         self.writer = outer
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
 from rosetta_jit.kernel.ir import Place as KernelPlace
+from rosetta_jit.lowering.bear import bear, opened_lanes
 from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
 from rosetta_jit.lowering.descent import descend
 from rosetta_jit.lowering.ending import end
@@ -26,6 +27,7 @@ from rosetta_jit.lowering.tagged import read_message
 from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.walk import walk
 from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.births import Births
 from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
@@ -33,7 +35,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.lowering.fields import HolderFields
     from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.layout import Layout
+    from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.wire.codec import Codec, Encoding
 
     Relate = Callable[[HolderFields, Codec], None]
@@ -73,7 +77,19 @@ class Mapped:
     """The rules of a mapping for one direction, and how the wire's own type would lie in a holder."""
 
     rules: tuple[Rule, ...]
-    wire: Layout
+    schema: Schema
+    holder: Type
+    wire: Type
+    wire_layout: Layout
+
+    def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
+        """A message in lanes; where rules fill it, with what it is born with."""
+        if filled is None:
+            return HolderSide(fields)
+        births, cell = Births(self.schema, fields.layout), fields.cell
+        opened = opened_lanes(self.rules, fields.layout, cell.slot, filled)
+        bear(fields, births.of(type_, cell.slot, cell.lane), cell.row, opened)
+        return HolderSide(fields, births, opened)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +150,9 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
     if encoding.nested or isinstance(attempt, Tagged):
         raise NotInPlaceError
     writer, rules = fields.writer, mapped.rules
-    holder, found = HolderSide(writer, fields), Found()
-    if writer.direction == "decode":
+    found, decodes = Found(), writer.direction == "decode"
+    holder = mapped.side(fields, mapped.holder, filled="holder" if decodes else None)
+    if decodes:
         wire = WireSide(writer, WireFields(writer, found))
         with writer.whole():
             walk(attempt, wire.root, writer)
@@ -154,13 +171,12 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
 def _staged(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
     """Decode the message into lanes of its own type, then run the rules; or run them, then encode what they made."""
     writer = fields.writer
-    message = staged_fields(writer, fields.layout, mapped.wire)
-    holder, wire = HolderSide(writer, fields), HolderSide(writer, message)
+    message = staged_fields(writer, fields.layout, mapped.wire_layout)
     if writer.direction == "decode":
         _own(encoding, attempt, message)
-        _run(mapped.rules, wire, holder)
+        _run(mapped.rules, HolderSide(message), mapped.side(fields, mapped.holder, filled="holder"))
     else:
-        _run(mapped.rules, holder, wire)
+        _run(mapped.rules, HolderSide(fields), mapped.side(message, mapped.wire, filled="wire"))
         _own(encoding, attempt, message)
 
 

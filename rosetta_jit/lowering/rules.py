@@ -20,7 +20,7 @@ from rosetta_jit.lowering.copies import copy, is_endless
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -141,7 +141,7 @@ class Runner:
         step = typed.IndexStep(variable)
         origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
         read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if origin_type != element:
+        if isinstance(element, Bool | Int | Float | Enum) and origin_type != element:
             read = typed.Convert(read, element, "widen")
         rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)

@@ -27,11 +27,13 @@ from rosetta_jit.kernel.ir import (
     index,
     mul,
 )
+from rosetta_jit.lowering.bear import bear_each
 from rosetta_jit.lowering.bound import EACH, NotInPlaceError
 from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where
 from rosetta_jit.model.layout import Number, Row
+from rosetta_jit.model.types import Array
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering import typed
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.fields import HolderElements, HolderFields
     from rosetta_jit.lowering.values import Values
     from rosetta_jit.lowering.writer import Writer
+    from rosetta_jit.model.births import Births
     from rosetta_jit.model.layout import Member
     from rosetta_jit.model.types import Constant, Field
     from rosetta_jit.wire.codec import Path
@@ -54,11 +57,20 @@ def inside(number: Expr, count: Expr) -> Expr:
 
 @dataclass(slots=True)
 class HolderSide:
-    """The holder. Arrays whose length was set, or that were looked at, are known by their place."""
+    """A message in lanes: the holder, or a wire's message that is staged.
 
-    writer: Writer
+    Arrays whose length was set, or that were looked at, are known by their place. Where rules fill it, elements are born with what
+    ``births`` says, but for what lies in ``opened`` lanes.
+    """
+
     root: HolderFields
+    births: Births | None = None
+    opened: frozenset[int] = frozenset()
     arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
+
+    @property
+    def writer(self) -> Writer:
+        return self.root.writer
 
     def number(self, place: typed.Place, values: Values) -> Expr:
         fields, path, last = self.descend(place, values)
@@ -133,6 +145,8 @@ class HolderSide:
         if not isinstance(lane.element, Number):
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
             self.writer.emit(Fill(Place(elements.lane, elements.start), mul(count, lane.stride)))
+        if isinstance(place.type, Array) and self.births is not None:
+            bear_each(fields, self.births.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
 
     @property
     def borrows(self) -> bool:

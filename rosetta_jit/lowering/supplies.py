@@ -125,15 +125,13 @@ def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
 
 
 def _given(rule: typed.Rule, here: Values) -> Expr:
-    """The number that a rule gives a field; without one, the schema's default or 0."""
+    """The number that a rule gives a field."""
     match rule:
         case typed.Assign(_, value):
             return here.of(value)
         case typed.Default(place):
-            last = place.steps[-1]
-            default = last.field.default if isinstance(last, typed.FieldStep) else None
             known = isinstance(place.type, Int | Float | Bool | Enum)
-            return constant(default if isinstance(default, int | float) else 0, scalar_type(place.type)) if known else index(0)
+            return constant(0, scalar_type(place.type)) if known else index(0)
         case _:
             raise AssertionError(rule)
 

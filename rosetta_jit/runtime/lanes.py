@@ -24,15 +24,15 @@ from rosetta_jit.kernel.state import (
     lane_word,
     state_words,
 )
+from rosetta_jit.model.births import FirstCase, FixedArray
 from rosetta_jit.model.layout import Number
-from rosetta_jit.runtime.births import FirstCase, FixedArray
 from rosetta_jit.runtime.hidden import ALIGNMENT, Hidden, aligned_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from rosetta_jit.model.births import Birth
     from rosetta_jit.model.layout import Layout
-    from rosetta_jit.runtime.births import Birth
 
 Array = np.ndarray[Any, Any]
 
