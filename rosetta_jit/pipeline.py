@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.bind import needless
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
@@ -213,7 +214,7 @@ def _mapped_types(build: Build) -> Types:
     request = build.request
     source = build.search.open(request.mapping or "")
     build.reading.record(source.name, None, source)
-    checked = check(parse_mapping(source), _readers(request), build.search, build.reading)
+    checked = check(parse_mapping(source), _readers(request), build.search, build.reading, json.loads(request.parameters))
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
@@ -227,6 +228,8 @@ def _both(checked: Checked) -> Schema:
 
 def _own_types(build: Build) -> Types:
     request = build.request
+    for name in json.loads(request.parameters):
+        raise _report(request, needless(name))
     if request.plain is not None:
         type_, schema = from_plain(json.loads(request.plain))
         struct = schema.resolve(type_)

@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
-from rosetta_jit.request import Request
+from rosetta_jit.request import Request, plain_parameters
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
@@ -77,6 +77,8 @@ class Options(TypedDict, total=False):
         Of what is written, or of what is read where messages do not tell.
     lenient : iterable of str
         What to forgive, by name: ``rosetta-jit frameworks`` lists what each encoding can be asked for.
+    parameters : mapping of str to value
+        What the mapping's parameters are: bools, numbers, texts, and lists of these. They are compiled into the program.
     borrow : bool
         Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
     backend : {"numba", "llvm", "python", "interpreter"}
@@ -90,6 +92,7 @@ class Options(TypedDict, total=False):
     search_path: Iterable[str | os.PathLike[str]]
     byte_order: ByteOrder | None
     lenient: Iterable[str]
+    parameters: Mapping[str, object]
     borrow: bool
     backend: Backend | None
 
@@ -172,6 +175,7 @@ def _request(direction: Direction, options: Options, *, mapping: str | None = No
         borrow=options.get("borrow", False),
         byte_order=options.get("byte_order"),
         lenient=tuple(sorted(options.get("lenient", ()))),
+        parameters=plain_parameters(options.get("parameters", {})),
         backend=options.get("backend"),
     )
 

@@ -16,7 +16,7 @@ from lark.lark import PostLex
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
+from rosetta_jit.frontend.mapping_rules import Context, read_parameter, read_rule, read_string
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
 from rosetta_jit.model.mapping import Import, Mapping
 from rosetta_jit.source import Span
@@ -31,9 +31,12 @@ if TYPE_CHECKING:
 MAX_NESTING = 64
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
-NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "loop", "when"))
+NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "list", "length", "loop", "when"))
 """Rules of the grammar that one of their kind can stand in."""
 
+
+ONLY_BEHIND = {"NAMES": "SAME", "LIST": "COLON", "OF": "LIST"}
+"""Words that are words behind another token alone."""
 
 RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "SAME")
 """Tokens that a rule begins with."""
@@ -71,7 +74,9 @@ def _grammar() -> Lark:
 
 
 class _Tokens(PostLex):
-    """Tells the `when` of a rejection from one that begins a block, and makes lark keep the tokens that stand for mistakes."""
+    """Tells the `when` of a rejection from one that begins a block, and words from the names that they are elsewhere; makes lark keep
+    the tokens that stand for mistakes.
+    """
 
     always_accept = ("UNCLOSED", "STRANGE")
 
@@ -80,12 +85,14 @@ class _Tokens(PostLex):
         for token in stream:
             if token.type == "WHEN" and kinds == ("REJECT", "STRING"):
                 token.type = "GUARD"
+            if token.type in ONLY_BEHIND and kinds[1] != ONLY_BEHIND[token.type]:
+                token.type = "NAME"
             kinds = kinds[1], token.type
             yield token
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = ("IMPORT", "PARAMETER", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
 
@@ -125,6 +132,11 @@ class _Reader:
             self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
             holder_span,
             wire_span,
+            tuple(
+                read_parameter(child, Context(self.source, "wire", "holder", self.problems))
+                for child in statements
+                if child.data == "parameter"
+            ),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, cast
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
-from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.expr import Binary, Call, Choice, Index, Item, Len, List, Literal, Member, Name, Path, Unary
+from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Parameter, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -123,7 +123,13 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
         case "path":
             return _path(tree, context.origin, context)
         case "length":
-            return Len(_path(_trees(tree)[0], context.origin, context), span)
+            measured = _expr(_trees(tree)[0], context)
+            return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
+        case "list":
+            return List(tuple(_expr(item, context) for item in _trees(tree)), span)
+        case "item":
+            index = _trees(_trees(tree)[0])[0]
+            return Item(Name(str(_tokens(tree)[0]), span), _expr(index, context), span)
         case "negative" | "inversion":
             return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
         case "conditional":
@@ -183,6 +189,14 @@ def _real(token: Token, context: Context) -> float:
         context.problems.append(words.number(context.span(token), "a float64"))
         return 0.0
     return value
+
+
+def read_parameter(tree: Tree[Token], context: Context) -> Parameter:
+    """A parameter with the name of its type, whatever that is."""
+    name, *_, type_ = (token for token in _tokens(tree) if token.type == "NAME")
+    default = next((_expr(value, context) for value in _trees(tree)), None)
+    is_list = any(token.type == "LIST" for token in _tokens(tree))
+    return Parameter(str(name), str(type_), is_list, default, context.span(tree))
 
 
 def _trees(tree: Tree[Token]) -> list[Tree[Token]]:

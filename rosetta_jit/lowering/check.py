@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.frontend.search import Reading
+from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.lowering.reads import left_out
@@ -18,6 +19,7 @@ from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping as Dictionary
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
@@ -53,7 +55,13 @@ class _Imported:
     schema: Schema
 
 
-def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: Reading | None = None) -> Checked:
+def check(
+    mapping: Mapping,
+    front_ends: FrontEnds,
+    search: SearchPath,
+    reading: Reading | None = None,
+    parameters: Dictionary[str, object] | None = None,
+) -> Checked:
     """Read what a mapping imports, and check it.
 
     Parameters
@@ -62,6 +70,8 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Of all frameworks.
     reading
         Collects the files that were read.
+    parameters
+        The values of the mapping's parameters; None to check it for all values that they may get.
 
     Raises
     ------
@@ -69,7 +79,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
-    mapping = derive(mapping, problems)
+    mapping = derive(bind(mapping, parameters, problems), problems)
     imported = _imports(mapping, _Imports(mapping.source, front_ends, search, reading or Reading()), problems)
     complete = len(imported) == len({statement.path for statement in mapping.imports})
     schema = _merged(imported, problems)

@@ -10,10 +10,12 @@ import math
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue.bind import list_alone
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.held import type_held
+from rosetta_jit.lowering.listed import compared_text, type_given, type_item
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
 from rosetta_jit.model import expr as model
@@ -44,7 +46,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Unary():
             return _negative(expr, scope)
         case model.Binary(operator) if operator in model.COMPARISONS:
-            return type_comparison(expr, scope, type_expr)
+            return type_comparison(expr, scope, type_expr, compared_text)
         case model.Binary(operator) if operator in model.LOGIC:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
@@ -53,6 +55,13 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_call(expr, scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
+        case model.List():
+            scope.problems.append(list_alone(expr.span))
+            return None
+        case model.Item():
+            return type_item(expr, scope, type_expr)
+        case model.Given():
+            return type_given(expr, scope, type_expr)
         case model.Held():
             return type_held(expr, scope, type_expr, type_index)
         case _:

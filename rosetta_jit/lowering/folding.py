@@ -1,4 +1,4 @@
-"""What is known of an expression before it has types: comparisons and logic of constants that the text writes down.
+"""What is known of an expression before it has types: arithmetic, comparisons and logic of constants that the text writes down.
 
 Floats are left alone, as what a place holds of one may be another.
 """
@@ -23,6 +23,8 @@ def folded(expr: Expr) -> Expr:
             return Literal(-value, expr.span)
         case Binary("and" | "or" as operator, left, right):
             return _logic(operator == "and", left, right, expr)
+        case Binary("+" | "-" | "*" | "<" | "<=" | ">" | ">=", Literal(int() as a), Literal(int() as b)):
+            return _computed(expr, a, b)
         case Binary("==" | "!=", left, right):
             return _compared(expr, _bare(left), _bare(right))
         case _:
@@ -32,6 +34,18 @@ def folded(expr: Expr) -> Expr:
 def is_constant(expr: Expr) -> bool:
     """Whether an expression is a number, a text, a bool or a name of one."""
     return isinstance(folded(expr), Literal | Name)
+
+
+def _computed(expr: Binary, a: int, b: int) -> Expr:
+    """Integers; what does not fit int64 is left for those who report it."""
+    match expr.operator:
+        case "+" | "-" | "*":
+            value = a + b if expr.operator == "+" else a - b if expr.operator == "-" else a * b
+            return Literal(value, expr.span) if abs(value) < 1 << 63 else expr
+        case "<" | "<=":
+            return Literal(a < b or (a == b and expr.operator == "<="), expr.span)
+        case _:
+            return Literal(a > b or (a == b and expr.operator == ">="), expr.span)
 
 
 def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, IsText, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, Given, IsText, LenOf, Listed, Local, Unary
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
@@ -160,6 +160,10 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Choice(cases, otherwise):
             parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
             return atom("choice", *map(polynomial_of, parts))
+        case Listed(items, index):
+            return atom("item", *map(polynomial_of, (*items, index)))
+        case Given(name, arguments):
+            return atom(name, *map(polynomial_of, arguments))
         case Const(value=value):
             return atom(repr(value))
         case _:

@@ -112,6 +112,12 @@ def _in(value: Expr) -> Iterator[Place]:
                 yield from _in(part)
             if otherwise is not None:
                 yield from _in(otherwise)
+        case typed.Listed(items, index):
+            for part in (*items, index):
+                yield from _in(part)
+        case typed.Given(_, arguments):
+            for argument in arguments:
+                yield from _in(argument)
         case typed.Const() | typed.Local():
             pass
 

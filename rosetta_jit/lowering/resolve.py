@@ -16,6 +16,7 @@ from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.held import fitted
+from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import (
     Access,
@@ -26,6 +27,7 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     For,
     Ignore,
+    Listed,
     Local,
     Reject,
     SetLength,
@@ -291,6 +293,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return _fit_choice(value, place, scope)
     if isinstance(value, Choice):
         value = _adapted(value, target)
+    if isinstance(value, Listed):
+        value = adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)

@@ -78,6 +78,8 @@ class Supplies:
                 return index(len(text.encode()))
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
+            case typed.Assign(_, typed.Listed(items) as listed):
+                return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
             case typed.Default():
                 return index(0)
             case _:
@@ -109,6 +111,12 @@ def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
             case _:
                 pass
     return None
+
+
+def _size(text: typed.Expr) -> typed.Const:
+    """How many bytes a text of a list has."""
+    assert isinstance(text, typed.Const)
+    return typed.Const(len(str(text.value).encode()), typed.INT64)
 
 
 def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
@@ -160,6 +168,8 @@ def _array_places(node: object) -> list[typed.Place]:
             return [place]
         case typed.Choice(cases, otherwise):
             return _array_places((*cases, otherwise))
+        case typed.Listed(items, at):
+            return _array_places((*items, at))
         case typed.LenOf(place):
             return [place]
         case typed.Access(place):

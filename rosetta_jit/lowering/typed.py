@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Listed | Given      each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
          | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
@@ -163,7 +163,30 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """One of several values of ``type``, by its number from 0; outside of them it is an error of kind ``index``.
+
+    One among texts stands only as the whole value of an `Assign`.
+    """
+
+    items: tuple[Expr, ...]
+    index: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A parameter, an item or the length of one, in a mapping that is checked before they are given; it is never lowered."""
+
+    name: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Listed | Given
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Switch, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
 from rosetta_jit.lowering.fields import scalar_name
@@ -17,8 +17,10 @@ from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+    from contextlib import AbstractContextManager
 
+    from rosetta_jit.kernel.ir import Block
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -36,6 +38,10 @@ class Source(Protocol):
 
     def address(self, place: typed.Place, values: Values) -> Address:
         """Where the bytes of a string or bytes field begin."""
+        ...
+
+    def forgetting(self) -> AbstractContextManager[None]:
+        """Around statements that may not run: what is looked up within them is not known behind them."""
         ...
 
 
@@ -77,6 +83,10 @@ class Values:
                 return is_text(self, place, text.encode())
             case typed.Choice():
                 return self.choice(value)
+            case typed.Listed():
+                return self.listed(value)
+            case typed.Given():
+                raise AssertionError(value)
             case _:
                 assert_never(value)
 
@@ -86,7 +96,7 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with writer.nested() as step:
+            with self.source.forgetting(), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
@@ -96,10 +106,29 @@ class Values:
         if choice.otherwise is None:
             self.reject(choice.reason, when=undecided)
             return found
-        with writer.nested() as other:
+        with self.source.forgetting(), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
+
+    def listed(self, listed: typed.Listed) -> Expr:
+        """Only the item that is chosen is computed."""
+        found = self.writer.var("item", constant(0, scalar_type(listed.type)))
+        self.switch(listed, lambda item: self.writer.assign(found, self.of(item)))
+        return found
+
+    def switch(self, listed: typed.Listed, use: Callable[[typed.Expr], None]) -> None:
+        """Do something with the item of a list that an index chooses."""
+        writer = self.writer
+        number = writer.let("number", self.of(listed.index))
+        there = Binary("and", Compare("ge", number, index(0)), Compare("lt", number, index(len(listed.items))))
+        writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
+        cases: list[tuple[int, Block]] = []
+        for case, item in enumerate(listed.items):
+            with self.source.forgetting(), writer.nested() as body:
+                use(item)
+            cases.append((case, block(body)))
+        writer.emit(Switch(number, tuple(cases), ()))
 
     def reject(self, reason: str, *, when: Expr | None = None) -> None:
         """Refuse the message, always or where something holds."""

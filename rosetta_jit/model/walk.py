@@ -1,4 +1,4 @@
-"""What an expression is made of, and the same expression of other parts: what every walk over expressions has in common.
+"""What expressions and rules are made of, and the same ones of other parts: what every walk over them has in common.
 
 The depth of an expression is bounded by the parser, so that walks may be recursive.
 """
@@ -8,12 +8,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.model.expr import Binary, Call, Choice, Held, Index, Len, Literal, Member, Name, Path, Unary
+from rosetta_jit.model import mapping
+from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Index, Item, Len, List, Literal, Member, Name, Path, Unary
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from rosetta_jit.model.expr import Expr, Side
+    from rosetta_jit.model.mapping import Rule
 
 Field = Path | Len
 """A field or its length."""
@@ -37,10 +39,39 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
         case Choice(cases, otherwise):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)
             return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise))
+        case List(items):
+            return replace(expr, items=tuple(map(change, items)))
+        case Item(items=items, index=index):
+            return replace(expr, items=change(items), index=change(index))
+        case Given(arguments=arguments):
+            return replace(expr, arguments=tuple(map(change, arguments)))
         case Held(place, value):
             return replace(expr, place=with_indices(place, change), value=change(value))
         case _:
             assert_never(expr)
+
+
+def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
+    """A rule with the expressions changed that it has itself; the rules within it are as they were."""
+    match rule:
+        case mapping.Assign(place, value) | mapping.SetLength(place, value):
+            return replace(rule, place=with_indices(place, change), value=change(value))
+        case mapping.Relation(place, value):
+            return replace(rule, place=_with_indices(place, change), value=change(value))
+        case mapping.For(start=start, stop=stop):
+            return replace(rule, start=change(start), stop=change(stop))
+        case mapping.When(condition=condition):
+            return replace(rule, condition=change(condition))
+        case mapping.Ignore(place) | mapping.Default(place):
+            return replace(rule, place=with_indices(place, change))
+        case mapping.Reject() | mapping.SameNames():
+            return rule
+        case _:
+            assert_never(rule)
+
+
+def _with_indices(place: Field, change: Callable[[Expr], Expr]) -> Field:
+    return replace(place, path=with_indices(place.path, change)) if isinstance(place, Len) else with_indices(place, change)
 
 
 def with_indices(path: Path, change: Callable[[Expr], Expr]) -> Path:
