@@ -37,7 +37,7 @@ EXPECTATIONS = (
 )
 """Token kind → how a person calls what may stand there, in the order in which it is listed."""
 
-STARTS_VALUE = frozenset({"LPAR", "START", "NAME", "STRING"})
+STARTS_VALUE = frozenset({"LPAR", "LSQB", "START", "NAME", "STRING"})
 STARTS_RULE = frozenset({"START"})
 
 
