@@ -35,10 +35,10 @@ NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", 
 """Rules of the grammar that one of their kind can stand in."""
 
 
-ONLY_BEHIND = {"NAMES": "SAME", "LIST": "COLON", "OF": "LIST"}
+ONLY_BEHIND = {"NAMES": "_SAME", "LIST": "COLON", "OF": "LIST"}
 """Words that are words behind another token alone."""
 
-RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "SAME")
+RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "_SAME")
 """Tokens that a rule begins with."""
 
 

@@ -32,7 +32,7 @@ class StubHolder:
 
 
 class StubDecoder:
-    def __init__(self, mapping, *, encoding=None):
+    def __init__(self, mapping, *, encoding=None, parameters=None):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
         self.encoding = encoding or "own"
