@@ -44,7 +44,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "has", "len", *scope.enums}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

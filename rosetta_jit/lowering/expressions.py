@@ -10,16 +10,15 @@ import math
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.catalogue.bind import list_alone
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.held import type_held
-from rosetta_jit.lowering.listed import compared_text, type_given, type_item
+from rosetta_jit.lowering.listed import compared_text, type_listed
 from rosetta_jit.lowering.scope import Broken, resolve_path
-from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Scope
@@ -51,17 +50,14 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
+        case model.Call("has", (model.Path() as path,)):
+            return _presence(path, expr.span, scope)
         case model.Call():
             return type_call(expr, scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
-        case model.List():
-            scope.problems.append(list_alone(expr.span))
-            return None
-        case model.Item():
-            return type_item(expr, scope, type_expr)
-        case model.Given():
-            return type_given(expr, scope, type_expr)
+        case model.List() | model.Item() | model.Given():
+            return type_listed(expr, scope, type_expr)
         case model.Held():
             return type_held(expr, scope, type_expr, type_index)
         case _:
@@ -117,11 +113,22 @@ def _length(expr: model.Len, scope: Scope) -> Expr | None:
     match place.type:
         case Array(length=int(length)):
             return Const(length, INT64, expr.span)
-        case Array() | Bytes() | String():
+        case Array() | Bytes() | String() | Map():
             return LenOf(place, INT64, expr.span)
         case other:
             scope.problems.append(words.no_length(expr.path.span, describe(other)))
             return None
+
+
+def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
+    place = resolve_path(path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    schema = scope.messages[place.side].schema
+    if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
+        return Has(place, span=span)
+    scope.problems.append(words.always_there(span, describe(place.type)))
+    return None
 
 
 def _negative(expr: model.Unary, scope: Scope) -> Expr | None:

@@ -26,7 +26,19 @@ MAX_ITEMS = 500
 """Items of a list that one is chosen of."""
 
 
-def type_item(expr: model.Item, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+def type_listed(expr: model.List | model.Item | model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+    """The typed form of what is chosen from a list; a list by itself has none."""
+    match expr:
+        case model.List():
+            scope.problems.append(words.list_alone(expr.span))
+            return None
+        case model.Item():
+            return _item(expr, scope, type_expr)
+        case model.Given():
+            return _given(expr, scope, type_expr)
+
+
+def _item(expr: model.Item, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """An item of a list, all items as one type: the first that all fit without a word."""
     assert isinstance(expr.items, model.List)
     written = expr.items.items
@@ -51,7 +63,7 @@ def type_item(expr: model.Item, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     return Listed(tuple(fitting), index, fitting[0].type, expr.span)
 
 
-def type_given(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+def _given(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """What stands for a parameter."""
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
     indices = [index for argument in arguments if argument is not None and (index := as_int64(argument)) is not None]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
-from rosetta_jit.lowering.defaults import default_rules
+from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.held import fitted
 from rosetta_jit.lowering.listed import adapted
@@ -49,9 +49,6 @@ if TYPE_CHECKING:
 
 MAX_TEXTS = 50
 """Cases of a choice among texts."""
-
-MAX_NESTED = 20
-"""Structs within each other that are looked into for what has no default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +160,7 @@ class _Block:
             return None
         if isinstance(rule, model.Ignore):
             return Ignore(place, rule.span)
-        if scope.target == "wire" and _has_fixed_array(place.type, scope.messages["wire"]):
+        if has_array(place.type, scope.messages[scope.target].schema, told=True):
             scope.problems.append(words.no_default(rule.span, describe(place.type)))
             return None
         return Default(place, rule.span)
@@ -259,21 +256,6 @@ def _places(rule: Rule) -> list[Place]:
 def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
     there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in (_other(target), target))
     return model.Assign(here, there, span)
-
-
-def _has_fixed_array(type_: Type, message: Message, depth: int = 0) -> bool:
-    """Whether a type has elements that are there whatever their count: the wire has no default for them."""
-    match message.value_type(type_):
-        case Array(length=length, element=element):
-            return length is not None or _has_fixed_array(element, message, depth + 1)
-        case Bytes(length=int()):
-            return True
-        case Struct(fields=fields) if depth <= MAX_NESTED:
-            return any(_has_fixed_array(field.type, message, depth + 1) for field in fields)
-        case Struct():
-            return True
-        case _:
-            return False
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
@@ -373,7 +355,7 @@ def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
         case Array(length=int(length)) if not (isinstance(value, Const) and value.value == length):
             scope.problems.append(words.length_not_settable(place.span, describe(place.type)))
             return False
-        case Array() | Bytes():
+        case Array() | Bytes() | Map():
             return True
         case other:
             scope.problems.append(words.length_not_settable(place.span, describe(other)))

@@ -9,7 +9,8 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
 from rosetta_jit.model.expr import Index, Member
-from rosetta_jit.model.types import Array, Bytes, Enum, Int, Optional, Struct, Union
+from rosetta_jit.model.layout import map_entry
+from rosetta_jit.model.types import Array, Bytes, Enum, Int, Map, Optional, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -123,7 +124,7 @@ def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, 
 
 def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, Scope], Expr | None]) -> tuple[list[Step], Type] | Broken:
     index = typed(step.index, scope)
-    if not isinstance(type_, Array | Bytes):
+    if not isinstance(type_, Array | Bytes | Map):
         scope.problems.append(words.not_indexable(step.span, describe(type_)))
         return Broken(())
     if index is None or not _in_range(index, type_, scope):
@@ -131,7 +132,7 @@ def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, S
     return [IndexStep(index, step.span)], element_type(type_)
 
 
-def _in_range(index: Expr, type_: Array | Bytes, scope: Scope) -> bool:
+def _in_range(index: Expr, type_: Array | Bytes | Map, scope: Scope) -> bool:
     length = type_.fixed if isinstance(type_, Array) else None
     if not isinstance(index, Const) or 0 <= int(index.value) < (2**63 if length is None else length):
         return True
@@ -139,6 +140,12 @@ def _in_range(index: Expr, type_: Array | Bytes, scope: Scope) -> bool:
     return False
 
 
-def element_type(type_: Array | Bytes) -> Type:
-    """The type of one element; a byte is a uint8."""
-    return type_.element if isinstance(type_, Array) else Int(8, signed=False)
+def element_type(type_: Array | Bytes | Map) -> Type:
+    """The type of one element; a byte is a uint8, an entry of a map has the fields ``key`` and ``value``."""
+    match type_:
+        case Array(element):
+            return element
+        case Bytes():
+            return Int(8, signed=False)
+        case Map(key, value):
+            return map_entry(key, value)

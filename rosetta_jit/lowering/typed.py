@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Listed | Given      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Listed | Given      each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
          | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
@@ -150,6 +150,15 @@ class IsText:
 
 
 @dataclass(frozen=True, slots=True)
+class Has:
+    """Whether something that can be absent is there: an optional field, a case of a union, and all on the way to it."""
+
+    place: Place
+    type: Type = BOOL
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Choice:
     """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
 
@@ -186,7 +195,7 @@ class Given:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Choice | Listed | Given
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Listed | Given
 
 
 @dataclass(frozen=True, slots=True)

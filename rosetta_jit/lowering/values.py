@@ -44,6 +44,10 @@ class Source(Protocol):
         """Around statements that may not run: what is looked up within them is not known behind them."""
         ...
 
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Values:
@@ -81,6 +85,8 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.Has(place):
+                return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
             case typed.Listed():
