@@ -14,6 +14,7 @@ from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
+from rosetta_jit.lowering.others import SUFFIX, read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import Schema
@@ -79,11 +80,18 @@ def check(
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
-    mapping = derive(bind(mapping, parameters, problems), problems)
-    imported = _imports(mapping, _Imports(mapping.source, front_ends, search, reading or Reading()), problems)
-    complete = len(imported) == len({statement.path for statement in mapping.imports})
-    schema = _merged(imported, problems)
-    resolved = resolve(mapping, schema, schema) if complete else ()
+    mapping, reading = derive(bind(mapping, parameters, problems), problems), reading or Reading()
+    derived = len(problems)
+    others = read_others(mapping, search, reading, problems, parameters)
+    imported = _imports(mapping, _Imports(mapping.source, front_ends, search, reading), problems)
+    theirs = [
+        each
+        for other in {other.source.name: other for other in others.found.values()}.values()
+        for each in _imports(other, _Imports(other.source, front_ends, search, reading), problems)
+    ]
+    schema = _merged([*imported, *theirs], problems)
+    complete = not any(problem.severity == "error" for problem in problems[derived:])
+    resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
     problems += resolved.problems
@@ -120,6 +128,8 @@ def _imports(mapping: Mapping, imports: _Imports, problems: list[Diagnostic]) ->
     imported: list[_Imported] = []
     seen: set[str] = set()
     for statement in mapping.imports:
+        if statement.path.endswith(SUFFIX):
+            continue
         if statement.path in seen:
             problems.append(words.import_repeated(statement.span, statement.path))
             continue

@@ -37,8 +37,8 @@ def _unpacked(rule: Rule) -> Rule:
     match rule:
         case Relation(Len(place), value, span):
             return SetLength(place, value, span)
-        case Relation(Path() as place, value, span):
-            return Assign(place, value, span)
+        case Relation(Path() as place, value, span, via):
+            return Assign(place, value, span, via=via)
         case For(body=body):
             return replace(rule, body=_unpacking(body))
         case When(then=then, otherwise=otherwise):

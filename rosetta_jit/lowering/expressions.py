@@ -94,7 +94,7 @@ def _literal(expr: model.Literal) -> Const:
 
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
-        return Local(expr.name, INT64, expr.span)
+        return Local(expr.name + scope.suffix, INT64, expr.span)
     if expr.name in CONSTANTS:
         return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
     if expr.name in scope.constants:

@@ -262,7 +262,7 @@ class HolderFields:
         if links is None or self.writer.direction != "encode":
             self.writer.emit(Fill(Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
             return
-        number = self.writer.fresh("row")
+        number = self.writer.fresh("cleared")
         row = add(start, Local("i64", number))
         self.writer.emit(For(number, count, (Fill(Place(lane, row), index(links)),)))
 

@@ -87,7 +87,7 @@ class Knowledge:
         path = path_of(place)
         for length in range(len(path.steps) - (not isinstance(place, Len)), 0, -1):
             whole = self.values.get(key_of(replace(path, steps=path.steps[:length]), loops)[0])
-            if isinstance(whole, Path):
+            if isinstance(whole, Path) and all(isinstance(step, Index) for step in path.steps[length:]):
                 rest = with_indices(replace(path, steps=path.steps[length:]), lambda index: self.replaced(index, loops))
                 found = Path(whole.side, (*whole.steps, *rest.steps), path.span)
                 return Len(found, place.span) if isinstance(place, Len) else found

@@ -138,7 +138,8 @@ class Packing:
             self.problems.append(words.index_reads(missing[0].span))
             return ()
         value = self.known.setters[key_of(target, loops)[0]][1]
-        return (_setting(place, value, rule.span, length=isinstance(target, Len)),)
+        set_to = _setting(place, value, rule.span, length=isinstance(target, Len))
+        return (replace(set_to, via=rule.via) if isinstance(set_to, Assign) else set_to,)
 
     def split(self, rule: Relation, parts: tuple[Expr, Expr, Expr], loops: Loops) -> tuple[Rule, ...]:
         """`.a <-> x if condition else y` as `when condition .a <-> x else .a <-> y end`."""

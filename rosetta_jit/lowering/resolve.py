@@ -17,6 +17,7 @@ from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.held import fitted
 from rosetta_jit.lowering.listed import adapted
+from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import (
     Access,
@@ -40,6 +41,7 @@ from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struc
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
@@ -71,8 +73,11 @@ class Resolved:
     problems: tuple[Diagnostic, ...]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[Diagnostic, ...]:
-    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message."""
+def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
+
+    ``others`` are the mappings that its rules may use.
+    """
     problems: list[Diagnostic] = []
     holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
     wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
@@ -81,7 +86,7 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, others)
     unpack = _block(mapping.unpack_rules, scope)
     pack = _block(mapping.pack_rules, replace(scope, target="wire"))
     return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
@@ -116,19 +121,24 @@ class _Block:
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
         """Rules for the fields of the message that no other rule sets, and that the other side has too."""
-        origin, aim = (scope.messages[side].root for side in (_other(scope.target), scope.target))
+        origin, aim = (scope.messages[side].root for side in (scope.origin, scope.target))
         names = {field.name for field in origin.fields}
         excepted = [resolve_path(path, scope, type_index) for path in rule.but]
         set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
-        taken = {fields[0] for fields in (*set_already, *self.broken) if fields}
+        around = len(field_names(scope.base(scope.target)))
+        taken = {fields[around] for fields in (*set_already, *self.broken) if len(fields) > around}
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
-        made = [self.assign(_same_name(name, scope.target, rule.span), scope) for name in wanted]
+        made = (each for name in wanted for each in self.made(_same_name(name, scope.target, rule.span), scope))
         return [each for each in made if each is not None]
 
     def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
         """The rules that one of the mapping stands for."""
+        if isinstance(rule, model.Assign):
+            nested = nest(rule, scope, self.rules)
+            if nested is not None:
+                return [*nested]
         found = self.rule(rule, scope)
         return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
@@ -218,7 +228,7 @@ class _Block:
             scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
-        return For(Local(rule.variable), start, stop, body, rule.span)
+        return For(Local(rule.variable + scope.suffix), start, stop, body, rule.span)
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
@@ -254,7 +264,7 @@ def _places(rule: Rule) -> list[Place]:
 
 
 def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
-    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in (_other(target), target))
+    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in ("wire" if target == "holder" else "holder", target))
     return model.Assign(here, there, span)
 
 
@@ -315,7 +325,7 @@ def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
 
 def _whole(source: Type, target: Type, scope: Scope) -> bool:
     """Whether an array, struct, text or blob can be assigned as a whole."""
-    origin, aim = (scope.messages[side] for side in (_other(scope.target), scope.target))
+    origin, aim = (scope.messages[side] for side in (scope.origin, scope.target))
     source, target = origin.value_type(source), aim.value_type(target)
     match source, target:
         case ((String() | Bytes()), (String() | Bytes())):
@@ -328,10 +338,6 @@ def _whole(source: Type, target: Type, scope: Scope) -> bool:
             return source == target
         case _:
             return False
-
-
-def _other(side: Side) -> Side:
-    return "wire" if side == "holder" else "holder"
 
 
 def _mismatch(value: Expr, target: Type) -> Diagnostic:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
@@ -37,7 +38,11 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The names that are known at one point of a mapping; where problems go, and the enums that were named."""
+    """The names that are known at one point of a mapping; where problems go, and the enums that were named.
+
+    Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
+    ``suffix`` tells its loop variables from those around.
+    """
 
     messages: Mapping[Side, Message]
     enums: Mapping[str, Enum]
@@ -46,9 +51,21 @@ class Scope:
     locals: tuple[str, ...]
     problems: list[Diagnostic]
     named_enums: set[str]
+    others: Others
+    bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
+    suffix: str = ""
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))
+
+    @property
+    def origin(self) -> Side:
+        """The side that rules read."""
+        return "wire" if self.target == "holder" else "holder"
+
+    def base(self, side: Side) -> Place:
+        """The message of a side."""
+        return self.bases.get(side) or Place(side, (), self.messages[side].root)
 
 
 def enums_of(*schemas: Schema) -> dict[str, Enum]:
@@ -77,9 +94,9 @@ class Broken:
 
 def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Expr | None]) -> Place | Broken:
     """The place that a path names; ``index`` types the expressions within."""
-    message = scope.messages[path.side]
+    message, base = scope.messages[path.side], scope.base(path.side)
     type_: Type = message.root
-    steps: list[Step] = []
+    steps: list[Step] = [*base.steps]
     for step in path.steps:
         found: tuple[list[Step], Type] | Broken
         match step:
@@ -93,7 +110,7 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Exp
             return Broken(tuple(done.field.name for done in steps if isinstance(done, FieldStep)) + found.fields)
         steps += found[0]
         type_ = message.value_type(found[1])
-    return Place(path.side, tuple(steps), type_, path.span)
+    return Place(base.side, tuple(steps), type_, path.span)
 
 
 def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Side) -> tuple[list[Step], Type] | Broken:
@@ -115,11 +132,11 @@ def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, 
     """What can be named in a struct: its fields, and the cases of its unions as if they were fields."""
     fields = type_.fields if isinstance(type_, Struct) else type_.cases
     members: dict[str, tuple[Field, ...]] = {}
-    for field in fields:
-        union = schema.resolve(field.type)
+    for each in fields:
+        union = schema.resolve(each.type)
         if isinstance(union, Union):
-            members |= {case.name: (field, case) for case in union.cases}
-    return members | {field.name: (field,) for field in fields}
+            members |= {case.name: (each, case) for case in union.cases}
+    return members | {each.name: (each,) for each in fields}
 
 
 def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, Scope], Expr | None]) -> tuple[list[Step], Type] | Broken:
