@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.checked import CheckedMapping
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
@@ -27,7 +28,7 @@ from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.ir import Kernel, Site
@@ -59,6 +60,13 @@ class Build:
         self.reading = Reading()
         self.files_given = _named_files(self.request)
         self.search = SearchPath.of(self.request.folders, files=self.files_given)
+
+    @cached_property
+    def checked(self) -> Checked:
+        """The mapping, with the parameters of the request."""
+        source = self.search.open(self.request.mapping or "")
+        self.reading.record(source.name, None, source)
+        return check(parse_mapping(source), _readers(self.request), self.search, self.reading, json.loads(self.request.parameters))
 
     @cached_property
     def types(self) -> Types:
@@ -203,18 +211,15 @@ class Build:
         return found
 
 
-def check_mapping(path: str, folders: Iterable[str] = ()) -> tuple[Diagnostic, ...]:
-    """The warnings of a mapping; raises MappingError with all that is wrong."""
+def check_mapping(path: str, folders: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+    """What is known of a mapping; raises MappingError with all that is wrong."""
     search, reading = SearchPath.of(folders), Reading()
-    checked = check(parse_mapping(search.open(path)), Readers(installed()), search, reading)
-    return checked.warnings
+    return CheckedMapping(check(parse_mapping(search.open(path)), Readers(installed()), search, reading, parameters))
 
 
 def _mapped_types(build: Build) -> Types:
     request = build.request
-    source = build.search.open(request.mapping or "")
-    build.reading.record(source.name, None, source)
-    checked = check(parse_mapping(source), _readers(request), build.search, build.reading, json.loads(request.parameters))
+    checked = build.checked
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))

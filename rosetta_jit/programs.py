@@ -21,6 +21,7 @@ from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from rosetta_jit.checked import CheckedMapping
     from rosetta_jit.pipeline import Build, Stage
     from rosetta_jit.request import Backend, ByteOrder, Direction
     from rosetta_jit.runtime.holder import Holder
@@ -50,6 +51,13 @@ class _Made:
         from rosetta_jit.backends.numba import typed
 
         return typed(_build(self._request).kernels[0])
+
+    @property
+    def mapping(self) -> CheckedMapping | None:
+        """The mapping with its ``warnings`` and ``laws``; None of a type into its own holder. It is read anew: keep what is found."""
+        from rosetta_jit.checked import CheckedMapping
+
+        return None if self._request.mapping is None else CheckedMapping(_build(self._request).checked)
 
     def stage(self, stage: Stage) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""

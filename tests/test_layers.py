@@ -33,6 +33,7 @@ MAY_IMPORT = {
     "runtime": REPORTS | RUNTIME,
     "recording": REPORTS,
     "request": set(),
+    "checked": REPORTS | {"lowering"},
     "pipeline": ANYTHING - {"programs", "cli", "demo", ""},
     "programs": ANYTHING - {"cli", "demo", ""},
     "demo": ANYTHING - {"cli"},

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
 from rosetta_jit.lowering.conversions import EXACT_BITS, bounds
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, LenOf, Unary
+from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, Unary
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
@@ -29,7 +29,10 @@ LARGEST = {32: 2.0**128 * (1 - 2.0**-24), 64: math.ldexp(1 - 2.0**-53, 1024)}
 SMALLEST = {32: 2.0**-126, 64: 2.0**-1022}
 """IEEE 754: bits of precision, the largest finite number, the smallest normal one."""
 
-NEGLIGIBLE = 2.0**-900
+FAR = 2.0**20
+"""How far from what underflows a value is to be, for that not to count."""
+
+NEGLIGIBLE = 2.0**-800
 """A floor below that is that of no value of a float32."""
 
 
@@ -62,10 +65,15 @@ class _LostError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Error:
-    """A rounding: at most ``unit`` · (|x| + ``floor``)."""
+    """A rounding: at most ``unit`` · (|x| + ``floor``), where a floor that ``is_tiny`` is that of what underflows, times `FAR`."""
 
     unit: float
     floor: float
+    is_tiny: bool
+
+    def times(self) -> float:
+        """How often the unit counts for values of at least the floor."""
+        return self.unit * (1 + 1 / FAR if self.is_tiny else 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,8 +231,8 @@ def _rounded(value: _Value, times: int) -> _Value:
     if not isinstance(value.type, Float):
         return value
     bits = value.type.bits
-    floor = (value.offset + SMALLEST[bits]) / value.size
-    error = _Error(times * 2.0 ** -PRECISION[bits], floor)
+    floor = (value.offset or SMALLEST[bits] * FAR) / value.size
+    error = _Error(times * 2.0 ** -PRECISION[bits], floor, is_tiny=not value.offsets)
     limit = min(value.limit, (LARGEST[bits] / 2 - value.offset) / value.size)
     return replace(value, errors=(*value.errors, error), bits=32 if bits == 32 else value.bits, limit=limit)
 
@@ -344,17 +352,12 @@ def _outcome(value: _Value) -> Outcome:
     source, errors = value.source.bits, value.errors
     if source == 32 and value.bits == 32 and all(error.unit < 2.0**-40 for error in errors[:-1]):
         # The last step rounds to the type that the value came from: what is off by less than half of its spacing comes back exactly.
-        errors = tuple(_Error(2 * error.unit, error.floor) for error in errors[:-1])
+        errors = tuple(replace(error, unit=2 * error.unit) for error in errors[:-1])
         value = replace(value, bits=64)
     floor = max((error.floor for error in errors), default=0.0)
-    unit = sum(error.unit * (2 if error.floor > NEGLIGIBLE else 1) for error in errors) + off + (left / floor if left else 0.0)
+    unit = sum(error.times() for error in errors) + off + (left / floor if left else 0.0)
     if source == 32 and floor < NEGLIGIBLE and unit < 2.0**-26:
         return None
     ulp = math.ceil(unit * 1.001 * 2.0 ** PRECISION[value.bits])
     limit = value.limit if value.limit < LARGEST[source] / 2 else math.inf
     return Rounding(ulp, value.bits, floor if floor > NEGLIGIBLE else 0.0, limit)
-
-
-def is_field(expr: Expr) -> bool:
-    """Whether an expression is a field or its length, with nothing done to it."""
-    return isinstance(expr, Access | LenOf)
