@@ -246,7 +246,8 @@ def _converted(value: _Value, target: Type, rule: str) -> _Value:
         case Float(bits), Float(other):
             return converted if other >= bits else _rounded(converted, 1)
         case Int(bits), Float(other):
-            return converted if bits <= EXACT_BITS[other] else _rounded(converted, 1)
+            came = value.is_itself and isinstance(value.source, Float) and value.source.bits <= other
+            return converted if came or bits <= EXACT_BITS[other] else _rounded(converted, 1)
         case Float(), Int():
             return _whole(converted, rule)
         case Int(), Int() if rule in {"saturate", "wrap"}:
@@ -360,4 +361,4 @@ def _outcome(value: _Value) -> Outcome:
         return None
     ulp = math.ceil(unit * 1.001 * 2.0 ** PRECISION[value.bits])
     limit = value.limit if value.limit < LARGEST[source] / 2 else math.inf
-    return Rounding(ulp, value.bits, floor if floor > NEGLIGIBLE else 0.0, limit)
+    return Rounding(ulp, value.bits, floor, limit)

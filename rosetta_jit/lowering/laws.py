@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.lowering.chain import Lost, Rounding, come_back
+from rosetta_jit.lowering.matching import reads_other, same_number
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
 from rosetta_jit.lowering.resolve import field_names
-from rosetta_jit.lowering.roundtrip import Result, Trip, UnfollowedError, Way, reads_other, same_number, ways
+from rosetta_jit.lowering.roundtrip import Result, Trip, UnfollowedError, Way, ways
 from rosetta_jit.lowering.typed import Access, Const, FieldStep, For, IndexStep, LenOf, Local, When
 
 if TYPE_CHECKING:
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Expr, Rule
     from rosetta_jit.source import Span
+
+ORDINARY = (1e-30, 1e30)
+"""Magnitudes beyond which a bound is not shown."""
 
 MAX_WORK = 200_000
 """Rules of the second direction, times ways through the first one, that are followed."""
@@ -78,8 +82,8 @@ def laws_of(unpack: tuple[Rule, ...], pack: tuple[Rule, ...], holder: Message, w
 def shown(rounding: Rounding) -> str:
     """A rounding in words."""
     text = f"{rounding.ulp} ulp of float{rounding.bits}"
-    floor = f", of {rounding.floor:g} for smaller values" if rounding.floor else ""
-    limit = f", up to {rounding.limit:.3g}" if rounding.limit < 1e300 else ""
+    floor = f", of {rounding.floor:g} for smaller values" if rounding.floor > ORDINARY[0] else ""
+    limit = f", up to {rounding.limit:.3g}" if rounding.limit < ORDINARY[1] else ""
     return text + floor + limit
 
 
@@ -157,6 +161,8 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
         case Access(other) | LenOf(other) if other.side != place.side:
             return None if value in trip.equal_to(goal) else Lost("nothing of it is kept")
         case _ if value == goal or any(value == other for other in trip.equal_to(goal)):
+            return None
+        case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
             return None
         case Const(constant):
             return Lost(f"it becomes {constant!r}")

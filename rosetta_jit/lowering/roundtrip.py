@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
-from rosetta_jit.lowering.polynomial import TooComplexError, polynomial_of
+from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
 from rosetta_jit.lowering.resolve import field_names
 from rosetta_jit.lowering.typed import (
@@ -25,7 +25,6 @@ from rosetta_jit.lowering.typed import (
     Default,
     FieldStep,
     For,
-    Has,
     IndexStep,
     LenOf,
     Local,
@@ -35,12 +34,13 @@ from rosetta_jit.lowering.typed import (
     When,
 )
 from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.types import Float, Int
+from rosetta_jit.model.types import Float
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.lowering.typed import Expr, Place, Rule, Step
+    from rosetta_jit.lowering.matching import Ranges
+    from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
 
@@ -50,7 +50,6 @@ MAX_WAYS = 64
 MAX_LOOKED = 300
 """Rules for one field that are looked at."""
 
-Ranges = tuple[tuple["Expr", "Expr"], ...]
 Known = tuple[tuple["Expr", bool], ...]
 
 
@@ -218,10 +217,10 @@ class Trip:
         alike: list[tuple[_Write, Expr]] = []
         for write in self.writes.get(names, [])[:MAX_LOOKED]:
             bound: dict[str, Expr] = {}
-            if write.is_length == length and (_unify(write.place.steps, place.steps, bound) or self.alike(write.place, place, bound)):
+            if write.is_length == length and (unify(write.place.steps, place.steps, bound) or self.alike(write.place, place, bound)):
                 alike.append((write, renamed(write.value, bound)))
         # Where several loops set such an element, it is the one over the same numbers that sets this.
-        mine = [each for each in alike if _same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
+        mine = [each for each in alike if same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
         yield from (value for _, value in mine)
 
     @staticmethod
@@ -240,7 +239,7 @@ class Trip:
         """A place within one that was assigned as a whole, where it came from."""
         bound: dict[str, Expr] = {}
         size = len(write.place.steps)
-        if not isinstance(write.value, Access) or size > len(place.steps) or not _unify(write.place.steps, place.steps[:size], bound):
+        if not isinstance(write.value, Access) or size > len(place.steps) or not unify(write.place.steps, place.steps[:size], bound):
             return None
         source = renamed(write.value, bound)
         assert isinstance(source, Access)
@@ -284,39 +283,6 @@ def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:
                 pass
 
 
-def _same_ranges(left: Ranges, right: Ranges) -> bool:
-    pairs = [(a, b) for one, other in zip(left, right, strict=False) for a, b in zip(one, other, strict=True)]
-    return len(left) == len(right) and all(same_number(a, b) for a, b in pairs)
-
-
-def _unify(pattern: tuple[Step, ...], steps: tuple[Step, ...], bound: dict[str, Expr]) -> bool:
-    """Whether a place is one that a rule in loops sets, and in which round."""
-    if len(pattern) != len(steps):
-        return False
-    for wanted, step in zip(pattern, steps, strict=True):
-        match wanted, step:
-            case IndexStep(left), IndexStep(right):
-                if not _matches(left, right, bound):
-                    return False
-            case _ if wanted != step:
-                return False
-            case _:
-                pass
-    return True
-
-
-def _matches(pattern: Expr, expr: Expr, bound: dict[str, Expr]) -> bool:
-    match pattern, expr:
-        case Local(name), _:
-            return bound.setdefault(name, expr) == expr
-        case Binary(operator, left, right), Binary(other, a, b):
-            return operator == other and _matches(left, a, bound) and _matches(right, b, bound)
-        case Convert(operand, type_), Convert(inner, other_type):
-            return type_ == other_type and _matches(operand, inner, bound)
-        case _:
-            return pattern == expr
-
-
 def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:
     match left, right:
         case (Const(bool(value)), other) | (other, Const(bool(value))):
@@ -354,22 +320,3 @@ def _operand(expr: Expr) -> Expr | None:
             return operand
         case _:
             return None
-
-
-def reads_other(value: Expr, side: Side) -> bool:
-    """Whether an expression reads what lies between the two directions: nothing is known of that."""
-    if isinstance(value, Access | LenOf | Has) and value.place.side != side:
-        return True
-    found: list[bool] = []
-    rebuilt(value, lambda part: found.append(reads_other(part, side)) or part)
-    return any(found)
-
-
-def same_number(value: Expr, goal: Expr) -> bool:
-    """Whether two integers are the same in normal form."""
-    if not isinstance(value.type, Int) or not isinstance(goal.type, Int):
-        return False
-    try:
-        return polynomial_of(value) == polynomial_of(goal)
-    except TooComplexError:
-        return False

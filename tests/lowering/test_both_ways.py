@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -400,3 +401,37 @@ def test_relations_that_multiply_are_bounded():
     holder = " ".join(f"required double f{number} = {number + 1};" for number in range(60))
     rules = "".join(f"  .f{number} <-> .f{number} + .f{number - 1} + .f{number - 1}\n" for number in range(1, 60))
     assert "too-complex" in codes(wire, holder, f"rules:\n  .f0 <-> .f0\n{rules}")
+
+
+def kernels(wire: str, holder: str, rules: str) -> list[str]:
+    made = pair(wire, holder, rules)
+    return [re.sub(r"\w+\.mapping:\d+:\d+", "", program.stage("kernel")) for program in (made.decode, made.encode)]
+
+
+def test_blocks_are_what_one_would_write():
+    """The checks included: they have the same words."""
+    wire, holder = (
+        '("encoding" :string) ("n" :int) ("level" :double)',
+        "required Mode mode = 1; required int32 n = 2; required float level = 3;",
+    )
+    derived = """rules:
+  .n <-> int32(.n + 1)
+  when .encoding == "mono8" .mode <-> h.Mode.GRAY .level <-> float32(.level)
+  else when .encoding == "rgb8" .mode <-> h.Mode.RGB .level <-> float32(.level / 2.0) else reject "no such encoding" end end
+"""
+    written = """unpack-rules:
+  .n = int32(.n + 1)
+  when .encoding == "mono8" .mode = h.Mode.GRAY .level = float32(.level)
+  else when .encoding == "rgb8" .mode = h.Mode.RGB .level = float32(.level / 2.0) else reject "no such encoding" end end
+pack-rules:
+  .n = int32(.n - 1)
+  when .mode == h.Mode.GRAY
+    .encoding = "mono8"
+    .level = .level
+  else
+    .encoding = "rgb8"
+    reject "`.mode` is not `h.Mode.RGB`, as the mapping says" when .mode != h.Mode.RGB
+    .level = .level * 2.0
+  end
+"""
+    assert kernels(wire, holder, derived) == kernels(wire, holder, written)
