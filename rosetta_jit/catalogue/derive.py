@@ -33,6 +33,12 @@ def no_inverse(span: Span | None, why: str, rule: Span | None, place: str) -> Di
     return error("no-inverse", message, span or rule, "has no inverse", notes=notes, help_=_by_hand([place]))
 
 
+def changes(span: Span | None, function: str) -> Diagnostic:
+    """A relation to what is another value each time."""
+    message = f"`{function}()` is another one when the message is packed, so that no relation can hold"
+    return error("no-inverse", message, span, "changes", help_="write it in `unpack-rules:`, or in `pack-rules:`")
+
+
 def several_fields(span: Span | None, places: Sequence[str]) -> Diagnostic:
     """A relation among more fields of the wire than one, some of which nothing else sets."""
     listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_SHOWN])

@@ -13,14 +13,15 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.lowering.branches import facts_of, test_between
+from rosetta_jit.lowering.calls import TOLD
 from rosetta_jit.lowering.folding import FALSE, TRUE, folded
 from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.lowering.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.lowering.learning import learn
-from rosetta_jit.model.expr import Binary, Held, Len, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Held, Len, Path, Unary
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.walk import Field, fields_of, names_of, path_of
+from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -114,6 +115,10 @@ class Packing:
         return (replace(rule, start=start, stop=stop, body=body),) if body else ()
 
     def relation(self, rule: Relation, loops: Loops) -> tuple[Rule, ...]:
+        told = next((part for part in parts(rule.value) if isinstance(part, Call) and part.function in TOLD), None)
+        if told is not None:
+            self.problems.append(words.changes(told.span, told.function))
+            return ()
         place = with_known_indices(rule.place, self.known, loops)
         fields = fields_in(rule.value)
         target = next((each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule), None)
@@ -141,13 +146,13 @@ class Packing:
         set_to = _setting(place, value, rule.span, length=isinstance(target, Len))
         return (replace(set_to, via=rule.via) if isinstance(set_to, Assign) else set_to,)
 
-    def split(self, rule: Relation, parts: tuple[Expr, Expr, Expr], loops: Loops) -> tuple[Rule, ...]:
+    def split(self, rule: Relation, ways: tuple[Expr, Expr, Expr], loops: Loops) -> tuple[Rule, ...]:
         """`.a <-> x if condition else y` as `when condition .a <-> x else .a <-> y end`."""
         self.blocks.append(rule)
         if len(self.blocks) > MAX_BLOCKS:
             self.problems.extend([words.too_many_blocks(rule.span, MAX_BLOCKS)] if len(self.blocks) == MAX_BLOCKS + 1 else [])
             return ()
-        condition, *values = parts
+        condition, *values = ways
         then, other = (replace(rule, value=value) for value in values)
         return self.when(When(condition, (then,), (other,), rule.span), loops)
 

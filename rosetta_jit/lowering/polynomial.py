@@ -23,17 +23,20 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     Given,
     Has,
+    HostCall,
+    ImageCall,
     IsText,
     LenOf,
     Listed,
     Local,
+    Told,
     Unary,
 )
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.typed import Expr, Place
+    from rosetta_jit.lowering.typed import Asked, Expr, Place
 
 MAX_SIZE = 1000
 """Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
@@ -170,6 +173,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
         case Call(function, arguments):
             return atom(function, *(polynomial_of(argument) for argument in arguments))
+        case Told() | HostCall() | ImageCall():
+            return _asked(expr)
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
@@ -177,14 +182,31 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Choice(cases, otherwise):
             parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
             return atom("choice", *map(polynomial_of, parts))
-        case Listed(items, index):
-            return atom("item", *map(polynomial_of, (*items, index)))
-        case Given(name, arguments):
-            return atom(name, *map(polynomial_of, arguments))
+        case Listed() | Given():
+            return _listed(expr)
         case Const(value=value):
             return atom(repr(value))
         case _:
             assert_never(expr)
+
+
+def _asked(asked: Asked) -> Polynomial:
+    match asked:
+        case Told(what):
+            return atom(f"{what}()")
+        case HostCall(function, arguments):
+            return atom(f"{function}()", *map(polynomial_of, arguments))
+        case ImageCall(function, image, _, _, numbers):
+            return atom(function, *map(polynomial_of, (image, *numbers)))
+        case _:
+            assert_never(asked)
+
+
+def _listed(expr: Listed | Given) -> Polynomial:
+    """An item of a list; it is the same for the same number."""
+    if isinstance(expr, Given):
+        return atom(expr.name, *map(polynomial_of, expr.arguments))
+    return atom("item", *map(polynomial_of, (*expr.items, expr.index)))
 
 
 def _arithmetic(operator: str, left: Polynomial, right: Polynomial) -> Polynomial:

@@ -25,6 +25,7 @@ from rosetta_jit.lowering.typed import (
     Default,
     FieldStep,
     For,
+    Given,
     IndexStep,
     LenOf,
     Local,
@@ -156,7 +157,7 @@ class Trip:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    yield Result(where, isinstance(rule, SetLength), self.of(value), rule.span)
+                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span)
                 case Default(place):
                     yield Result(place, is_length=False, value=None, span=rule.span)
                 case For(_, start, stop, body):
@@ -269,12 +270,17 @@ class Trip:
                 return expr
 
 
+def _changed(rule: Assign | SetLength, value: Expr) -> Expr:
+    """The value of a rule; one within which units change is not followed."""
+    return value if isinstance(rule, SetLength) or rule.change is None else Given("in other units", (), value.type)
+
+
 def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:
     """What rules set."""
     for rule in rules:
         match rule:
             case Assign(place, value) | SetLength(place, value):
-                yield _Write(isinstance(rule, SetLength), place, value, ranges)
+                yield _Write(isinstance(rule, SetLength), place, _changed(rule, value), ranges)
             case For(_, start, stop, body):
                 yield from _writes(body, (*ranges, (start, stop)))
             case When(_, then, otherwise):

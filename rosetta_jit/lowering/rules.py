@@ -17,10 +17,12 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.images import bytes_of
+from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -42,7 +44,7 @@ class Runner:
             here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here)
+                    self.assign(place, value, here, rule.change)
                 case typed.SetLength(place, value):
                     self.take(place, self.count(here.of(value)), here)
                 case typed.For():
@@ -106,7 +108,7 @@ class Runner:
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
         self.writer.emit(For(number.name, count, block(body)))
 
-    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
@@ -114,10 +116,12 @@ class Runner:
                 self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((Bytes() | Array()), typed.ImageCall()):
+                self.assign_image(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
-                self.copy(place, origin, values)
+                self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
-                self.assign_array(place, origin, values)
+                self.assign_array(place, origin, values, change)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
@@ -150,7 +154,15 @@ class Runner:
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 
-    def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_image(self, place: typed.Place, value: typed.ImageCall, values: Values) -> None:
+        """An image or its pixels. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError(())
+        made = bytes_of(value, values)
+        self.take(place, made.size, values)
+        self.writer.emit(Copy(self.target.address(place, values), made.address, made.size))
+
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
@@ -161,20 +173,14 @@ class Runner:
         if isinstance(place.type, Array | Map):
             self.bound(place, self.source.count(origin, values), values)
         with self.writer.nested() as there:
-            copy(source, path, target, target_path)
+            copy(source, path, target, target_path, change)
         present = presence(source, path, outer=True)
         self.writer.emit(*there if present is None else (If(present, block(there)),))
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""
-        element = place.type.element if isinstance(place.type, Array) else place.type
         count = self.source.count(origin, values)
         self.take(place, count, values)
-        variable = typed.Local("element")
-        step = typed.IndexStep(variable)
-        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
-        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if isinstance(element, Bool | Int | Float | Enum) and origin_type != element:
-            read = typed.Convert(read, element, "widen")
-        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        rule = element_rule(place, origin, variable, change)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
