@@ -32,6 +32,13 @@ SMALLEST = {32: 2.0**-126, 64: 2.0**-1022}
 FAR = 2.0**20
 """How far from what underflows a value is to be, for that not to count."""
 
+WHOLE = {
+    "round": "it is rounded to a whole number",
+    "truncate": "what is behind the point is dropped",
+    "saturate": "it is rounded to a whole number that fits",
+}
+"""What becomes of a float that is made an integer."""
+
 NEGLIGIBLE = 2.0**-800
 """A floor below that is that of no value of a float32."""
 
@@ -243,6 +250,8 @@ def _rounded(value: _Value, times: int) -> _Value:
 def _converted(value: _Value, target: Type, rule: str) -> _Value:
     converted = replace(value, type=target)
     match value.type, target:
+        case _, Float() if rule == "exact":
+            return converted
         case Float(bits), Float(other):
             return converted if other >= bits else _rounded(converted, 1)
         case Int(bits), Float(other):
@@ -261,12 +270,12 @@ def _whole(value: _Value, rule: str) -> _Value:
     if not isinstance(value.source, Int):
         if rule == "exact":
             return value
-        raise _LostError("it is rounded to a whole number" if rule == "round" else "what is behind the point is dropped")
+        raise _LostError(WHOLE[rule])
     largest = float(1 << value.source.bits)
     off = sum(error.unit * (largest + error.floor) for error in value.errors) * value.size
     if not value.errors:
         return value
-    if off < 0.25 and rule in {"round", "exact"} and _is_whole(value):
+    if off < 0.25 and rule in {"round", "exact", "saturate"} and _is_whole(value):
         return replace(value, errors=())
     raise _LostError("large integers are rounded to a float")
 
