@@ -11,6 +11,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.checked import CheckedMapping
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
@@ -64,6 +66,13 @@ class Build:
         self.reading = Reading()
         self.files_given = _named_files(self.request)
         self.search = SearchPath.of(self.request.folders, files=self.files_given)
+
+    @cached_property
+    def checked(self) -> Checked:
+        """The mapping, with the parameters of the request."""
+        source = self.search.open(self.request.mapping or "")
+        self.reading.record(source.name, None, source)
+        return check(parse_mapping(source), _readers(self.request), self.search, self.reading, json.loads(self.request.parameters))
 
     @cached_property
     def types(self) -> Types:
@@ -222,18 +231,15 @@ class Build:
         return found
 
 
-def check_mapping(path: str, folders: Iterable[str] = ()) -> tuple[Diagnostic, ...]:
-    """The warnings of a mapping; raises MappingError with all that is wrong."""
+def check_mapping(path: str, folders: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+    """What is known of a mapping; raises MappingError with all that is wrong."""
     search, reading = SearchPath.of(folders), Reading()
-    checked = check(parse_mapping(search.open(path)), Readers(installed()), search, reading)
-    return checked.warnings
+    return CheckedMapping(check(parse_mapping(search.open(path)), Readers(installed()), search, reading, parameters))
 
 
 def _mapped_types(build: Build) -> Types:
     request = build.request
-    source = build.search.open(request.mapping or "")
-    build.reading.record(source.name, None, source)
-    checked = check(parse_mapping(source), _readers(request), build.search, build.reading)
+    checked = build.checked
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
@@ -247,6 +253,8 @@ def _both(checked: Checked) -> Schema:
 
 def _own_types(build: Build) -> Types:
     request = build.request
+    for name in json.loads(request.parameters):
+        raise _report(request, needless(name))
     if request.plain is not None:
         type_, schema = from_plain(json.loads(request.plain))
         struct = schema.resolve(type_)

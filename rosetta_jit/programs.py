@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
-from rosetta_jit.request import GivenFunction, Request
+from rosetta_jit.request import GivenFunction, Request, plain_parameters
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
@@ -24,6 +24,7 @@ from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from rosetta_jit.checked import CheckedMapping
     from rosetta_jit.pipeline import Build, Stage
     from rosetta_jit.request import Backend, ByteOrder, Direction
     from rosetta_jit.runtime.holder import Holder
@@ -55,6 +56,13 @@ class _Made:
 
         return typed(_build(self._request).kernels[0])
 
+    @property
+    def mapping(self) -> CheckedMapping | None:
+        """The mapping with its ``warnings`` and ``laws``; None of a type into its own holder. It is read anew: keep what is found."""
+        from rosetta_jit.checked import CheckedMapping
+
+        return None if self._request.mapping is None else CheckedMapping(_build(self._request).checked)
+
     def stage(self, stage: Stage) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
         return _build(self._request).stage(stage)
@@ -81,6 +89,8 @@ class Options(TypedDict, total=False):
         Of what is written, or of what is read where messages do not tell.
     lenient : iterable of str
         What to forgive, by name: ``rosetta-jit frameworks`` lists what each encoding can be asked for.
+    parameters : mapping of str to value
+        What the mapping's parameters are: bools, numbers, texts, and lists of these. They are compiled into the program.
     borrow : bool
         Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
     functions : mapping of str to callable
@@ -96,6 +106,7 @@ class Options(TypedDict, total=False):
     search_path: Iterable[str | os.PathLike[str]]
     byte_order: ByteOrder | None
     lenient: Iterable[str]
+    parameters: Mapping[str, object]
     borrow: bool
     functions: Mapping[str, Callable[..., Any]]
     backend: Backend | None
@@ -179,6 +190,7 @@ def _request(direction: Direction, options: Options, *, mapping: str | None = No
         borrow=options.get("borrow", False),
         byte_order=options.get("byte_order"),
         lenient=tuple(sorted(options.get("lenient", ()))),
+        parameters=plain_parameters(options.get("parameters", {})),
         functions=tuple(GivenFunction(name, digest_of(each), each) for name, each in sorted(options.get("functions", {}).items())),
         backend=options.get("backend"),
     )

@@ -37,7 +37,7 @@ EXPECTATIONS = (
 )
 """Token kind → how a person calls what may stand there, in the order in which it is listed."""
 
-STARTS_VALUE = frozenset({"LPAR", "START", "NAME", "STRING"})
+STARTS_VALUE = frozenset({"LPAR", "LSQB", "START", "NAME", "STRING"})
 STARTS_RULE = frozenset({"START"})
 
 
@@ -66,7 +66,8 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
     if kind == "$END" and "END" in expected:
         return "every `for` needs an `end`"
     if "IMPORT" in expected and "FOR" not in expected:
-        return "statements are `import`, `function`, `data-holder:`, `wire-schema:`, `rules:`, `unpack-rules:` and `pack-rules:`"
+        names = ("import", "parameter", "function", "data-holder:", "wire-schema:", "rules:", "unpack-rules:")
+        return f"statements are {', '.join(f'`{name}`' for name in names)} and `pack-rules:`"
     return ""
 
 

@@ -16,7 +16,7 @@ from lark.lark import PostLex
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
+from rosetta_jit.frontend.mapping_rules import Context, read_parameter, read_rule, read_string
 from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
 from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
@@ -36,11 +36,14 @@ GRAMMAR = FilePath(__file__).with_name("mapping.lark")
 MAX_NESTING = 64
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
-NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "length", "index", "loop", "when"))
+NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "list", "length", "loop", "when"))
 """Rules of the grammar that one of their kind can stand in."""
 
 
-RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "SAME")
+ONLY_BEHIND = {"NAMES": "_SAME", "LIST": "COLON", "OF": "LIST"}
+"""Words that are words behind another token alone."""
+
+RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "_SAME")
 """Tokens that a rule begins with."""
 
 
@@ -68,7 +71,9 @@ def _grammar() -> Lark:
 
 
 class Tokens(PostLex):
-    """Tells the `when` of a rejection from one that begins a block, and makes lark keep the tokens that stand for mistakes."""
+    """Tells the `when` of a rejection from one that begins a block, and words from the names that they are elsewhere; makes lark keep
+    the tokens that stand for mistakes.
+    """
 
     always_accept = ("UNCLOSED", "STRANGE")
 
@@ -77,12 +82,14 @@ class Tokens(PostLex):
         for token in stream:
             if token.type == "WHEN" and kinds == ("REJECT", "STRING"):
                 token.type = "GUARD"
+            if token.type in ONLY_BEHIND and kinds[1] != ONLY_BEHIND[token.type]:
+                token.type = "NAME"
             kinds = kinds[1], token.type
             yield token
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = ("IMPORT", "PARAMETER", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
 
@@ -123,6 +130,11 @@ class _Reader:
             holder_span,
             wire_span,
             tuple(self._function(child) for child in statements if child.data == "function"),
+            tuple(
+                read_parameter(child, Context(self.source, "wire", "holder", self.problems))
+                for child in statements
+                if child.data == "parameter"
+            ),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))

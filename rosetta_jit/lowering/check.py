@@ -13,6 +13,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.annotate import annotated
+from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.lowering.imports import Imports, merge, read_imports
@@ -22,6 +23,7 @@ from rosetta_jit.lowering.resolve import Resolved, resolve
 from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping as Dictionary
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
@@ -50,7 +52,13 @@ class Checked:
     warnings: tuple[Diagnostic, ...]
 
 
-def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: Reading | None = None) -> Checked:
+def check(
+    mapping: Mapping,
+    front_ends: FrontEnds,
+    search: SearchPath,
+    reading: Reading | None = None,
+    parameters: Dictionary[str, object] | None = None,
+) -> Checked:
     """Read what a mapping imports, and check it.
 
     Parameters
@@ -59,6 +67,8 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Of all frameworks.
     reading
         Collects the files that were read.
+    parameters
+        The values of the mapping's parameters; None to check it for all values that they may get.
 
     Raises
     ------
@@ -66,9 +76,9 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
-    mapping, reading = derive(mapping, problems), reading or Reading()
+    mapping, reading = derive(bind(mapping, parameters, problems), problems), reading or Reading()
     derived = len(problems)
-    others = read_others(mapping, search, reading, problems)
+    others = read_others(mapping, search, reading, problems, parameters)
     imports = Imports(mapping.source, front_ends, search, reading)
     imported = read_imports(mapping, imports, problems)
     theirs = [each for other in others.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]

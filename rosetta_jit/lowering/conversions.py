@@ -128,7 +128,7 @@ def _fits_float32(number: float) -> bool:
     if not math.isfinite(number):
         return True
     try:
-        struct.pack("f", number)
+        struct.pack("<f", number)
     except OverflowError:
         return False
     return True

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+    CompareTexts = Callable[[Expr, Expr, model.Binary], Expr | None]
 
 EQUALITY = frozenset(("==", "!="))
 MAX_TEXT = 64
@@ -54,11 +55,14 @@ def type_logic(expr: model.Binary, scope: Scope, type_expr: TypeExpr) -> Expr | 
     return None if left is None or right is None else Binary(expr.operator, left, right, BOOL, expr.span)
 
 
-def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr) -> Expr | None:
-    """``left == right`` and its like."""
+def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr, texts: CompareTexts) -> Expr | None:
+    """``left == right`` and its like; ``texts`` compares those that are not all known."""
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
     if left is None or right is None or not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
         return None
+    found = texts(left, right, expr) if expr.operator in EQUALITY else None
+    if found is not None:
+        return found
     found = _comparison(expr, left, right)
     if found is None:
         scope.problems.append(words.not_comparable(expr.span, expr.operator, describe(left.type), describe(right.type)))
@@ -114,7 +118,7 @@ def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr |
     known = [value for value in values if value is not None]
     if len(known) < len(values) or any(condition is None for condition in conditions):
         return None
-    fitting = _unified(known)
+    fitting = unified(known)
     if fitting is None:
         kinds = sorted({describe(value.type) for value in known})
         scope.problems.append(words.mixed_choice(expr.span, kinds))
@@ -126,7 +130,8 @@ def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr |
     return Choice(cases, otherwise, expr.reason, fitting[0].type, expr.span)
 
 
-def _unified(values: list[Expr]) -> list[Expr] | None:
+def unified(values: list[Expr]) -> list[Expr] | None:
+    """Values as one type: the first that all fit without a word."""
     targets = [value.type for value in values if not isinstance(value, Const)] + [values[0].type, FLOAT64]
     for target in targets:
         found = [convert(value, target) for value in values]

@@ -14,7 +14,9 @@ from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.functions import type_host_call
+from rosetta_jit.lowering.held import type_held
 from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
+from rosetta_jit.lowering.listed import compared_text, type_listed
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.type_texts import concatenation, is_textual
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
@@ -48,7 +50,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Unary():
             return _negative(expr, scope)
         case model.Binary(operator) if operator in model.COMPARISONS:
-            return type_comparison(expr, scope, type_expr)
+            return type_comparison(expr, scope, type_expr, compared_text)
         case model.Binary(operator) if operator in model.LOGIC:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
@@ -61,6 +63,10 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_call(for_comparison(expr), scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
+        case model.List() | model.Item() | model.Given():
+            return type_listed(expr, scope, type_expr)
+        case model.Held():
+            return type_held(expr, scope, type_expr, type_index)
         case _:
             assert_never(expr)
 
@@ -139,7 +145,8 @@ def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
     if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
         return _constant(-operand.value, expr.span, scope)
     number = _computable(operand, "-", scope)
-    return None if number is None else Unary("-", number, number.type, expr.span)
+    wide = as_int64(number) if number is not None and isinstance(number.type, Int) else number
+    return None if wide is None else Unary("-", wide, wide.type, expr.span)
 
 
 def _binary(expr: model.Binary, scope: Scope) -> Expr | None:

@@ -9,6 +9,7 @@ from rosetta_jit.catalogue import nested as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.model.mapping import Assign, For, When
 
@@ -57,8 +58,10 @@ class Others:
         return [self.found[here, name] for name in self.imported.get(here, ()) if (here, name) in self.found]
 
 
-def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic]) -> Others:
-    """Read all mappings that a mapping uses, directly or through others."""
+def read_others(
+    mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic], parameters: Mapping[str, object] | None
+) -> Others:
+    """Read all mappings that a mapping uses, directly or through others. Of its ``parameters`` they have those that they declare."""
     found: dict[tuple[str, str], model.Mapping] = {}
     imported: dict[str, tuple[str, ...]] = {}
     read: dict[str, model.Mapping] = {mapping.source.name: mapping}
@@ -77,7 +80,7 @@ def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, pr
                 if len(read) > MAX_MAPPINGS:
                     problems.append(words.many_mappings(span, MAX_MAPPINGS))
                     return Others(found, imported, (mapping.source.name,))
-                other = _read(source, problems)
+                other = _read(source, problems, parameters)
                 if other is None:
                     continue
                 read[source.name] = other
@@ -86,9 +89,12 @@ def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, pr
     return Others(found, imported, (mapping.source.name,))
 
 
-def _read(source: Source, problems: list[Diagnostic]) -> model.Mapping | None:
+def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, object] | None) -> model.Mapping | None:
     try:
-        return derive(parse(source), problems)
+        mapping = parse(source)
+        declared = {each.name for each in mapping.parameters}
+        given = None if parameters is None else {name: value for name, value in parameters.items() if name in declared}
+        return derive(bind(mapping, given, problems), problems)
     except ReportError as error:
         problems.extend(error.diagnostics)
         return None

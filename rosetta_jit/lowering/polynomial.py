@@ -22,11 +22,13 @@ from rosetta_jit.lowering.typed import (
     Const,
     Convert,
     FieldStep,
+    Given,
     Has,
     HostCall,
     ImageCall,
     IsText,
     LenOf,
+    Listed,
     Local,
     TextCall,
     Told,
@@ -171,12 +173,10 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Convert(operand, _, rule):
             keeps = isinstance(operand.type, Int) and rule in {"widen", "exact"}
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
-        case Call(function, arguments):
-            return atom(function, *(polynomial_of(argument) for argument in arguments))
+        case Call(function, arguments) | TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
-        case TextCall(function, arguments):
-            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
@@ -184,6 +184,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Choice(cases, otherwise):
             parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
             return atom("choice", *map(polynomial_of, parts))
+        case Listed() | Given():
+            return _listed(expr)
         case Const(value=value):
             return atom(repr(value))
         case _:
@@ -200,6 +202,13 @@ def _asked(asked: Asked) -> Polynomial:
             return atom(function, *map(polynomial_of, (image, *numbers)))
         case _:
             assert_never(asked)
+
+
+def _listed(expr: Listed | Given) -> Polynomial:
+    """An item of a list; it is the same for the same number."""
+    if isinstance(expr, Given):
+        return atom(expr.name, *map(polynomial_of, expr.arguments))
+    return atom("item", *map(polynomial_of, (*expr.items, expr.index)))
 
 
 def _arithmetic(operator: str, left: Polynomial, right: Polynomial) -> Polynomial:

@@ -24,9 +24,9 @@ Names = tuple[str, ...]
 def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None]) -> list[Diagnostic]:
     """Warnings about one direction; ``spans`` are where the types of source and target are named."""
     read = {field_names(place) for place in _read(rules)}
-    unread = _without(read, source, source.root, ())
+    unread = untouched(read, source, source.root, ())
     written = {field_names(place) for place in places_in(rules)}
-    unset = [names for names in _without(written, target, target.root, ()) if _may_be_absent(names, target)]
+    unset = [names for names in untouched(written, target, target.root, ()) if _may_be_absent(names, target)]
     return [
         *(words.never_read(spans[0], _shown(names)) for names in unread),
         *(words.left_out(spans[1], _shown(names)) for names in unset),
@@ -37,8 +37,8 @@ def _shown(names: Names) -> str:
     return "".join(f".{name}" for name in names)
 
 
-def _without(touched: set[Names], message: Message, struct: Struct | Union, prefix: Names) -> list[Names]:
-    """Fields of which neither a part nor anything around is touched: the outermost of each."""
+def untouched(touched: set[Names], message: Message, struct: Struct | Union, prefix: Names) -> list[Names]:
+    """The outermost fields of which neither a part nor anything around is ``touched``."""
     found: list[Names] = []
     for each in struct.fields if isinstance(struct, Struct) else struct.cases:
         names = (*prefix, each.name)
@@ -48,7 +48,7 @@ def _without(touched: set[Names], message: Message, struct: Struct | Union, pref
         if not any(other[: len(names)] == names for other in touched):
             found.append(names)
         elif isinstance(inner, Struct | Union):
-            found += _without(touched, message, inner, names)
+            found += untouched(touched, message, inner, names)
     return found
 
 
@@ -115,6 +115,12 @@ def _in(value: Expr) -> Iterator[Place]:
                 yield from _in(part)
             if otherwise is not None:
                 yield from _in(otherwise)
+        case typed.Listed(items, index):
+            for part in (*items, index):
+                yield from _in(part)
+        case typed.Given(_, arguments):
+            for argument in arguments:
+                yield from _in(argument)
         case typed.Const() | typed.Local() | typed.Told():
             pass
 

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.functions import signatures
+from rosetta_jit.lowering.held import fitted
 from rosetta_jit.lowering.inverse_texts import for_type
+from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_images import is_bytes
@@ -28,12 +29,12 @@ from rosetta_jit.lowering.typed import (
     Assign,
     Choice,
     Const,
-    Convert,
     Default,
     FieldStep,
     For,
     Ignore,
     ImageCall,
+    Listed,
     Local,
     Reject,
     SetLength,
@@ -204,7 +205,7 @@ class _Block:
         if value is not None:
             value = in_unit(value, place, scope)
         if value is not None and rule.fits:
-            value = _fitted(value, place.type)
+            value = fitted(value, place.type)
         fitting = None if value is None else _fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
@@ -293,12 +294,6 @@ def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
     return rest[0]
 
 
-def _fitted(value: Expr, target: Type) -> Expr:
-    """A number as the type of its place, by a check where it may not fit."""
-    rules = rules_between(value.type, target)
-    return Convert(value, target, rules[0], value.span) if rules and convert(value, target) is None else value
-
-
 def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     """The value as the type of the place, reported where that takes a word or cannot be."""
     target = place.type
@@ -306,6 +301,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return _fit_choice(value, place, scope)
     if isinstance(value, Choice):
         value = _adapted(value, target)
+    if isinstance(value, Listed):
+        value = adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
@@ -321,12 +318,16 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
 
 def _adapted(value: Choice, target: Type) -> Choice:
     """A choice whose values all fit without a word, as that type."""
-    cases = [(condition, convert(chosen, target)) for condition, chosen in value.cases]
-    otherwise = None if value.otherwise is None else convert(value.otherwise, target)
+    cases = [(condition, _adapted_to(chosen, target)) for condition, chosen in value.cases]
+    otherwise = None if value.otherwise is None else _adapted_to(value.otherwise, target)
     known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
     if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
         return value
     return replace(value, cases=known, otherwise=otherwise, type=target)
+
+
+def _adapted_to(value: Expr, target: Type) -> Expr | None:
+    return convert(_adapted(value, target) if isinstance(value, Choice) else value, target)
 
 
 def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:

@@ -114,6 +114,8 @@ class Runner:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
+            case ((String() | Bytes()), typed.Listed()):
+                self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
             case ((String() | Bytes() | Array()), (typed.TextCall() | typed.ImageCall())):
@@ -131,6 +133,15 @@ class Runner:
         self.take(place, index(len(text)), values)
         for number, byte in enumerate(text):
             self.target.set_byte(place, number, byte, values)
+
+    def assign_listed(self, place: typed.Place, listed: typed.Listed, values: Values) -> None:
+        """One of several texts; what is looked up for one of them is forgotten behind it."""
+
+        def use(item: typed.Expr) -> None:
+            with self.forgetting():
+                self.assign(place, item, values)
+
+        values.switch(listed, use)
 
     def assign_bytes(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
         """A string or bytes as a whole. To the wire, the walk may have copied it."""

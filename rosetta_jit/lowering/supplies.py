@@ -80,6 +80,8 @@ class Supplies:
                 return index(len(text.encode()))
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
+            case typed.Assign(_, typed.Listed(items) as listed):
+                return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
             case typed.Default():
                 return index(0)
             case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
@@ -115,14 +117,21 @@ def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
     return None
 
 
+def _size(text: typed.Expr) -> typed.Const:
+    """How many bytes a text of a list has."""
+    assert isinstance(text, typed.Const)
+    return typed.Const(len(str(text.value).encode()), typed.INT64)
+
+
 def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
     """A number of the type of a field that rules set."""
     rule = _rule_for(path, rules)
     match rule:
-        case typed.Assign(place):
+        case typed.Assign(place) | typed.Default(place) if isinstance(place.type, Int | Float | Bool | Enum):
             return constant(0, scalar_type(place.type))
         case typed.When(_, then, otherwise):
-            return _zero(path, (*then, *otherwise))
+            blocks = [block for block in (then, otherwise) if _rule_for(path, block) is not None]
+            return next((zero for block in blocks if (zero := _zero(path, block)) != index(0)), index(0))
         case _:
             return index(0)
 
@@ -163,6 +172,8 @@ def _array_places(node: object) -> list[typed.Place]:
             return [place]
         case typed.Choice(cases, otherwise):
             return _array_places((*cases, otherwise))
+        case typed.Listed(items, at):
+            return _array_places((*items, at))
         case typed.LenOf(place):
             return [place]
         case typed.Access(place):

@@ -1,6 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked     each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Listed | Given | Asked
+    each with `type`
     Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
@@ -245,10 +246,33 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """One of several values of ``type``, by its number from 0; outside of them it is an error of kind ``index``.
+
+    One among texts stands only as the whole value of an `Assign`.
+    """
+
+    items: tuple[Expr, ...]
+    index: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A parameter, an item or the length of one, in a mapping that is checked before they are given; it is never lowered."""
+
+    name: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 Asked = Told | HostCall | ImageCall
 """What the kernel's host answers."""
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Listed | Given | Asked
 
 
 @dataclass(frozen=True, slots=True)

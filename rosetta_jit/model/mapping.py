@@ -1,6 +1,6 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
-    Mapping = Import*, Function*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
+    Mapping = Import*, Function*, Parameter*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr, via) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
             | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
             | Ignore(Path) | Default(Path) | SameNames(Path*)
@@ -26,6 +26,17 @@ class Import:
     """``import "path"``: a file on the search path."""
 
     path: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """``parameter name: type = default``: said when a program is made. ``type`` is the name of a scalar; of each item, of a list."""
+
+    name: str
+    type: str
+    is_list: bool
+    default: Expr | None
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -159,3 +170,4 @@ class Mapping:
     holder_span: Span | None = field(default=None, compare=False, repr=False)
     wire_span: Span | None = field(default=None, compare=False, repr=False)
     functions: tuple[Function, ...] = ()
+    parameters: tuple[Parameter, ...] = ()

@@ -69,6 +69,14 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Choice(cases, otherwise, reason):
             last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
+        case expr.List(items):
+            return f"[{', '.join(map(show_expr, items))}]"
+        case expr.Item(items, at):
+            return f"{show_expr(items)}[{show_expr(at)}]"
+        case expr.Given(name, arguments):
+            return name + "".join(f"[{show_expr(argument)}]" for argument in arguments)
+        case expr.Held(_, held):
+            return show_expr(held)
         case _:
             assert_never(value)
 

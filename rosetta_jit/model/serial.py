@@ -143,6 +143,8 @@ def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
             return ["call", function, [_plain_expr(each) for each in arguments]]
         case expr.Choice(cases, otherwise, reason):
             return ["choice", [[_plain_expr(part) for part in case] for case in cases], _plain_expr(otherwise), reason]
+        case expr.List() | expr.Item() | expr.Given() | expr.Held():
+            raise AssertionError(value)
         case _:
             assert_never(value)
 
