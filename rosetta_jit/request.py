@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -57,7 +59,7 @@ class Request:
     functions
         Functions of the user's own that the mapping calls.
     backend
-        What runs the kernels; None for numba where it is installed, else LLVM.
+        What runs the kernels; None for LLVM.
     """
 
     direction: Direction

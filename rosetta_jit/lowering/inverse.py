@@ -14,14 +14,18 @@
 | `float32(x)` …    | the value, as the field holds it  |
 | `divide(x, c)`    | value * c                         |
 | `table(x) {a = b}`| table(value) {b = a}              |
+
+Those of texts stand in `rosetta_jit.lowering.inverse_texts`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.folding import folded, is_constant
+from rosetta_jit.lowering.inverse_texts import opposite, without
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Path, Unary
 from rosetta_jit.model.walk import rebuilt, side_of
 
@@ -92,6 +96,8 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return argument, value
         case Call("divide", (argument, divisor), span) if not fields_in(divisor):
             return argument, Binary("*", value, divisor, span)
+        case Call() if (found := opposite(expr, value)) is not None:
+            return found
         case Call(function):
             raise NoInverseError(expr, f"`{function}` gives the same for several values")
         case Choice():
@@ -101,6 +107,8 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
 
 
 def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
+    if (found := without(expr, value)) is not None:
+        return found
     left = bool(fields_in(expr.left))
     inner, other = (expr.left, expr.right) if left else (expr.right, expr.left)
     if fields_in(other):

@@ -7,11 +7,12 @@ condition cannot be known, its two blocks are told apart by constants (`lowering
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.branches import facts_of, test_between
 from rosetta_jit.lowering.calls import TOLD
 from rosetta_jit.lowering.folding import FALSE, TRUE, folded

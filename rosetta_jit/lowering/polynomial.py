@@ -9,9 +9,10 @@ quotient, a call. Its arguments are polynomials again, so that a substitution re
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import (
     Access,
@@ -29,6 +30,7 @@ from rosetta_jit.lowering.typed import (
     LenOf,
     Listed,
     Local,
+    TextCall,
     Told,
     Unary,
 )
@@ -175,15 +177,14 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
+        case TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
             return atom(f"has {_path_shape(place)}", *_indices(place))
-        case Choice(cases, otherwise):
-            parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
-            return atom("choice", *map(polynomial_of, parts))
-        case Listed() | Given():
-            return _listed(expr)
+        case Choice() | Listed() | Given():
+            return _chosen(expr)
         case Const(value=value):
             return atom(repr(value))
         case _:
@@ -202,11 +203,18 @@ def _asked(asked: Asked) -> Polynomial:
             assert_never(asked)
 
 
-def _listed(expr: Listed | Given) -> Polynomial:
-    """An item of a list; it is the same for the same number."""
-    if isinstance(expr, Given):
-        return atom(expr.name, *map(polynomial_of, expr.arguments))
-    return atom("item", *map(polynomial_of, (*expr.items, expr.index)))
+def _chosen(expr: Choice | Listed | Given) -> Polynomial:
+    """One of several values; it is the same under the same conditions, and for the same number."""
+    match expr:
+        case Choice(cases, otherwise):
+            parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
+            return atom("choice", *map(polynomial_of, parts))
+        case Listed(items, index):
+            return atom("item", *map(polynomial_of, (*items, index)))
+        case Given(name, arguments):
+            return atom(name, *map(polynomial_of, arguments))
+        case _:
+            assert_never(expr)
 
 
 def _arithmetic(operator: str, left: Polynomial, right: Polynomial) -> Polynomial:

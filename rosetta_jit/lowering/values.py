@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Switch, Unary, index, type_of
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
-from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -19,7 +21,6 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from contextlib import AbstractContextManager
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.model.types import Type
@@ -39,10 +40,6 @@ class Source(Protocol):
 
     def address(self, place: typed.Place, values: Values) -> Address:
         """Where the bytes of a string or bytes field begin."""
-        ...
-
-    def forgetting(self) -> AbstractContextManager[None]:
-        """Around statements that may not run: what is looked up within them is not known behind them."""
         ...
 
     def present(self, place: typed.Place, values: Values) -> Expr:
@@ -67,9 +64,9 @@ class Values:
                 return constant(number, scalar_type(type_))
             case typed.Local(name):
                 return self.variables[name]
-            case typed.Access(place):
-                found = self.source.number(place, self)
-                return Convert("bool", found) if isinstance(place.type, Bool) and type_of(found) != "bool" else found
+            case typed.Access(place, type_):
+                number = self.source.number(place, self)
+                return converted(number, "bool") if isinstance(type_, Bool) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
@@ -86,12 +83,12 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.TextCall():
+                return number_of(value, self)
             case typed.Has(place):
                 return self.source.present(place, self)
-            case typed.Choice():
-                return self.choice(value)
-            case typed.Listed() | typed.Given():
-                return self.listed(value)
+            case typed.Choice() | typed.Listed() | typed.Given():
+                return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
             case typed.Told() | typed.HostCall() | typed.ImageCall():
                 return asked(value, self)
             case _:
@@ -103,7 +100,7 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with self.source.forgetting(), writer.nested() as step:
+            with forgetting(self.source), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
@@ -113,7 +110,7 @@ class Values:
         if choice.otherwise is None:
             self.reject(choice.reason, when=undecided)
             return found
-        with self.source.forgetting(), writer.nested() as other:
+        with forgetting(self.source), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
@@ -133,7 +130,7 @@ class Values:
         writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
         cases: list[tuple[int, Block]] = []
         for case, item in enumerate(listed.items):
-            with self.source.forgetting(), writer.nested() as body:
+            with forgetting(self.source), writer.nested() as body:
                 use(item)
             cases.append((case, block(body)))
         writer.emit(Switch(number, tuple(cases), ()))
@@ -177,6 +174,8 @@ class Values:
                 return result
             case "divide":
                 return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case "floor_divide" | "modulo":
+                return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:
