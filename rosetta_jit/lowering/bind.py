@@ -6,10 +6,11 @@ known with the values leaves one of its blocks, and the other is not looked at.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bind as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.folding import folded
 from rosetta_jit.lowering.lists import spread
 from rosetta_jit.lowering.parameter_values import SCALARS, accepted, written

@@ -6,13 +6,14 @@ that it has, where the other block relates it to other constants.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.folding import folded, is_constant
 from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve, subject_of
-from rosetta_jit.model.expr import Binary, Choice, Literal, Name, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Choice, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Reject, Relation, When
-from rosetta_jit.model.walk import Field, fields_of
+from rosetta_jit.model.walk import Field, fields_of, rebuilt
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
@@ -48,6 +49,31 @@ def _equal(expr: Expr, constant: Expr) -> dict[Field, Expr]:
     except NoInverseError:
         return {}
     return {solution.place: solution.value}
+
+
+def asked_of_holder(rule: When) -> Expr:
+    """A condition that asks of the holder what is there on the wire: the one block has a relation between the two, the other has none."""
+    pairs: dict[Expr, Path] = {}
+    for block, other in ((rule.then, rule.otherwise), (rule.otherwise, rule.then)):
+        taken = _places(other)
+        for each in block:
+            match each:
+                case Relation(Path() as place, value) if place not in taken and not fields_of(place, "wire"):
+                    fields = fields_of(value, "wire")
+                    pairs |= {fields[0]: place} if len(fields) == 1 else {}
+                case _:
+                    pass
+    return _asked(rule.condition, pairs)
+
+
+def _asked(expr: Expr, pairs: dict[Expr, Path]) -> Expr:
+    match expr:
+        case Call("has", (path,)) if path in pairs:
+            return replace(expr, arguments=(pairs[path],))
+        case Call("has"):
+            return expr
+        case _:
+            return rebuilt(expr, lambda part: _asked(part, pairs))
 
 
 def test_between(then: tuple[Rule, ...], otherwise: tuple[Rule, ...]) -> Expr | None:

@@ -11,11 +11,12 @@ Numerical Algorithms, chapter 3.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import EXACT_BITS, bounds
 from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, Unary
 from rosetta_jit.model.types import Bool, Enum, Float, Int

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert
+from rosetta_jit.lowering.inverse_texts import for_type
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.typed import Convert
 from rosetta_jit.lowering.units import in_unit
@@ -25,8 +26,10 @@ if TYPE_CHECKING:
 def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: TypeExpr) -> Expr | None:
     """The typed form of a value in the unit and of the type of a place; what cannot be is reported where the place is set."""
     place = resolve_path(expr.place, scope, type_index)
-    value = type_expr(expr.value, scope)
-    if isinstance(place, Broken) or value is None:
+    if isinstance(place, Broken):
+        return None
+    value = type_expr(for_type(expr.value, place.type), scope)
+    if value is None:
         return None
     measured = in_unit(value, place, scope)
     return None if measured is None else fitted(measured, place.type)

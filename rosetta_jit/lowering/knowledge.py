@@ -7,10 +7,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.expr import Expr, Held, Index, Len, Name, Path
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.model.expr import Call, Expr, Held, Index, Len, Name, Path
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 
 if TYPE_CHECKING:
@@ -94,7 +95,9 @@ class Knowledge:
         return None
 
     def replaced(self, expr: Expr, loops: Loops) -> Expr:
-        """An expression with what is known of the wire's fields in place of them."""
+        """An expression with what is known of the wire's fields in place of them; whether one is there does not follow from its value."""
+        if isinstance(expr, Call) and expr.function == "has":
+            return expr
         if isinstance(expr, Path | Len) and path_of(expr).side == "wire":
             value = self.value(expr, loops)
             if value is not None:

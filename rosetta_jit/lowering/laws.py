@@ -5,9 +5,9 @@ Whatever cannot be shown counts as lost. The laws are about messages and holders
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import Lost, Rounding, come_back
 from rosetta_jit.lowering.matching import reads_other, same_number
 from rosetta_jit.lowering.reads import untouched

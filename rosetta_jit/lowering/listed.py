@@ -9,7 +9,7 @@ from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import resolve as names
 from rosetta_jit.lowering.conversions import as_int64, convert, describe
 from rosetta_jit.lowering.decisions import unified
-from rosetta_jit.lowering.typed import BOOL, Access, Binary, Const, Given, IsText, Listed, Unary
+from rosetta_jit.lowering.typed import BOOL, Access, Const, Given, IsText, Listed, Unary
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String
 
@@ -71,14 +71,12 @@ def _given(expr: model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:
 
 
 def compared_text(left: Expr, right: Expr, expr: model.Binary) -> Expr | None:
-    """A text compared with one of a list, or with one that is not given yet."""
+    """A text compared with one of a list, and two that are known."""
     match left, right:
         case Access(place, String() | Bytes()), Listed(items, index, String()):
             texts = tuple(IsText(place, str(item.value), BOOL, expr.span) for item in items if isinstance(item, Const))
             found = Listed(texts, index, BOOL, expr.span)
             return found if expr.operator == "==" else Unary("not", found, BOOL, expr.span)
-        case (Access(_, String() | Bytes()), Given(type=String())) | (Given(type=String()), Const(str())):
-            return Binary(expr.operator, left, right, BOOL, expr.span)
         case Const(str(a)), Const(str(b)):
             return Const((a == b) == (expr.operator == "=="), BOOL, expr.span)
         case _:

@@ -7,12 +7,13 @@ condition cannot be known, its two blocks are told apart by constants (`lowering
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
-from rosetta_jit.lowering.branches import facts_of, test_between
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.lowering.calls import TOLD
 from rosetta_jit.lowering.folding import FALSE, TRUE, folded
 from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
@@ -159,7 +160,7 @@ class Packing:
     # --- conditions ----------------------------------------------------------------------------------------------------
 
     def when(self, rule: When, loops: Loops) -> tuple[Rule, ...]:
-        condition = self.known.replaced(rule.condition, loops)
+        condition = self.known.replaced(asked_of_holder(rule), loops)
         if not fields_of(condition, "wire"):
             then, other = self.enter(rule.then, loops), self.enter(rule.otherwise, loops)
             self.owe(then, other)

@@ -181,11 +181,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
             return atom(f"has {_path_shape(place)}", *_indices(place))
-        case Choice(cases, otherwise):
-            parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
-            return atom("choice", *map(polynomial_of, parts))
-        case Listed() | Given():
-            return _listed(expr)
+        case Choice() | Listed() | Given():
+            return _chosen(expr)
         case Const(value=value):
             return atom(repr(value))
         case _:
@@ -204,11 +201,18 @@ def _asked(asked: Asked) -> Polynomial:
             assert_never(asked)
 
 
-def _listed(expr: Listed | Given) -> Polynomial:
-    """An item of a list; it is the same for the same number."""
-    if isinstance(expr, Given):
-        return atom(expr.name, *map(polynomial_of, expr.arguments))
-    return atom("item", *map(polynomial_of, (*expr.items, expr.index)))
+def _chosen(expr: Choice | Listed | Given) -> Polynomial:
+    """One of several values; it is the same under the same conditions, and for the same number."""
+    match expr:
+        case Choice(cases, otherwise):
+            parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
+            return atom("choice", *map(polynomial_of, parts))
+        case Listed(items, index):
+            return atom("item", *map(polynomial_of, (*items, index)))
+        case Given(name, arguments):
+            return atom(name, *map(polynomial_of, arguments))
+        case _:
+            assert_never(expr)
 
 
 def _arithmetic(operator: str, left: Polynomial, right: Polynomial) -> Polynomial:

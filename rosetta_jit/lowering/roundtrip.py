@@ -6,9 +6,10 @@ the way, are known. The second direction then decides its own conditions, as far
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
 from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify

@@ -435,3 +435,38 @@ pack-rules:
   end
 """
     assert kernels(wire, holder, derived) == kernels(wire, holder, written)
+
+
+PRESENT = """import "wire.proto"
+import "holder.proto"
+data-holder: h.Holder
+wire-schema: w.Wire
+rules:
+  when has(.speed) .pace <-> .speed * 2.0 .name <-> .name else default .pace .name <-> .name end
+  when not has(.label) default .label else .label <-> .label end
+"""
+PRESENT_FILES = {
+    "wire.proto": """syntax = "proto2"; package w;
+message Wire { optional double speed = 1; required int32 name = 2; optional string label = 3; }""",
+    "holder.proto": """syntax = "proto2"; package h;
+message Holder { optional double pace = 1; required int32 name = 2; optional string label = 3; }""",
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_what_is_there_on_one_side_is_on_the_other(backend):
+    texts = {**PRESENT_FILES, "m.mapping": PRESENT}
+    decode, encode = (program("m.mapping", schema=texts, backend=backend) for program in (rj.Decoder, rj.Encoder))
+    write = rj.Encoder.of("w.Wire", schema=texts, imports=["wire.proto"], backend="interpreter")
+    for extra in ({}, {"speed": 2.5}, {"label": ""}, {"label": "a", "speed": 0.0}):
+        message = write(write.holder_type.from_dict({"name": 3, **extra}))
+        held = decode(message)
+        assert held.to_dict().get("pace") == (2 * extra["speed"] if "speed" in extra else None)
+        assert encode(held) == message
+
+
+def test_a_field_that_both_blocks_set_says_not_which():
+    rules = PRESENT.replace("default .pace .name", ".pace <-> 1.0 .name")
+    with pytest.raises(rj.MappingError) as error:
+        rj.Encoder("m.mapping", schema={**PRESENT_FILES, "m.mapping": rules}, backend="interpreter")
+    assert "undetermined-field" in [problem.code for problem in error.value.diagnostics]

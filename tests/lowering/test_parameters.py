@@ -235,7 +235,7 @@ def test_values_that_a_parameter_cannot_have(declared, given, code, text):
         (".scaled = one[0]", "not-indexable"),
         (".scaled = nothing[0]", "not-indexable"),
         (".scaled = names[.n]", "type-clash"),
-        (".scaled = len(one)", "unknown-function"),
+        (".scaled = len(one)", "text-needed"),
         ('.scaled = 1.0 .angles = [1.0, "a"]', "type-clash"),
         (".scaled = 1.0 .angles = [1.0", "syntax"),
     ],
