@@ -16,12 +16,26 @@ PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 REPORTS = {"source", "errors", "diagnostics", "catalogue"}
 RUNTIME = {"model.types", "model.layout", "model.serial", "kernel.state"}
 MIDDLE = REPORTS | {"model", "frontend", "wire", "kernel", "lowering"}
-ANYTHING = MIDDLE | {"backends", "frameworks", "runtime", "request", "pipeline", "programs", "recording", "cli", "demo", ""}
+ANYTHING = MIDDLE | {
+    "backends",
+    "frameworks",
+    "runtime",
+    "request",
+    "pipeline",
+    "programs",
+    "recording",
+    "explain",
+    "cells",
+    "cli",
+    "demo",
+    "",
+}
 
 MAY_IMPORT = {
     "source": set(),
     "errors": {"diagnostics"},
-    "diagnostics": {"source"},
+    "cells": set(),
+    "diagnostics": {"source", "cells"},
     "catalogue": {"source", "diagnostics", "model"},
     "model": REPORTS,
     "frontend": REPORTS | {"model"},
@@ -33,8 +47,9 @@ MAY_IMPORT = {
     "runtime": REPORTS | RUNTIME,
     "recording": REPORTS,
     "request": set(),
-    "pipeline": ANYTHING - {"programs", "cli", "demo", ""},
-    "programs": ANYTHING - {"cli", "demo", ""},
+    "pipeline": ANYTHING - {"programs", "explain", "cli", "demo", ""},
+    "programs": ANYTHING - {"explain", "cli", "demo", ""},
+    "explain": REPORTS | {"cells", "model", "lowering", "kernel", "pipeline", "request", "frontend", "frameworks"},
     "demo": ANYTHING - {"cli"},
     "cli": ANYTHING,
     "__main__": {"cli"},

@@ -23,14 +23,21 @@ Names = tuple[str, ...]
 
 def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None]) -> list[Diagnostic]:
     """Warnings about one direction; ``spans`` are where the types of source and target are named."""
-    read = {field_names(place) for place in _read(rules)}
-    unread = _without(read, source, source.root, ())
-    written = {field_names(place) for place in places_in(rules)}
-    unset = [names for names in _without(written, target, target.root, ()) if _may_be_absent(names, target)]
     return [
-        *(words.never_read(spans[0], _shown(names)) for names in unread),
-        *(words.left_out(spans[1], _shown(names)) for names in unset),
+        *(words.never_read(spans[0], _shown(names)) for names in unread(rules, source)),
+        *(words.left_out(spans[1], _shown(names)) for names in unset(rules, target)),
     ]
+
+
+def unread(rules: tuple[Rule, ...], source: Message) -> list[Names]:
+    """Fields of the source whose values go nowhere."""
+    return _without({field_names(place) for place in _read(rules)}, source, source.root, ())
+
+
+def unset(rules: tuple[Rule, ...], target: Message) -> list[Names]:
+    """Fields of the target that stay absent."""
+    written = {field_names(place) for place in places_in(rules)}
+    return [names for names in _without(written, target, target.root, ()) if _may_be_absent(names, target)]
 
 
 def _shown(names: Names) -> str:
