@@ -19,12 +19,11 @@ from rosetta_jit.frontend.search import Reading, SearchPath
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
-from rosetta_jit.lowering.lower import lower
+from rosetta_jit.lowering.lower import Mapped, lower
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
-from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -77,10 +76,13 @@ class Build:
 
     @cached_property
     def layout(self) -> Layout:
+        return self._layout(self.types.holder)
+
+    def _layout(self, struct: Struct) -> Layout:
         try:
-            return layout(Ref(self.types.holder.name), self.types.schema)
+            return layout(Ref(struct.name), self.types.schema)
         except ValueError as error:
-            raise _report(self.request, words.too_large(self.types.holder.name, self.types.holder.span, str(error))) from error
+            raise _report(self.request, words.too_large(struct.name, struct.span, str(error))) from error
 
     @cached_property
     def kernels(self) -> tuple[Kernel, ...]:
@@ -90,9 +92,12 @@ class Build:
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types = self.types
-        if types.rules is not None and any(isinstance(attempt, Tagged) for attempt in self.encoding.attempts):
-            raise _report(self.request, words.unmappable_wire(types.wire.span, types.wire.name))
-        return lower(self.encoding, self.layout, direction, name=types.wire.name, rules=types.rules, borrow=self.request.borrow)
+        mapped = None if types.rules is None else self._mapped(types.rules)
+        return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
+
+    def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
+        types = self.types
+        return Mapped(rules, types.schema, Ref(types.holder.name), Ref(types.wire.name), self._layout(types.wire))
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """What the request says about the encoding, if the encoding leaves it to say."""

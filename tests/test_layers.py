@@ -14,7 +14,7 @@ import pytest
 PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 
 REPORTS = {"source", "errors", "diagnostics", "catalogue"}
-RUNTIME = {"model.types", "model.layout", "model.serial", "kernel.state"}
+RUNTIME = {"model.types", "model.layout", "model.births", "model.serial", "kernel.state"}
 MIDDLE = REPORTS | {"model", "frontend", "wire", "kernel", "lowering"}
 ANYTHING = MIDDLE | {
     "backends",

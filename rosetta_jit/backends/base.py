@@ -73,9 +73,10 @@ def statements(block: Block) -> Iterator[Stmt]:
 
 
 def counted_lanes(kernel: Kernel, body: Block) -> list[int]:
-    """The lanes whose used length the body's success may change: decoding into row 0 empties all lanes behind lane 0."""
-    emptied = range(1, len(kernel.strides)) if kernel.direction == "decode" else ()
-    return sorted({*emptied, *(each.lane for each in statements(body) if isinstance(each, Advance))})
+    """The holder's lanes whose used length the body's success may change: decoding into row 0 empties all lanes behind lane 0."""
+    emptied = range(1, kernel.lanes) if kernel.direction == "decode" else ()
+    advanced = (each.lane for each in statements(body) if isinstance(each, Advance))
+    return sorted({*emptied, *(lane for lane in advanced if lane < kernel.lanes)})
 
 
 def inner_blocks(statement: Stmt) -> tuple[Block, ...]:

@@ -16,9 +16,19 @@ from llvmlite import ir
 from rosetta_jit.backends import llvm_stmt
 from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm_expr import expression
-from rosetta_jit.backends.llvm_frame import I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
-from rosetta_jit.kernel.ir import Block, Call, Expect, Kernel, Require
-from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, MAX_INDICES, USED, lane_word
+from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
+from rosetta_jit.kernel.ir import GROW, Block, Call, Expect, Kernel, Require
+from rosetta_jit.kernel.state import (
+    ERROR_INDICES,
+    ERROR_OFFSET,
+    ERROR_SITE,
+    GROW_LANE,
+    GROW_ROWS,
+    HIDDEN_COUNT,
+    MAX_INDICES,
+    USED,
+    lane_word,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,11 +57,30 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
             routines[routine.name].attributes.add("noinline")
         elif sum(1 for _ in statements(routine.body)) <= SHORT:
             routines[routine.name].attributes.add("alwaysinline")
-    function = _function(module, SIGNATURE, name, ("buffer", "begin", "end", "state", "row"))
+    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ("buffer", "begin", "end", "state", "row"))
     entry = ir.IRBuilder(function.append_basic_block("entry"))
     first = function.append_basic_block("body")
     _attempts(entry, first, Parameters(*function.args), kernel, routines)
     entry.branch(first)
+    return _behind_check(module, kernel, function, name) if kernel.hidden else function
+
+
+def _behind_check(module: ir.Module, kernel: Kernel, inside: ir.Function, name: str) -> ir.Function:
+    """The function that makes sure of the hidden lanes first: where there are too few, GROW for the last one."""
+    inside.linkage = "internal"
+    inside.attributes.add("alwaysinline")
+    function = _function(module, SIGNATURE, name, ("buffer", "begin", "end", "state", "row"))
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    state = function.args[3]
+    count = builder.load(state_word(builder, state, HIDDEN_COUNT), typ=I64, align=8)
+    enough, few = function.append_basic_block("enough"), function.append_basic_block("few")
+    builder.cbranch(builder.icmp_signed(">=", count, constant(kernel.hidden)), enough, few).set_weights(COLD)
+    builder.position_at_end(few)
+    builder.store(constant(len(kernel.strides) - 1), state_word(builder, state, GROW_LANE), align=8)
+    builder.store(constant(0), state_word(builder, state, GROW_ROWS), align=8)
+    builder.ret(constant(GROW))
+    builder.position_at_end(enough)
+    builder.ret(builder.call(inside, function.args))
     return function
 
 
@@ -76,7 +105,8 @@ def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, rou
     first = function.append_basic_block("body")
     parameters = Parameters(*function.args[:4], row=constant(0))
     done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
-    frame = Frame(module, entry, ir.IRBuilder(first), parameters, kernel.strides, {}, done, failed, kernel.direction == "decode", routines)
+    lanes, decodes = (kernel.strides, kernel.lanes), kernel.direction == "decode"
+    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
     frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
     frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
     llvm_stmt.block(frame, routine.body)
@@ -107,7 +137,7 @@ def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kern
     for body in kernel.bodies:
         done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + width)
         decodes = kernel.direction == "decode"
-        frame = Frame(entry.module, entry, builder, parameters, kernel.strides, loaded, done, failed, decodes, routines)
+        frame = Frame(entry.module, entry, builder, parameters, kernel.strides, kernel.lanes, loaded, done, failed, decodes, routines)
         frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
         llvm_stmt.block(frame, body)
         if not builder.block.is_terminated:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, USED, lane_word
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, USED, lane_word
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -108,6 +108,7 @@ class Frame:
     builder: ir.IRBuilder
     parameters: Parameters
     strides: tuple[int, ...]
+    own_lanes: int
     loaded: dict[tuple[int, int], ir.Value]
     done: Exit
     failed: Exit
@@ -127,8 +128,8 @@ class Frame:
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length; each body starts with what the state says, and decoding into row 0 with nothing."""
         if lane not in self.used:
-            start = self._load(self.entry, lane, USED, I64, f"used{lane}")
-            if self.decodes and lane:
+            start = constant(0) if self.is_hidden(lane) else self._load(self.entry, lane, USED, I64, f"used{lane}")
+            if self.decodes and lane and not self.is_hidden(lane):
                 first = self.entry.icmp_signed("==", self.parameters.row, constant(0))
                 start = self.entry.select(first, constant(0), start)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
@@ -136,6 +137,10 @@ class Frame:
             if self.is_crowded:
                 self.entry.asm(ESCAPED, "", "r", [self.used[lane]], side_effect=True)
         return self.used[lane]
+
+    def is_hidden(self, lane: int) -> bool:
+        """Whether the lane is not the holder's."""
+        return lane >= self.own_lanes
 
     @property
     def is_crowded(self) -> bool:
@@ -159,6 +164,10 @@ class Frame:
         return self.loaded[key]
 
     def _load(self, builder: ir.IRBuilder, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        if self.is_hidden(lane):
+            hidden = builder.load(state_word(builder, self.parameters.state, HIDDEN), typ=POINTER, align=8, name="hidden")
+            value = builder.load(state_word(builder, hidden, lane_word(lane - self.own_lanes, word) - LANES), typ=type_, align=8, name=name)
+            return value if word == ADDRESS else builder.udiv(value, constant(self.strides[lane]))
         return builder.load(state_word(builder, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name)
 
 

@@ -189,7 +189,10 @@ def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
     builder.position_at_end(small)
     state = frame.parameters.state
     builder.store(constant(lane), state_word(builder, state, GROW_LANE), align=8)
-    builder.store(builder.sub(count, free), state_word(builder, state, GROW_ROWS), align=8)
+    missing = builder.sub(count, free)
+    if frame.is_hidden(lane):
+        missing = builder.mul(missing, constant(frame.strides[lane]))
+    builder.store(missing, state_word(builder, state, GROW_ROWS), align=8)
     builder.ret(constant(GROW))
     builder.position_at_end(enough)
 

@@ -91,7 +91,8 @@ def python_text(kernel: Kernel) -> str:
     writer.line()
     with writer.indented(f"def kernel({PARAMETERS}):"):
         attempts = "".join(f"attempt_{number}, " for number in range(len(kernel.bodies))).rstrip()
-        writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row)")
+        hidden = f", {kernel.lanes}, {kernel.strides[kernel.lanes :]}" if kernel.hidden else ""
+        writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row{hidden})")
     return writer.text()
 
 
@@ -99,7 +100,7 @@ def _reserved(kernel: Kernel) -> frozenset[str]:
     lanes = range(len(kernel.strides))
     words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
     functions = {_function(routine.name) for routine in kernel.routines}
-    names = {"bool", "bytes", "indices", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
+    names = {"bool", "bytes", "indices", "len", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
     return frozenset(keyword.kwlist) | CALLED | words | functions | names
 
 
@@ -117,10 +118,15 @@ class _Attempt:
         outer, self.writer = self.writer, Writer(depth=self.writer.depth)
         self._block(self.body)
         for lane in sorted(self.names.used | set(self.counted)):
+            if lane >= self.kernel.lanes:
+                outer.line(f"used_{lane} = 0")
+                continue
             start = f"int(state[{lane_word(lane, USED)}])"
             outer.line(f"used_{lane} = {start} if row else 0" if lane and self.kernel.direction == "decode" else f"used_{lane} = {start}")
         for lane in sorted(self.names.capacities):
-            outer.line(f"capacity_{lane} = int(state[{lane_word(lane, CAPACITY)}])")
+            own, stride = lane < self.kernel.lanes, self.kernel.strides[lane]
+            capacity = f"int(state[{lane_word(lane, CAPACITY)}])" if own else f"len(lanes[{lane}]) // {stride}"
+            outer.line(f"capacity_{lane} = {capacity}")
         outer.lines += self.writer.lines
         self.writer = outer
 

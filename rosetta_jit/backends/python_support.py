@@ -33,10 +33,22 @@ class Full(Exception):  # noqa: N818 - as above
         self.lane, self.missing = lane, missing
 
 
-def run_attempts(attempts: Sequence[Attempt], message: tuple[Bytes, int, int], state: State, lanes: Sequence[Bytes], row: int) -> int:
-    """The first attempt that succeeds, else the failure that came farthest, left in the state."""
+def run_attempts(
+    attempts: Sequence[Attempt],
+    message: tuple[Bytes, int, int],
+    state: State,
+    lanes: Sequence[Bytes],
+    row: int,
+    own: int = 0,
+    hidden: tuple[int, ...] = (),
+) -> int:
+    """The first attempt that succeeds, else the failure that came farthest, left in the state.
+
+    ``hidden`` are the strides of the hidden lanes behind the holder's ``own``; there may be too few of them in ``lanes`` yet.
+    """
     buffer, begin, end = message
     views = [memoryview(lane).cast("B") for lane in lanes]
+    views += [memoryview(b"")] * (own + len(hidden) - len(views))
     farthest: Failed | None = None
     for attempt in attempts:
         try:
@@ -45,7 +57,8 @@ def run_attempts(attempts: Sequence[Attempt], message: tuple[Bytes, int, int], s
         except Failed as failed:
             farthest = failed if farthest is None or failed.at > farthest.at else farthest
         except Full as full:
-            state[GROW_LANE], state[GROW_ROWS] = full.lane, full.missing
+            stride = hidden[full.lane - own] if hidden and full.lane >= own else 1
+            state[GROW_LANE], state[GROW_ROWS] = full.lane, full.missing * stride
             return GROW
     return 0 if farthest is None else _recorded(state, farthest)
 

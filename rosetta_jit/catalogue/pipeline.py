@@ -80,22 +80,8 @@ def too_large(name: str, span: Span | None, why: str) -> Diagnostic:
     return Diagnostic("error", "too-large", f"`{name}` is too large for a holder: {why}", span, help="split it, or bound what repeats")
 
 
-def unmappable_wire(span: Span | None, name: str) -> Diagnostic:
-    """A wire whose fields may come in any order, in a mapping."""
-    why = "its fields come in any order, and rules need them at known places"
-    help_ = "make it the data holder, and the other type the wire"
-    return Diagnostic("error", "unmappable-wire", f"`{name}` cannot be the wire of a mapping", span, why, help=help_)
-
-
-def unmappable_field(path: Sequence[str]) -> Diagnostic:
-    """A field of the wire that the walk over a message cannot bind for rules."""
-    name = "." + ".".join(path).replace(".[]", "[]")
-    help_ = "decode it into its own holder, or make it the data holder and the other type the wire"
-    return Diagnostic("error", "unmappable-place", f"rules cannot read or write `{name}` on this wire", help=help_)
-
-
-def unmappable_place(span: Span | None) -> Diagnostic:
-    """A field that rules cannot reach, though the types have it."""
-    label = "its elements are not all of one size, or it is a whole message"
-    help_ = "map the fields of a message one by one; elements of lists must be numbers, or bottles of numbers"
-    return Diagnostic("error", "unmappable-place", "rules cannot read or write this in place", span, label, help=help_)
+def endless_copy(span: Span | None) -> Diagnostic:
+    """A message that can hold others of its own type, assigned as a whole."""
+    label = "it can hold messages of its own type, to any depth"
+    help_ = "say how deep with `via`, or assign its fields one by one"
+    return Diagnostic("error", "endless-copy", "this cannot be assigned as a whole", span, label, help=help_)

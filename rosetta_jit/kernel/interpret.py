@@ -108,7 +108,7 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
     state
         int64 words of the holder, as in `kernel.state`; capacities and used lengths are read from it.
     lanes
-        The bytes of each lane (anything with a buffer; of an array its ``data``).
+        The bytes of each lane (anything with a buffer; of an array its ``data``); of hidden ones as many as there are.
     row
         Row of lane 0 that stands for the message.
 
@@ -123,10 +123,12 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
         The kernel broke an obligation that `verify` proves: a bug of ours.
     """
     views = [memoryview(lane).cast("B") for lane in lanes]
+    views += [memoryview(b"")] * (len(kernel.strides) - len(views))
     message = memoryview(buffer).cast("B")
-    capacities = [int(state[lane_word(k, CAPACITY)]) for k in range(len(views))]
+    own, hidden = range(kernel.lanes), range(kernel.lanes, len(kernel.strides))
+    capacities = [int(state[lane_word(k, CAPACITY)]) for k in own] + [len(views[k]) // kernel.strides[k] for k in hidden]
     starts_empty = kernel.direction == "decode" and row == 0
-    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in range(len(views))]
+    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
     routines = {routine.name: routine for routine in kernel.routines}
     worst: _Failed | None = None
     for body in kernel.bodies:
@@ -136,11 +138,11 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
             outcome = _block(machine, body)
         match outcome:
             case int():
-                for lane, rows in enumerate(machine.used):
+                for lane, rows in enumerate(machine.used[: kernel.lanes]):
                     state[lane_word(lane, USED)] = rows
                 return outcome
             case _Full(lane, missing):
-                state[GROW_LANE], state[GROW_ROWS] = lane, missing
+                state[GROW_LANE], state[GROW_ROWS] = lane, missing if lane < kernel.lanes else missing * kernel.strides[lane]
                 return GROW
             case _Failed():
                 worst = outcome if worst is None or outcome.offset > worst.offset else worst

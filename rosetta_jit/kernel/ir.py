@@ -1,6 +1,6 @@
 r"""The kernel: one small typed function from a message to a holder, or back. This page is its grammar and its meaning.
 
-    Kernel = name, direction, strides of the lanes, Routine*, Body+, Site*
+    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*
     Body   = Stmt*                                        an attempt; the first that succeeds is the result
     Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
            | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
@@ -19,7 +19,8 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
 **Memory.** A kernel sees the message (bytes `begin` to `end` of a buffer, by int64 offset from the buffer's start) and the lanes
 of one holder, each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be
 addressed, nothing is allocated. Used lengths are what the state says, but a kernel that decodes into row 0 starts with all lanes
-behind lane 0 empty. Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte order that
+behind lane 0 empty. The last lanes may be **hidden**: the holder has no fields there, a kernel always starts with them empty, and what it
+leaves there is gone. Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte order that
 the access names, and no alignment.
 
 **Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <=
@@ -409,7 +410,7 @@ class Routine:
 
 @dataclass(frozen=True, slots=True)
 class Kernel:
-    """``sites[0]`` stands for a lane that must grow, so that real sites count from 1."""
+    """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones."""
 
     name: str
     direction: Direction
@@ -417,6 +418,12 @@ class Kernel:
     bodies: tuple[Block, ...]
     sites: tuple[Site, ...]
     routines: tuple[Routine, ...] = ()
+    hidden: int = 0
+
+    @property
+    def lanes(self) -> int:
+        """How many lanes are the holder's."""
+        return len(self.strides) - self.hidden
 
 
 # --- small constructors ------------------------------------------------------------------------------------------------

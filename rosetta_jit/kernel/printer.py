@@ -83,7 +83,8 @@ def to_text(kernel: Kernel) -> str:
     str
         Lines that end in a newline: the head, each routine and body, the sites.
     """
-    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}"]
+    hidden = f", {kernel.hidden} hidden" if kernel.hidden else ""
+    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}"]
     for routine in kernel.routines:
         lines.extend(_routine(routine))
     for number, body in enumerate(kernel.bodies):

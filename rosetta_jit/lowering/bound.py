@@ -10,8 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from rosetta_jit.catalogue.pipeline import unmappable_field
-from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
@@ -20,6 +18,12 @@ from rosetta_jit.wire.size import fixed_size
 
 EACH = "[]"
 """In a path, stands for any element of the array before it."""
+
+
+class NotInPlaceError(Exception):
+    """Rules need a field that cannot be read or written where it lies on the wire: it is not at a known place, or what it says must be
+    put together first. The message is then decoded as a whole before the rules run, or encoded behind them (`rosetta_jit.lowering.stage`).
+    """
 
 
 class Supply(Protocol):
@@ -128,18 +132,18 @@ class WireFields:
     def supplied(self, key: Path) -> Supply:
         """Where an encoding walk gets its values; a decoding one has bound what it could."""
         if self.supply is None:
-            raise MappingError((unmappable_field(key),))
+            raise NotInPlaceError(key)
         return self.supply
 
     def choose(self, path: Path, number: int) -> None:
         del number
-        raise MappingError((unmappable_field(path),))
+        raise NotInPlaceError(path)
 
     def appear(self, path: Path) -> None:
-        raise MappingError((unmappable_field(path),))
+        raise NotInPlaceError(path)
 
     def present(self, path: Path) -> Expr:
-        raise MappingError((unmappable_field(path),))
+        raise NotInPlaceError(path)
 
     @property
     def scope(self) -> WireFields:

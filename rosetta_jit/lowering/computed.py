@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.pipeline import unmappable_field
-from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Expr, Get, index
 from rosetta_jit.lowering.arithmetic import align, binary
+from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.writer import integer
 from rosetta_jit.model import expr
 
@@ -25,7 +24,7 @@ def evaluate(value: expr.Expr, fields: Fields, writer: Writer, where: Where) -> 
             path = tuple(step.name for step in steps if isinstance(step, expr.Member))
             found = fields.get(path)
             if found is None:
-                raise MappingError((unmappable_field(path),))
+                raise NotInPlaceError(path)
             return integer(writer.let("told", found) if isinstance(found, Get) else found)  # the proof looks at each reading anew
         case expr.Len(path):
             return fields.stored(tuple(step.name for step in path.steps if isinstance(step, expr.Member))).size

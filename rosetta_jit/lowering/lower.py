@@ -1,16 +1,19 @@
 """From an encoding to a kernel: once for each direction, by the same walk.
 
 Without rules, the fields of the wire are the fields of the holder. With rules, the walk finds the wire's fields, and the rules
-relate them to the holder's; each attempt of an encoding becomes a body of the kernel.
+relate them to the holder's; where they cannot do so in place, the wire's message is staged (`rosetta_jit.lowering.stage`). Each attempt
+of an encoding becomes a body of the kernel.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
 from rosetta_jit.kernel.ir import Place as KernelPlace
-from rosetta_jit.lowering.bound import Found, WireFields
+from rosetta_jit.lowering.bear import bear, opened_lanes
+from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
 from rosetta_jit.lowering.descent import descend
 from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
@@ -18,20 +21,26 @@ from rosetta_jit.lowering.recursion import cursors, read_rows
 from rosetta_jit.lowering.recursion_write import write_root
 from rosetta_jit.lowering.rules import Runner
 from rosetta_jit.lowering.sides import HolderSide, WireSide
+from rosetta_jit.lowering.stage import staged_fields
 from rosetta_jit.lowering.supplies import Supplies, look_up_arrays
 from rosetta_jit.lowering.tagged import read_message
 from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.walk import walk
 from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.births import Births
 from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.lowering.fields import HolderFields
     from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.layout import Layout
+    from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.wire.codec import Codec, Encoding
+
+    Relate = Callable[[HolderFields, Codec], None]
 
 SCRATCH_STRIDE = 8
 
@@ -42,44 +51,81 @@ def lower(
     direction: Direction,
     *,
     name: str,
-    rules: tuple[Rule, ...] | None = None,
+    mapped: Mapped | None = None,
     borrow: bool = False,
 ) -> Kernel:
     """The kernel that reads or writes messages of an encoding, or computes their size.
 
     Parameters
     ----------
-    rules
-        The rules of a mapping for this direction; None where the holder is of the wire's own type.
+    mapped
+        How the holder differs from the wire; None where it is of the wire's own type.
     borrow
         Bytes fields of the holder refer to the message instead of being copied.
     """
-    writer = Writer(direction)
-    attempts = encoding.attempts if direction == "decode" else (encoding.written,)
-    bodies = [_body(writer, encoding, attempt, layout, rules, borrow=borrow) for attempt in attempts if attempt is not None]
-    strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
-    return Kernel(name, direction, strides, tuple(bodies), tuple(writer.sites), tuple(writer.routines.values()))
+    lowering = _Lowering(encoding, layout, direction, borrow)
+    if mapped is None:
+        return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
+    try:
+        return lowering.kernel(name, lambda fields, attempt: _in_place(encoding, attempt, fields, mapped))
+    except NotInPlaceError:
+        return lowering.kernel(name, lambda fields, attempt: _staged(encoding, attempt, fields, mapped))
 
 
-def _body(writer: Writer, encoding: Encoding, attempt: Codec, layout: Layout, rules: tuple[Rule, ...] | None, *, borrow: bool) -> Block:
-    with writer.nested() as body:
-        writer.position = BEGIN if writer.direction != "size" else index(0)
-        writer.origin = add(writer.position, encoding.origin)
-        holder = root_fields(writer, layout, borrow=borrow)
-        writer.expect(Compare("lt", ROW, Capacity(0)), "index", Where(), "the holder has no row for the message")
-        if writer.direction == "decode":
-            writer.emit(Fill(KernelPlace(0, ROW), index(layout.lanes[0].stride)))
-        if rules is None:
-            _own(writer, encoding, attempt, holder)
-        else:
-            _mapped(writer, attempt, holder, rules)
-        end(writer, encoding)
-        writer.emit(Return(writer.position))
-    return block(body)
+@dataclass(frozen=True, slots=True)
+class Mapped:
+    """The rules of a mapping for one direction, and how the wire's own type would lie in a holder."""
+
+    rules: tuple[Rule, ...]
+    schema: Schema
+    holder: Type
+    wire: Type
+    wire_layout: Layout
+
+    def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
+        """A message in lanes; where rules fill it, with what it is born with."""
+        if filled is None:
+            return HolderSide(fields)
+        births, cell = Births(self.schema, fields.layout), fields.cell
+        opened = opened_lanes(self.rules, fields.layout, cell.slot, filled)
+        bear(fields, births.of(type_, cell.slot, cell.lane), cell.row, opened)
+        return HolderSide(fields, births, opened)
 
 
-def _own(writer: Writer, encoding: Encoding, attempt: Codec, holder: HolderFields) -> None:
+@dataclass(frozen=True, slots=True)
+class _Lowering:
+    """What is lowered, whatever relates the message to the holder."""
+
+    encoding: Encoding
+    layout: Layout
+    direction: Direction
+    borrow: bool
+
+    def kernel(self, name: str, relate: Relate) -> Kernel:
+        writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE])
+        own = len(writer.strides)
+        attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
+        bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)
+        strides, routines = tuple(writer.strides), tuple(writer.routines.values())
+        return Kernel(name, self.direction, strides, bodies, tuple(writer.sites), routines, len(strides) - own)
+
+    def body(self, writer: Writer, attempt: Codec, relate: Relate) -> Block:
+        with writer.nested() as body:
+            writer.position = BEGIN if writer.direction != "size" else index(0)
+            writer.origin = add(writer.position, self.encoding.origin)
+            fields = root_fields(writer, self.layout, borrow=self.borrow)
+            writer.expect(Compare("lt", ROW, Capacity(0)), "index", Where(), "the holder has no row for the message")
+            if writer.direction == "decode":
+                writer.emit(Fill(KernelPlace(0, ROW), index(self.layout.lanes[0].stride)))
+            relate(fields, attempt)
+            end(writer, self.encoding)
+            writer.emit(Return(writer.position))
+        return block(body)
+
+
+def _own(encoding: Encoding, attempt: Codec, holder: HolderFields) -> None:
     """The holder is of the wire's own type."""
+    writer = holder.writer
     if encoding.nested:
         descend(_nested(encoding, attempt), attempt, holder, writer)
     elif not isinstance(attempt, Tagged):
@@ -99,10 +145,14 @@ def _nested(encoding: Encoding, attempt: Codec) -> Mapping[str, Codec]:
     return encoding.nested[number]
 
 
-def _mapped(writer: Writer, attempt: Codec, fields: HolderFields, rules: tuple[Rule, ...]) -> None:
+def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
     """Decode: find the wire's fields, then run the rules. Otherwise: lay out the message, then fill in the elements."""
-    holder, found = HolderSide(writer, fields), Found()
-    if writer.direction == "decode":
+    if encoding.nested or isinstance(attempt, Tagged):
+        raise NotInPlaceError
+    writer, rules = fields.writer, mapped.rules
+    found, decodes = Found(), writer.direction == "decode"
+    holder = mapped.side(fields, mapped.holder, filled="holder" if decodes else None)
+    if decodes:
         wire = WireSide(writer, WireFields(writer, found))
         with writer.whole():
             walk(attempt, wire.root, writer)
@@ -116,3 +166,21 @@ def _mapped(writer: Writer, attempt: Codec, fields: HolderFields, rules: tuple[R
     walk(attempt, wire.root, writer)
     if writer.direction == "encode":
         Runner(writer, holder, wire).run(rules, values)
+
+
+def _staged(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
+    """Decode the message into lanes of its own type, then run the rules; or run them, then encode what they made."""
+    writer = fields.writer
+    message = staged_fields(writer, fields.layout, mapped.wire_layout)
+    if writer.direction == "decode":
+        _own(encoding, attempt, message)
+        _run(mapped.rules, HolderSide(message), mapped.side(fields, mapped.holder, filled="holder"))
+    else:
+        _run(mapped.rules, HolderSide(fields), mapped.side(message, mapped.wire, filled="wire"))
+        _own(encoding, attempt, message)
+
+
+def _run(rules: tuple[Rule, ...], source: HolderSide, target: HolderSide) -> None:
+    values = Values(source.writer, source, {})
+    look_up_arrays(rules, source, values)
+    Runner(source.writer, source, target).run(rules, values)

@@ -14,6 +14,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
+from rosetta_jit.lowering.defaults import default_rules
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import (
@@ -109,7 +110,7 @@ class _Block:
         for rule, behind in pairwise(rules):
             if isinstance(rule, model.Reject):
                 scope.problems.append(words.rules_behind_reject(behind.span))
-        typed = [self.rule(rule, scope) for rule in rules]
+        typed = [made for rule in rules for made in self.made(rule, scope)]
         found = tuple(rule for rule in typed if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
         scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
@@ -127,6 +128,11 @@ class _Block:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
         made = [self.assign(_same_name(name, scope.target, rule.span), scope) for name in wanted]
         return [each for each in made if each is not None]
+
+    def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
+        """The rules that one of the mapping stands for."""
+        found = self.rule(rule, scope)
+        return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
         match rule:

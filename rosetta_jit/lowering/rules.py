@@ -6,20 +6,25 @@ lays out the message (`supplies`), and the rules then fill the elements into the
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue.pipeline import unmappable_place
+from rosetta_jit.catalogue.pipeline import endless_copy
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
+from rosetta_jit.lowering.bound import NotInPlaceError
+from rosetta_jit.lowering.copies import copy, is_endless
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bytes, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.values import Values
 
@@ -56,11 +61,17 @@ class Runner:
 
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
         """Rules that run or not; what is looked up within them is forgotten behind them."""
-        known = dict(self.holder.arrays)
-        with self.writer.nested() as body:
+        with self.forgetting(), self.writer.nested() as body:
             self.run(rules, values)
-        self.holder.arrays = known
         return block(body)
+
+    @contextmanager
+    def forgetting(self) -> Generator[None]:
+        """Around statements that may not run, or run again: what is looked up within them is not known behind them."""
+        known = [(side, dict(side.arrays)) for side in (self.source, self.target) if isinstance(side, HolderSide)]
+        yield
+        for side, arrays in known:
+            side.arrays = arrays
 
     def count(self, value: Expr) -> Expr:
         """A length that is used more than once."""
@@ -73,11 +84,9 @@ class Runner:
         self.writer.expect(Compare("ge", stop, start), "count", values.where, "the loop ends before it starts", line=values.line)
         count = stop if start == index(0) else binary(self.writer, "-", stop, start, values.where, values.line)
         number = Local("i64", self.writer.fresh(rule.variable.name))
-        known = dict(self.holder.arrays)
-        with self.writer.nested() as body:
+        with self.forgetting(), self.writer.nested() as body:
             variable = number if start == index(0) else self.writer.let(rule.variable.name, add(number, start))
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
-        self.holder.arrays = known
         self.writer.emit(For(number.name, count, block(body)))
 
     def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
@@ -88,8 +97,8 @@ class Runner:
                 self.assign_bytes(place, origin, values)
             case Array(), typed.Access(origin):
                 self.assign_array(place, origin, values)
-            case ((Struct() | Map() | Union()), _):
-                raise MappingError((unmappable_place(place.span),))
+            case ((Struct() | Map() | Union()), typed.Access(origin)):
+                self.copy(place, origin, values)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
@@ -113,6 +122,16 @@ class Runner:
         self.target.set_length(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+        """A message, union or map as a whole."""
+        if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
+            raise NotInPlaceError
+        source, path, _ = self.source.descend(origin, values)
+        target, target_path, _ = self.target.descend(place, values)
+        if is_endless(source.layout, source.find(path).slot):
+            raise MappingError((endless_copy(place.span),))
+        copy(source, path, target, target_path)
+
     def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
         """An array as a whole: its length, then each element."""
         element = place.type.element if isinstance(place.type, Array) else place.type
@@ -122,16 +141,7 @@ class Runner:
         step = typed.IndexStep(variable)
         origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
         read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if origin_type != element:
+        if isinstance(element, Bool | Int | Float | Enum) and origin_type != element:
             read = typed.Convert(read, element, "widen")
         rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
-
-    @property
-    def holder(self) -> HolderSide:
-        return self.source if isinstance(self.source, HolderSide) else _holder(self.target)
-
-
-def _holder(side: Side) -> HolderSide:
-    assert isinstance(side, HolderSide)
-    return side

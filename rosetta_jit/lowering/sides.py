@@ -8,8 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.pipeline import unmappable_place
-from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -29,11 +27,13 @@ from rosetta_jit.kernel.ir import (
     index,
     mul,
 )
-from rosetta_jit.lowering.bound import EACH
+from rosetta_jit.lowering.bear import bear_each
+from rosetta_jit.lowering.bound import EACH, NotInPlaceError
 from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where
 from rosetta_jit.model.layout import Number, Row
+from rosetta_jit.model.types import Array
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering import typed
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.fields import HolderElements, HolderFields
     from rosetta_jit.lowering.values import Values
     from rosetta_jit.lowering.writer import Writer
+    from rosetta_jit.model.births import Births
     from rosetta_jit.model.layout import Member
     from rosetta_jit.model.types import Constant, Field
-    from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
@@ -57,11 +57,20 @@ def inside(number: Expr, count: Expr) -> Expr:
 
 @dataclass(slots=True)
 class HolderSide:
-    """The holder. Arrays whose length was set, or that were looked at, are known by their place."""
+    """A message in lanes: the holder, or a wire's message that is staged.
 
-    writer: Writer
+    Arrays whose length was set, or that were looked at, are known by their place. Where rules fill it, elements are born with what
+    ``births`` says, but for what lies in ``opened`` lanes.
+    """
+
     root: HolderFields
+    births: Births | None = None
+    opened: frozenset[int] = frozenset()
     arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
+
+    @property
+    def writer(self) -> Writer:
+        return self.root.writer
 
     def number(self, place: typed.Place, values: Values) -> Expr:
         fields, path, last = self.descend(place, values)
@@ -136,6 +145,8 @@ class HolderSide:
         if not isinstance(lane.element, Number):
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
             self.writer.emit(Fill(Place(elements.lane, elements.start), mul(count, lane.stride)))
+        if isinstance(place.type, Array) and self.births is not None:
+            bear_each(fields, self.births.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
 
     @property
     def borrows(self) -> bool:
@@ -165,9 +176,9 @@ class WireSide:
         if not indices:
             found = self.root.get(key)
             if found is None:
-                raise MappingError((unmappable_place(place.span),))
+                raise NotInPlaceError(key)
             return found
-        region, at = self.element(key, indices, values, place.span)
+        region, at = self.element(key, indices, values)
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
 
     def count(self, place: typed.Place, values: Values) -> Expr:
@@ -177,12 +188,15 @@ class WireSide:
     def address(self, place: typed.Place, values: Values) -> Address:
         """Where the bytes of a string or bytes field begin."""
         del values
-        return Wire(self.root.found.regions[(*wire_key(place)[0], EACH)].first)
+        key = (*wire_key(place)[0], EACH)
+        if key not in self.root.found.regions:
+            raise NotInPlaceError(key)
+        return Wire(self.root.found.regions[key].first)
 
-    def element(self, key: Path, indices: list[typed.Expr], values: Values, span: Span | None) -> tuple[Region, Expr]:
+    def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
         """How the elements of an array lie, and where one of them is; it is checked to be there."""
         if len(indices) != 1 or key not in self.root.found.regions:
-            raise MappingError((unmappable_place(span),))
+            raise NotInPlaceError(key)
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = values.of(indices[0])
         where = Where().members(array).element(number)
@@ -197,7 +211,7 @@ class WireSide:
         """Numbers outside arrays were written by the walk."""
         key, indices = wire_key(place)
         if indices:
-            region, at = self.element(key, indices, values, place.span)
+            region, at = self.element(key, indices, values)
             self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
 
     def is_open(self, place: typed.Place) -> bool:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.catalogue.pipeline import unmappable_field
-from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
 from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.sides import HolderSide, wire_key
 from rosetta_jit.lowering.values import constant, scalar_type
 from rosetta_jit.lowering.writer import Where, block
@@ -40,7 +39,7 @@ class Supplies:
         writer, rule = self.values.writer, _rule_for(path, self.rules)
         match rule:
             case None:
-                raise MappingError((unmappable_field(path),))
+                raise NotInPlaceError(path)
             case typed.When():
                 found = writer.var("_".join(path), zero)
                 self.decide(found, path, self.rules, value)
@@ -125,15 +124,13 @@ def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
 
 
 def _given(rule: typed.Rule, here: Values) -> Expr:
-    """The number that a rule gives a field; without one, the schema's default or 0."""
+    """The number that a rule gives a field."""
     match rule:
         case typed.Assign(_, value):
             return here.of(value)
         case typed.Default(place):
-            last = place.steps[-1]
-            default = last.field.default if isinstance(last, typed.FieldStep) else None
             known = isinstance(place.type, Int | Float | Bool | Enum)
-            return constant(default if isinstance(default, int | float) else 0, scalar_type(place.type)) if known else index(0)
+            return constant(0, scalar_type(place.type)) if known else index(0)
         case _:
             raise AssertionError(rule)
 

@@ -223,7 +223,7 @@ class Ignore:
 
 @dataclass(frozen=True, slots=True)
 class Default:
-    """Nothing sets this place, and that is meant: numbers are 0 or the schema's default, texts and arrays empty."""
+    """Nothing sets this place, and that is meant: numbers are 0, texts and arrays empty, what can be absent is."""
 
     place: Place
     span: Span | None = field(default=None, compare=False, repr=False)

@@ -86,9 +86,14 @@ class Contract:
 
 @dataclass(slots=True)
 class Writer:
-    """Collects statements. ``position`` is always a local plus a constant; alignment counts from ``origin``."""
+    """Collects statements. ``position`` is always a local plus a constant; alignment counts from ``origin``.
+
+    ``strides`` are those of the holder's lanes, and then of the ``hidden`` ones, which are known by a name.
+    """
 
     direction: Direction
+    strides: list[int] = field(default_factory=list[int])
+    hidden: dict[str, int] = field(default_factory=dict[str, int])
     block: list[Stmt] = field(default_factory=list[Stmt])
     position: Expr = BEGIN
     origin: Expr = BEGIN
@@ -97,6 +102,13 @@ class Writer:
     stems: dict[str, int] = field(default_factory=dict[str, int])
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
     routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
+
+    def lane(self, name: str, stride: int) -> int:
+        """The hidden lane of a name: for whatever a kernel must keep that the holder has no field for."""
+        if name not in self.hidden:
+            self.hidden[name] = len(self.strides)
+            self.strides.append(stride)
+        return self.hidden[name]
 
     @contextmanager
     def whole(self) -> Generator[None]:
@@ -183,7 +195,7 @@ class Writer:
     def call(self, name: str, make: Callable[[Writer], Contract], arguments: tuple[Expr, ...], where: Where) -> tuple[Local, ...]:
         """The results of a routine, which is made, with a writer of its own, where it is first called."""
         if name not in self.routines:
-            inner = Writer(self.direction, routines=self.routines, names={BEGIN.name, END.name})
+            inner = Writer(self.direction, self.strides, self.hidden, routines=self.routines, names={BEGIN.name, END.name})
             made = make(inner)
             self.routines[name] = Routine(
                 name, made.parameters, made.results, block(inner.block), made.requires, made.ensures, tuple(inner.sites)

@@ -15,7 +15,7 @@ such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their wor
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.model.types import (
@@ -140,6 +140,29 @@ def layout(type_: Type, schema: Schema) -> Layout:
     building = _Building(schema, recursive_structs(type_, schema))
     building.lane(type_, "", "")
     return Layout(tuple(lane for lane in building.lanes if lane is not None), tuple(building.linked))
+
+
+def behind(lanes: tuple[Lane, ...], layout: Layout) -> Layout:
+    """The lanes of a layout behind others: its message is no longer lane 0, but lane ``len(lanes)``."""
+    by = len(lanes)
+    moved = (replace(lane, element=_moved(lane.element, by)) for lane in layout.lanes)
+    return Layout((*lanes, *moved), tuple((lane + by, struct) for lane, struct in layout.recursive))
+
+
+def _moved(slot: Slot, by: int) -> Slot:
+    """A slot whose spans refer to lanes so many further on."""
+    match slot:
+        case Number():
+            return slot
+        case Span(_, lane):
+            return replace(slot, lane=lane + by)
+        case Row(members=members, unknown=unknown):
+            kept = None if unknown is None else replace(unknown, lane=unknown.lane + by)
+            return replace(slot, members=tuple(replace(each, slot=_moved(each.slot, by)) for each in members), unknown=kept)
+        case Variant(members=members):
+            return replace(slot, members=tuple(replace(each, slot=_moved(each.slot, by)) for each in members))
+        case _:
+            assert_never(slot)
 
 
 def scalar_of(type_: Bool | Int | Float | Enum) -> str:

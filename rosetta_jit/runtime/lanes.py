@@ -12,20 +12,29 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, LANE_WORDS, STRIDE, USED, VALID, lane_word, state_words
+from rosetta_jit.kernel.state import (
+    ADDRESS,
+    CAPACITY,
+    HIDDEN,
+    HIDDEN_COUNT,
+    LANE_WORDS,
+    STRIDE,
+    USED,
+    VALID,
+    lane_word,
+    state_words,
+)
+from rosetta_jit.model.births import FirstCase, FixedArray
 from rosetta_jit.model.layout import Number
-from rosetta_jit.runtime.births import FirstCase, FixedArray
+from rosetta_jit.runtime.hidden import ALIGNMENT, Hidden, aligned_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from rosetta_jit.model.births import Birth
     from rosetta_jit.model.layout import Layout
-    from rosetta_jit.runtime.births import Birth
 
 Array = np.ndarray[Any, Any]
-
-ALIGNMENT = 64
-"""Of each lane: a cache line, and the widest vector register."""
 
 INITIAL_BYTES = 64
 """What a lane has room for before it grows."""
@@ -178,6 +187,8 @@ class Lanes:
         The bytes of each lane, the scratch lane last.
     cells : Cells
         The same bytes as scalars.
+    hidden : Hidden or None
+        What kernels have besides, from when one needed it.
     source : list
         One element: the message from which spans are borrowed, or None.
     rows : int
@@ -188,7 +199,21 @@ class Lanes:
         How often rows changed their place, so that views know when to look for theirs again.
     """
 
-    __slots__ = ("__weakref__", "arena", "arrays", "buffers", "cells", "moves", "plan", "rows", "source", "state", "wasted", "words")
+    __slots__ = (
+        "__weakref__",
+        "arena",
+        "arrays",
+        "buffers",
+        "cells",
+        "hidden",
+        "moves",
+        "plan",
+        "rows",
+        "source",
+        "state",
+        "wasted",
+        "words",
+    )
 
     def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
         self.plan = plan
@@ -205,6 +230,7 @@ class Lanes:
         self.buffers = [self.arena[start : start + size] for start, size in zip(plan.offsets, plan.sizes, strict=True)]
         self.cells = Cells(self.buffers)
         self.arrays = Arrays(self.buffers, plan.dtypes, array_type)
+        self.hidden: Hidden | None = None
         self.source: list[Any] = [None]
         self.moves = 0
         self.rows = plan.rows
@@ -224,20 +250,23 @@ class Lanes:
         return self.words[lane_word(lane, CAPACITY)]
 
     def grow(self, lane: int, rows: int) -> None:
-        """Room for so many rows more than the lane has, and at least twice as many as before.
+        """Room for so many rows more than the lane has, and at least twice as many as before; of a hidden lane, for so many bytes.
 
         Raises
         ------
         MemoryError
             If there is no such memory; the lanes are as before.
         """
+        if lane >= len(self.buffers):
+            self.hidden = self.hidden or Hidden()
+            self.hidden.grow(lane - len(self.buffers), rows)
+            self.words[HIDDEN], self.words[HIDDEN_COUNT] = self.hidden.address, len(self.hidden.buffers)
+            return
         stride = self.plan.strides[lane]
         capacity = self.capacity(lane)
         capacity = max(2 * capacity, capacity + rows)
         old, size = self.buffers[lane], _aligned(capacity * stride, 8)
-        memory = np.empty(size + ALIGNMENT, np.uint8)
-        shift = -memory.__array_interface__["data"][0] % ALIGNMENT
-        self._place(lane, memory[shift : shift + size], capacity)
+        self._place(lane, aligned_bytes(size), capacity)
         self.buffers[lane][: old.size] = old
 
     def _place(self, lane: int, buffer: NDArray[np.uint8], capacity: int) -> None:

@@ -334,6 +334,9 @@ def _grow_for_all(batch: Batch, done: int, count: int) -> None:
     """Guess from the messages so far what all will take, so that a lane does not move often."""
     lanes = batch.lanes
     lane, rows = run.missing(lanes)
+    if lane >= len(lanes.buffers):
+        lanes.grow(lane, rows)
+        return
     used = lanes.words[lane_word(lane, USED)]
     lanes.grow(lane, max(rows, (used * count) // (done + 1) + rows - lanes.words[lane_word(lane, CAPACITY)]))
 

@@ -48,7 +48,8 @@ def python_run(kernel: Callable[..., int]) -> Run:
 
     def run(buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
         memory = np.empty(0, np.uint8) if buffer is None else buffer
-        return kernel(memory, begin, end, lanes.state, lanes.buffers, row)
+        buffers = lanes.buffers if lanes.hidden is None else [*lanes.buffers, *lanes.hidden.buffers]
+        return kernel(memory, begin, end, lanes.state, buffers, row)
 
     return run
 

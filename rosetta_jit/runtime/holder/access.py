@@ -13,7 +13,7 @@ import numpy as np
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.births import MAX_BORN_BYTES
+from rosetta_jit.model.births import MAX_BORN_BYTES
 from rosetta_jit.runtime.holder import arena, coerce, grid, values
 from rosetta_jit.runtime.holder.message import Message, View, bind, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text

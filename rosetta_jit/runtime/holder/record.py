@@ -16,14 +16,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, assert_never, cast
 
 from rosetta_jit.model import layout as slots
+from rosetta_jit.model.births import Births, selected, selecting
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.runtime.births import Births, selected, selecting
 from rosetta_jit.runtime.lanes import SCALARS, cell_key
 
 if TYPE_CHECKING:
+    from rosetta_jit.model.births import Birth
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.model.types import Constant, Schema
-    from rosetta_jit.runtime.births import Birth
 
 ScalarType = Bool | Int | Float | Enum
 _SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))

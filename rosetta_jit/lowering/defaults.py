@@ -1,0 +1,61 @@
+"""``default .place``: the values that the schema gives what nothing was said of, as rules."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place
+from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, Optional, String, Struct
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.scope import Message
+    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.model.types import Field
+    from rosetta_jit.source import Span
+
+MAX_NESTED = 20
+"""Structs within each other that are looked into for defaults."""
+
+
+def default_rules(place: Place, message: Message, span: Span | None) -> list[Rule]:
+    """Assignments of the defaults at and below a place; the rest is left alone."""
+    last = place.steps[-1]
+    known = _default(last.field, place, span) if isinstance(last, FieldStep) else None
+    if known is not None:
+        return [known]
+    if isinstance(place.type, Struct) and len(place.steps) < MAX_NESTED and _has_defaults(place.type, message):
+        inner = (_below(place, field, message) for field in place.type.fields if field.constant is None)
+        return [rule for each in inner for rule in default_rules(each, message, span)]
+    return [Default(place, span)]
+
+
+def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
+    """The rule for a field that has a default, and cannot be absent instead."""
+    if isinstance(field.type, Optional) or field.default is None:
+        return None
+    match place.type, field.default:
+        case Enum(values=values), str(name):
+            number = dict(values).get(name)
+            return None if number is None else Assign(place, Const(number, place.type, span), span)
+        case ((Bool() | Int() | Enum()), int(number)):
+            return Assign(place, Const(number, place.type, span), span)
+        case Float(), (int() | float()) as number:
+            return Assign(place, Const(float(number), place.type, span), span)
+        case ((String() | Bytes()), str(text)):
+            return Assign(place, Const(text, String(), span), span)
+        case _:
+            return None
+
+
+def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
+    for field in struct.fields:
+        inner = message.schema.resolve(field.type)
+        if not isinstance(field.type, Optional) and field.default is not None:
+            return True
+        if isinstance(inner, Struct) and depth < MAX_NESTED and _has_defaults(inner, message, depth + 1):
+            return True
+    return False
+
+
+def _below(place: Place, field: Field, message: Message) -> Place:
+    return Place(place.side, (*place.steps, FieldStep(field)), message.value_type(field.type), place.span)
