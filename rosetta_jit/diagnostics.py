@@ -90,6 +90,7 @@ def _excerpt(span: Span, label: str) -> list[str]:
     last = text.find("\n", span.start, first + MAX_LINE)
     last = min(first + MAX_LINE, len(text)) if last < 0 else last
     before, marked = _shown(text[first : span.start]), _shown(text[span.start : min(span.end, last)])
+    before = before if first == span.start - column + 1 else f"…{before[1:]}"
     caret = " " * cells(before) + "^" * max(1, cells(marked))
     margin = " " * len(str(line_number))
     return [

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
+UNITS = "units are pint's: `degree`, `radian`, `m`, `mm`, `s`, `N*m`, `degC`; correct the schema"
+
+
 def incompatible(span: Span | None, source: str, target: str) -> Diagnostic:
     """Metres where seconds are meant."""
     message = f"{shorten(source)} cannot become {shorten(target)}: they measure different things"
@@ -21,6 +24,14 @@ def wrong_way(span: Span | None, function: str, found: str, wanted: str) -> Diag
     """A conversion of what is no angle, or one already."""
     message = f"`{function}` takes {wanted}s, and this is in {shorten(found)}"
     return error("unit", message, span, help_=f"write `{'degrees' if function == 'radians' else 'radians'}(...)`, or nothing at all")
+
+
+def wrong_factor(span: Span | None, factor: float, source: str, target: str, right: float) -> Diagnostic:
+    """A factor that converts the other way."""
+    message = f"times {factor:.6g} converts {shorten(target)} to {shorten(source)}, and this is in {shorten(source)}"
+    function = {"degree": "radians", "radian": "degrees"}.get(source, "")
+    how = f"write `{function}(...)`" if function and target in {"degree", "radian"} else f"multiply by {right:.6g}"
+    return error("unit", message, span, "the wrong way", help_=f"{how}, or leave the factor out where both units are declared")
 
 
 def no_float(span: Span | None, found: str) -> Diagnostic:
@@ -38,4 +49,4 @@ def one_sided(span: Span | None, unit: str, *, is_source: bool) -> Diagnostic:
 
 def unknown_unit(span: Span | None, unit: str) -> Diagnostic:
     """A unit that the library of units does not know."""
-    return warning("unknown-unit", f"`{shorten(unit)}` is no unit that is known: nothing is converted", span)
+    return warning("unknown-unit", f"`{shorten(unit)}` is no unit that is known: nothing is converted", span, help_=UNITS)

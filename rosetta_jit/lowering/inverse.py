@@ -132,7 +132,7 @@ def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
 def _table(expr: Choice, value: Expr) -> tuple[Expr, Expr]:
     """A table with its columns exchanged. Of several keys with one value the first is written."""
     if expr.otherwise is not None:
-        raise NoInverseError(expr.otherwise, "it is the value of several keys")
+        raise NoInverseError(expr.otherwise, "it is the value of all other keys")
     cases: list[tuple[Expr, Expr]] = []
     subject: Expr | None = None
     for condition, chosen in expr.cases:

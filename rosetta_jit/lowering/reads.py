@@ -101,6 +101,11 @@ def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
                 pass
 
 
+def places_read(value: Expr) -> Iterator[Place]:
+    """The places that an expression looks at, those of its indices included."""
+    return _in(value)
+
+
 def _in(value: Expr) -> Iterator[Place]:
     match value:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place):

@@ -164,6 +164,7 @@ class _Block:
             return Ignore(place, rule.span)
         if scope.target == "wire" and _has_fixed_array(place.type, scope.messages["wire"]):
             scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            self.broken.append(field_names(place))
             return None
         return Default(place, rule.span)
 
