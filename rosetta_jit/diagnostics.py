@@ -86,11 +86,11 @@ def _excerpt(span: Span, label: str) -> list[str]:
     """The line of a place, cut around it, with carets below as many cells as the place fills."""
     text = span.source.text
     line_number, column = span.source.line_column(span.start)
-    first = max(span.start - column + 1, span.start - MAX_LINE // 2)
-    last = text.find("\n", span.start, first + MAX_LINE)
-    last = min(first + MAX_LINE, len(text)) if last < 0 else last
+    start = span.start - column + 1
+    first = start if _end(text, start) < start + MAX_LINE else max(start, span.start - MAX_LINE // 2)
+    last = _end(text, first)
     before, marked = _shown(text[first : span.start]), _shown(text[span.start : min(span.end, last)])
-    before = before if first == span.start - column + 1 else f"…{before[1:]}"
+    before = before if first == start else f"…{before[1:]}"
     caret = " " * cells(before) + "^" * max(1, cells(marked))
     margin = " " * len(str(line_number))
     return [
@@ -99,6 +99,13 @@ def _excerpt(span: Span, label: str) -> list[str]:
         f"{line_number} | {before}{marked}{_shown(text[max(span.start, min(span.end, last)) : last])}".rstrip(),
         f"{margin} | {caret} {label}".rstrip(),
     ]
+
+
+def _end(text: str, start: int) -> int:
+    """Where a line ends, or where the part of it that is shown does."""
+    last = min(len(text), start + MAX_LINE)
+    end = text.find("\n", start, last)
+    return last if end < 0 else end
 
 
 def _shown(text: str) -> str:

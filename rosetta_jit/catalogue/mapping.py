@@ -184,6 +184,11 @@ def file_too_large(name: str, limit: int) -> Diagnostic:
     return error("file-too-large", f"{name} is larger than {limit >> 20} MiB", None)
 
 
+def too_many(span: Span | None, what: str, most: int) -> Diagnostic:
+    """More of something than any mapping needs."""
+    return error("too-many", f"a mapping has at most {most} {what}", span, "one too many", help_="split the mapping")
+
+
 def file_not_text(name: str) -> Diagnostic:
     """A file that is not UTF-8."""
     return error("file-not-text", f"{name} is not UTF-8 text", None)

@@ -15,6 +15,9 @@ from rosetta_jit.errors import ReportError
 if TYPE_CHECKING:
     import argparse
 
+MAX_LISTED = 1_000
+"""Diagnostics of one mapping that are listed as JSON; more are counted."""
+
 
 def add(commands: Commands) -> None:
     """Declare the arguments."""
@@ -29,11 +32,16 @@ def run(arguments: argparse.Namespace) -> int:
     reports = [(mapping, _diagnostics(mapping)) for mapping in cast("list[str]", arguments.mappings)]
     for mapping, diagnostics in reports:
         if arguments.json:
-            print(json.dumps({"mapping": mapping, "diagnostics": [to_json(diagnostic) for diagnostic in diagnostics]}))
+            print(json.dumps(_plain(mapping, diagnostics)))
         elif diagnostics:
             print(render_all(diagnostics), _summary(mapping, diagnostics), sep="\n\n", end="\n\n", file=sys.stderr)
     counted = ("error", "warning") if arguments.strict else ("error",)
     return int(any(diagnostic.severity in counted for _, diagnostics in reports for diagnostic in diagnostics))
+
+
+def _plain(mapping: str, diagnostics: tuple[Diagnostic, ...]) -> dict[str, object]:
+    shown = diagnostics[:MAX_LISTED]
+    return {"mapping": mapping, "diagnostics": [to_json(each) for each in shown], "more": len(diagnostics) - len(shown)}
 
 
 def _summary(mapping: str, diagnostics: tuple[Diagnostic, ...]) -> str:

@@ -67,16 +67,18 @@ def _inside(message: Message, type_: Type) -> Type:
 
 def _may_be_absent(names: Names, message: Message) -> bool:
     """Whether a field need not be set: that one must be is an error already."""
+    *around, name = names
     struct: Struct | Union = message.root
-    for name in names:
-        fields = struct.fields if isinstance(struct, Struct) else struct.cases
-        last: Field = next(each for each in fields if each.name == name)
-        inner = _inside(message, last.type)
-        if isinstance(inner, Struct | Union):
-            struct = inner
-        if isinstance(message.schema.resolve(last.type), Optional | Union):
-            return not last.required
-    return False
+    for each in around:
+        inner = _inside(message, _field(struct, each).type)
+        assert isinstance(inner, Struct | Union)
+        struct = inner
+    last = _field(struct, name)
+    return isinstance(message.schema.resolve(last.type), Optional | Union) and not last.required
+
+
+def _field(struct: Struct | Union, name: str) -> Field:
+    return next(each for each in (struct.fields if isinstance(struct, Struct) else struct.cases) if each.name == name)
 
 
 # --- what is read ------------------------------------------------------------------------------------------------------

@@ -49,6 +49,9 @@ if TYPE_CHECKING:
 MAX_TEXTS = 50
 """Cases of a choice among texts."""
 
+MAX_PROBLEMS = 200
+"""Reports of one mapping after which no more rules are looked at: most of them say the same."""
+
 MAX_NESTED = 20
 """Structs within each other that are looked into for what has no default."""
 
@@ -84,8 +87,11 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
     scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named)
-    unpack = _block(mapping.unpack_rules, scope)
-    pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    try:
+        unpack = _block(mapping.unpack_rules, scope)
+        pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    except _EnoughError:
+        return tuple(problems)
     return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
 
 
@@ -98,6 +104,10 @@ def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagno
     else:
         problems.append(words.not_a_message(span, name))
     return None
+
+
+class _EnoughError(Exception):
+    """More problems than anybody reads; never leaves this module."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +145,8 @@ class _Block:
         return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
+        if len(scope.problems) >= MAX_PROBLEMS:
+            raise _EnoughError
         match rule:
             case model.Assign():
                 return self.assign(rule, scope)
