@@ -16,6 +16,7 @@ from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
 from rosetta_jit.frontend.search import Reading, SearchPath
+from rosetta_jit.frontend.unit_file import SUFFIX
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
@@ -264,7 +265,8 @@ def _imported(build: Build) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
     request, readers = build.request, _readers(build.request)
     asked = request.type or ""
-    names = request.imports or tuple(build.files_given) or tuple(readers.guesses(asked))
+    given = tuple(name for name in build.files_given if not name.endswith(SUFFIX))
+    names = request.imports or given or tuple(readers.guesses(asked))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}

@@ -100,7 +100,7 @@ def _reserved(kernel: Kernel) -> frozenset[str]:
     lanes = range(len(kernel.strides))
     words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
     functions = {_function(routine.name) for routine in kernel.routines}
-    names = {"bool", "bytes", "indices", "len", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
+    names = {"bool", "bytes", "indices", "int", "len", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
     return frozenset(keyword.kwlist) | CALLED | words | functions | names
 
 

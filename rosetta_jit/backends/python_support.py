@@ -48,7 +48,7 @@ def run_attempts(
     """
     buffer, begin, end = message
     views = [memoryview(lane).cast("B") for lane in lanes]
-    views += [memoryview(b"")] * (own + len(hidden) - len(views))
+    views += [memoryview(bytearray())] * (own + len(hidden) - len(views))
     farthest: Failed | None = None
     for attempt in attempts:
         try:

@@ -87,6 +87,12 @@ def no_length(span: Span | None, found: str) -> Diagnostic:
     return error("no-length", f"{found} has no length", span, "here", help_="only arrays, bytes and text have one")
 
 
+def always_there(span: Span | None, found: str) -> Diagnostic:
+    """`has()` of something that cannot be absent."""
+    help_ = "only optional fields and cases of a union can be absent; compare the value instead"
+    return error("always-there", f"{found} is always there", span, "here", help_=help_)
+
+
 def length_not_settable(span: Span | None, found: str) -> Diagnostic:
     """A length that the schema or the type fixes."""
     return error("length-fixed", f"the length of {found} cannot be set", span, "here", help_="assign it as a whole, or remove the rule")
@@ -228,7 +234,8 @@ def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:
 
 def no_default(span: Span | None, found: str) -> Diagnostic:
     """Elements that a message always has, left without a value."""
-    return error("no-default", f"the wire has no default for {found}: its elements are always there", span, help_="set each of them")
+    why = "other fields tell how many elements it has"
+    return error("no-default", f"there is no default for {found}", span, why, help_="set each of them")
 
 
 def many_cases(span: Span | None, most: int) -> Diagnostic:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.lowering import typed
+from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosetta_jit.explain.nodes import Key
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.expr import Expr, Side
     from rosetta_jit.model.mapping import Mapping
@@ -49,7 +51,7 @@ class Lines:
     written: Mapping
     direction: str
     target: Side
-    typed: dict[tuple[int, int], list[Rule]]
+    typed: dict[Key, list[Rule]]
 
     @classmethod
     def of(cls, written: Mapping, direction: str, rules: tuple[Rule, ...]) -> Lines:
@@ -74,8 +76,9 @@ class Lines:
                     yield from self.lines(otherwise, depth + 1)
             case SameNames():
                 yield from (self.line(rule, _same_name(each), depth, [each]) for each in self.typed.get(span_of(rule.span), ()))
-            case Assign(place, value):
-                yield self.line(rule, self.text(rule.span) or f"{show_expr(place)} = {_expr(value)}", depth)
+            case Assign(place, value, via=via):
+                by = "" if via is None else f' via "{via.mapping}"'
+                yield self.line(rule, self.text(rule.span) or f"{show_expr(place)} = {_expr(value)}{by}", depth)
             case SetLength(place, value):
                 yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
             case Ignore(place) | Default(place):
@@ -88,7 +91,10 @@ class Lines:
         heads = tuple(_head(each) for each in rules)
         origin: Side = "wire" if self.target == "holder" else "holder"
         number = None if rule.span is None else rule.span.source.line_column(rule.span.start)[0]
-        return Line(text, depth, number, self.block(rule.span), _names(heads, self.target), _names(heads, origin), notes(rules))
+        sets, reads = _names(heads, self.target), _names(heads, origin)
+        if not rules and isinstance(rule, Assign):  # the rules of another mapping stand for it, which are written there
+            sets, reads = _members(rule.place), _members(rule.value)
+        return Line(text, depth, number, self.block(rule.span), sets, reads, notes(rules))
 
     def block(self, span: Span | None) -> str:
         return "rules" if _within(span, self.written.rules) else f"{self.direction}-rules"
@@ -138,6 +144,11 @@ def _head(rule: Rule) -> object:
 
 def _names(roots: tuple[object, ...], side: Side) -> tuple[Names, ...]:
     return tuple(dict.fromkeys(names_of(place) for place in places(roots, side)))
+
+
+def _members(path: Expr) -> tuple[Names, ...]:
+    """The fields that a path names."""
+    return (tuple(step.name for step in path.steps if isinstance(step, Member)),) if isinstance(path, Path) else ()
 
 
 def _same_name(rule: Rule) -> str:

@@ -41,9 +41,13 @@ def names_of(place: Place) -> tuple[str, ...]:
     return tuple(step.field.name for step in place.steps if isinstance(step, typed.FieldStep))
 
 
-def by_span(rules: Iterable[Rule]) -> dict[tuple[int, int], list[Rule]]:
+Key = tuple[str, int, int]
+"""Where something is written."""
+
+
+def by_span(rules: Iterable[Rule]) -> dict[Key, list[Rule]]:
     """Rules, those in blocks included, by where they are written; one text may have become several."""
-    found: dict[tuple[int, int], list[Rule]] = {}
+    found: dict[Key, list[Rule]] = {}
     pending = list(rules)
     while pending:
         rule = pending.pop(0)
@@ -53,9 +57,9 @@ def by_span(rules: Iterable[Rule]) -> dict[tuple[int, int], list[Rule]]:
     return found
 
 
-def span_of(span: Span | None) -> tuple[int, int]:
-    """Where something is written, as a key."""
-    return (-1, -1) if span is None else (span.start, span.end)
+def span_of(span: Span | None) -> Key:
+    """The key of a place in a text."""
+    return ("", -1, -1) if span is None else (span.source.name, span.start, span.end)
 
 
 def _blocks(rule: Rule) -> tuple[Rule, ...]:

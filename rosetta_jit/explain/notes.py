@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 from rosetta_jit.explain.nodes import nodes, places
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.units import TAKES, unit_at, unit_of
+from rosetta_jit.lowering.unit_places import unit_at
+from rosetta_jit.lowering.units import TAKES, shown, unit_of
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.lowering.typed import ConversionRule, Rule
+    from rosetta_jit.lowering.typed import Change, ConversionRule, Rule
+    from rosetta_jit.lowering.unit_places import Unit
 
 HOW: dict[ConversionRule, str] = {
     "widen": "without loss",
@@ -47,8 +49,8 @@ def notes(rules: list[Rule]) -> tuple[Note, ...]:
 
 def _notes(rule: Rule) -> Iterator[Note]:
     match rule:
-        case typed.Assign(place, value):
-            yield from _units(rule)
+        case typed.Assign(place, value, change=change):
+            yield from _units(rule) if change is None else _changes(change)
             yield from _conversions((place, value))
         case typed.SetLength(place, value):
             yield from _conversions((place, value))
@@ -75,10 +77,15 @@ def _conversions(root: object) -> Iterator[Note]:
                 pass
 
 
+def _changes(change: Change) -> Iterator[Note]:
+    """The units of the numbers within a whole value."""
+    yield from (Note(f"{node.source} → {node.target}") for node in nodes(change) if isinstance(node, typed.Rescale))
+
+
 def _units(rule: typed.Assign) -> Iterator[Note]:
     """From which unit to which; one that only one side declares is said to be so."""
-    wanted = unit_at(rule.place) or unit_of(rule.value)
-    read = dict.fromkeys(unit_at(place) for place in places(rule.value, "wire" if rule.place.side == "holder" else "holder"))
+    wanted = _told(unit_at(rule.place) or unit_of(rule.value))
+    read = dict.fromkeys(_told(unit_at(place)) for place in places(rule.value, "wire" if rule.place.side == "holder" else "holder"))
     known = [unit for unit in read if unit is not None] or _taken(rule.value)
     for unit in known:
         if wanted is None:
@@ -87,6 +94,10 @@ def _units(rule: typed.Assign) -> Iterator[Note]:
             yield Note(f"in {unit}" if unit == wanted else f"{unit} → {wanted}")
     if wanted is not None and not known:
         yield Note(f"in {wanted}, no unit declared for the value")
+
+
+def _told(unit: Unit) -> str | None:
+    return None if unit is None else shown(unit)
 
 
 def _taken(value: typed.Expr) -> list[str]:

@@ -1,6 +1,6 @@
 """Which of the nine operations of the paper's table 2 a mapping uses, decided by its typed rules.
 
-A node of the rules that means an operation by itself stands in `_of_node`, a function in `FUNCTIONS`: a new one needs one line there.
+A node of the rules that means an operation by itself stands in `_of_node`: a new one needs one line there.
 What only a whole rule shows (elements in another order, a generated value, a moment that is computed) is decided in `_of_assignment`.
 """
 
@@ -19,7 +19,7 @@ from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Array, Bytes, Float, Int, String
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     from rosetta_jit.lowering.typed import Expr, Place, Rule
 
@@ -38,14 +38,6 @@ OPERATIONS: tuple[Operation, ...] = get_args(Operation)
 
 Direction = Literal["unpack", "pack"]
 Uses = dict[Operation, tuple[Direction, ...]]
-
-FUNCTIONS: Mapping[str, Operation] = {
-    "compress": "image compression",
-    "decompress": "image compression",
-    "now": "generators",
-    "counter": "generators",
-}
-"""Functions that are no arithmetic."""
 
 MOMENT = re.compile(r"(?:^|_)(time|timestamp|stamp|duration|date|n?secs?|nanosec|usecs?)(?:_|$)")
 """A field that holds a moment or a duration, by its name, or by that of a field around it."""
@@ -74,6 +66,7 @@ def operations_of(rules: tuple[Rule, ...], *, chosen: bool = False) -> Iterator[
             case typed.Assign() | typed.SetLength():
                 yield from _of_nodes((rule.place, rule.value))
                 if isinstance(rule, typed.Assign):
+                    yield from _of_nodes(rule.change)
                     yield from _of_assignment(rule, chosen=chosen)
             case typed.For(_, start, stop, body):
                 yield "subtype loops"
@@ -105,8 +98,14 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "predicate assignment"
             if otherwise is None:
                 yield "rejection"
-        case typed.Call(function):
-            yield FUNCTIONS.get(function, "arithmetic")
+        case typed.ImageCall():
+            yield "image compression"
+        case typed.Told() | typed.HostCall():
+            yield "generators"
+        case typed.Has():
+            yield "predicate assignment"
+        case typed.Rescale() | typed.Call():
+            yield "arithmetic"
         case typed.Convert(rule="exact"):
             yield "rejection"
         case typed.Convert(rule=rule) if rule != "widen":

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.printer import show_expr, show_type
+from rosetta_jit.model.printer import show_expr, show_type, show_way
 from rosetta_jit.model.types import Array, Optional, Struct, Union
 
 if TYPE_CHECKING:
@@ -63,5 +63,6 @@ def _notes(field: Field, message: Message) -> Iterator[str]:
         yield f"length {show_expr(field.length)}"
     if isinstance(message.schema.resolve(field.type), Optional):
         yield "required" if field.required else "may be absent"
+    yield from (f"{show_way(path)} in {unit}" for path, unit in field.part_units)
     if field.default is not None:
         yield f"else {field.default!r}"

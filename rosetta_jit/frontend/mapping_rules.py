@@ -14,7 +14,7 @@ from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
-from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, Via, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -49,15 +49,16 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
     span = context.span(tree)
     match str(tree.data):
         case "assign":
-            place, value = _trees(tree)
-            return Assign(_path(place, context.target, context), _expr(value, context), span)
+            place, value, *via = _trees(tree)
+            return Assign(_path(place, context.target, context), _expr(value, context), span, via=_via(via, context))
         case "set_length":
             place, value = _trees(tree)
             return SetLength(_path(place, context.target, context), _expr(value, context), span)
         case "relation" | "length_relation":
-            left, right = _trees(tree)
+            left, right, *via = _trees(tree)
             place = _path(left, context.target, context)
-            return Relation(place if tree.data == "relation" else Len(place, place.span), _expr(right, context), span)
+            related = place if tree.data == "relation" else Len(place, place.span)
+            return Relation(related, _expr(right, context), span, _via(via, context))
         case "when":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)
@@ -74,6 +75,14 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
             variable = str(_tokens(tree)[0])
             rules = tuple(read_rule(rule, context) for rule in body)
             return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+
+
+def _via(trees: list[Tree[Token]], context: Context) -> Via | None:
+    if not trees:
+        return None
+    name, *depth = (token for token in _tokens(trees[0]) if token.type in {"STRING", "INTEGER"})
+    deepest = _integer(depth[0], context) if depth else None
+    return Via(read_string(name, context.source, context.problems), deepest, context.span(trees[0]))
 
 
 def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:

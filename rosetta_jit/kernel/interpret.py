@@ -123,7 +123,7 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
         The kernel broke an obligation that `verify` proves: a bug of ours.
     """
     views = [memoryview(lane).cast("B") for lane in lanes]
-    views += [memoryview(b"")] * (len(kernel.strides) - len(views))
+    views += [memoryview(bytearray())] * (len(kernel.strides) - len(views))
     message = memoryview(buffer).cast("B")
     own, hidden = range(kernel.lanes), range(kernel.lanes, len(kernel.strides))
     capacities = [int(state[lane_word(k, CAPACITY)]) for k in own] + [len(views[k]) // kernel.strides[k] for k in hidden]

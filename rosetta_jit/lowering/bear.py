@@ -69,6 +69,11 @@ def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side
     return frozenset(found)
 
 
+def places_left(rules: tuple[typed.Rule, ...]) -> list[typed.Place]:
+    """The places that are meant to be left alone."""
+    return [rule.place for rule in _single(rules) if isinstance(rule, typed.Default)]
+
+
 def _single(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Rule]:
     """The rules in all blocks."""
     for rule in rules:
@@ -85,6 +90,8 @@ def _slot_at(place: typed.Place, layout: Layout, root: Slot) -> Slot:
     slot = root
     for step in place.steps:
         match step, slot:
+            case typed.FieldStep(field), Span(_, lane):
+                slot = member_of(layout.lanes[lane].element, field.name).slot
             case typed.FieldStep(field), _:
                 slot = member_of(slot, field.name).slot
             case typed.IndexStep(), Span(_, lane):

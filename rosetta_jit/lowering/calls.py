@@ -17,7 +17,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
 from rosetta_jit.lowering.typed import INT64, Call, Const, Convert
-from rosetta_jit.lowering.units import check_argument
+from rosetta_jit.lowering.units import check_arguments
 from rosetta_jit.model.expr import Name
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
@@ -44,12 +44,12 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, "bool", "has", "len", *scope.enums}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
     typed = [argument for argument in arguments if argument is not None]
-    if len(typed) < len(arguments) or not _arity(expr, scope) or not check_argument(expr.function, typed[0], expr.span, scope):
+    if len(typed) < len(arguments) or not _arity(expr, scope) or not check_arguments(expr.function, typed, expr.span, scope):
         return None
     return _function(expr, typed, scope)
 

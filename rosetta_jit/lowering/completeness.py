@@ -121,7 +121,7 @@ class _Checker:
                 self.struct(where, struct, writes)
             case Union(cases=cases):
                 self.union(where, cases, writes)
-            case (Array() | Bytes()) as sequence:
+            case (Array() | Bytes() | Map()) as sequence:
                 self.sequence(where, sequence, writes)
             case _:
                 pass
@@ -134,7 +134,7 @@ class _Checker:
             if case.name in by_field:
                 self.field(where.field(case.name), case, by_field[case.name])
 
-    def sequence(self, where: _Where, type_: Array | Bytes, writes: list[Write]) -> None:
+    def sequence(self, where: _Where, type_: Array | Bytes | Map, writes: list[Write]) -> None:
         lengths = [write for write in writes if write.length is not None and not write.steps]
         elements = [write for write in writes if write.steps]
         for write in lengths:
@@ -227,7 +227,7 @@ class _Checker:
         return False
 
 
-def _extent(type_: Array | Bytes, lengths: list[Write]) -> _Extent | None:
+def _extent(type_: Array | Bytes | Map, lengths: list[Write]) -> _Extent | None:
     if lengths and lengths[0].length is not None:
         return _Extent(lengths[0].length, lengths[0].span)
     fixed = type_.fixed if isinstance(type_, Array) else None

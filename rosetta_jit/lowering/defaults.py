@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place
-from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, Optional, String, Struct
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
-    from rosetta_jit.model.types import Field
+    from rosetta_jit.model.types import Field, Schema, Type
     from rosetta_jit.source import Span
 
 MAX_NESTED = 20
@@ -55,6 +55,19 @@ def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
         if isinstance(inner, Struct) and depth < MAX_NESTED and _has_defaults(inner, message, depth + 1):
             return True
     return False
+
+
+def has_array(type_: Type, schema: Schema, *, told: bool, seen: frozenset[str] = frozenset()) -> bool:
+    """Whether there are always elements in a type: as many as other fields have ``told``, or as the type fixes."""
+    match schema.resolve(type_):
+        case Array(length=length, element=element):
+            return length is not None and (isinstance(length, int) != told or has_array(element, schema, told=told, seen=seen))
+        case Bytes(length=length):
+            return length is not None and isinstance(length, int) != told
+        case Struct(name=name, fields=fields) if name not in seen:
+            return any(has_array(field.type, schema, told=told, seen=seen | {name}) for field in fields)
+        case _:
+            return False
 
 
 def _below(place: Place, field: Field, message: Message) -> Place:

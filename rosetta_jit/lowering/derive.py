@@ -43,8 +43,8 @@ def _unpacked(rule: Rule) -> Rule:
     match rule:
         case Relation(Len(place), value, span):
             return SetLength(place, value, span)
-        case Relation(Path() as place, value, span):
-            return Assign(place, value, span)
+        case Relation(Path() as place, value, span, via):
+            return Assign(place, value, span, via=via)
         case For(body=body):
             return replace(rule, body=_unpacking(body))
         case _:
@@ -125,7 +125,7 @@ class _Packing:
 def _setting(target: Path | Len, value: Expr, rule: Relation) -> tuple[Rule, ...]:
     if isinstance(target, Len):
         return (SetLength(target.path, value, rule.span),)
-    return (Assign(target, value, rule.span, fits=True),)
+    return (Assign(target, value, rule.span, fits=True, via=rule.via),)
 
 
 def _side(place: Path | Len) -> str:

@@ -14,9 +14,10 @@ from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.scope import Broken, resolve_path
-from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
+from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Scope
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 CONSTANTS = {"pi": math.pi}
+SUMS = frozenset("+-%")
 
 
 def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
@@ -48,6 +50,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
+        case model.Call("has", (model.Path() as path,)):
+            return _presence(path, expr.span, scope)
         case model.Call():
             return type_call(expr, scope, type_expr)
         case model.Choice():
@@ -86,7 +90,7 @@ def _literal(expr: model.Literal) -> Const:
 
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
-        return Local(expr.name, INT64, expr.span)
+        return Local(expr.name + scope.suffix, INT64, expr.span)
     if expr.name in CONSTANTS:
         return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
     if expr.name in scope.constants:
@@ -105,11 +109,22 @@ def _length(expr: model.Len, scope: Scope) -> Expr | None:
     match place.type:
         case Array(length=int(length)):
             return Const(length, INT64, expr.span)
-        case Array() | Bytes() | String():
+        case Array() | Bytes() | String() | Map():
             return LenOf(place, INT64, expr.span)
         case other:
             scope.problems.append(words.no_length(expr.path.span, describe(other)))
             return None
+
+
+def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
+    place = resolve_path(path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    schema = scope.messages[place.side].schema
+    if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
+        return Has(place, span=span)
+    scope.problems.append(words.always_there(span, describe(place.type)))
+    return None
 
 
 def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
@@ -135,6 +150,8 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
                 return _constant(_compute(expr.operator, x, y), expr.span, scope)
         case _:
             pass
+    if expr.operator in SUMS and not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
+        return None
     numbers = _computable(left, expr.operator, scope), _computable(right, expr.operator, scope)
     if numbers[0] is None or numbers[1] is None:
         return None

@@ -19,7 +19,9 @@ from rosetta_jit.kernel.ir import (
     Copy,
     Expr,
     Fill,
+    For,
     Get,
+    Local,
     Place,
     Reserve,
     Scalar,
@@ -188,7 +190,7 @@ class HolderFields:
         if has_gaps(self.layout.lanes[lane].element):
             stride = self.layout.lanes[lane].stride
             self.writer.expect(Compare("le", count, index(MAX_SIZE // stride)), "count", self.where.members(path), "too many elements")
-            self.writer.emit(Fill(Place(lane, start), mul(count, stride)))
+            self.clear(lane, start, count)
         return HolderElements(self, lane, start, self.where.members(path))
 
     def elements(self, path: Path, stored: Stored) -> HolderElements:
@@ -253,6 +255,20 @@ class HolderFields:
         start = self.writer.let("start", Used(lane))
         self.writer.emit(Advance(lane, count))
         return start
+
+    def clear(self, lane: int, start: Expr, count: Expr) -> None:
+        """Zeros in so many rows; but what `size` has left in their hidden words is kept for `encode`."""
+        links = self.layout.lanes[lane].links
+        if links is None or self.writer.direction != "encode":
+            self.writer.emit(Fill(Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
+            return
+        number = self.writer.fresh("cleared")
+        row = add(start, Local("i64", number))
+        self.writer.emit(For(number, count, (Fill(Place(lane, row), index(links)),)))
+
+    def is_own_row(self, span: Span) -> bool:
+        """Whether a span leads to messages that can contain themselves."""
+        return self.layout.lanes[span.lane].links is not None
 
     def set_span(self, cell: Cell, start: Expr, count: Expr) -> None:
         offset = cell.slot.offset if isinstance(cell.slot, Span) else 0

@@ -10,8 +10,9 @@ import math
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
+from rosetta_jit.lowering.dimensions import conversion
 from rosetta_jit.lowering.typed import Access, Assign, Binary, Const, Convert, For, When
-from rosetta_jit.lowering.units import conversion, unit_at
+from rosetta_jit.lowering.unit_places import unit_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,12 +43,12 @@ def wrong_factors(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
 def _of_assignment(place: Place, value: Expr) -> Iterator[Diagnostic]:
     origin, factor = _product(value)
     source = unit_at(origin) if origin is not None else None
-    if source is None or _near(factor, 1.0):
+    if not isinstance(source, str) or _near(factor, 1.0):
         return
     target = unit_at(place) or ANGLES.get(source)
-    right = conversion(source, target) if target is not None else None
+    right = conversion(source, target) if isinstance(target, str) else None
     if isinstance(right, tuple) and right[1] == 0 and right[0] > 0 and not _near(right[0], 1.0) and _near(factor * right[0], 1.0):
-        yield words.wrong_factor(value.span, factor, source, target or "", right[0])
+        yield words.wrong_factor(value.span, factor, source, str(target), right[0])
 
 
 def _product(value: Expr) -> tuple[Place | None, float]:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
 from rosetta_jit.kernel.ir import Place as KernelPlace
-from rosetta_jit.lowering.bear import bear, opened_lanes
+from rosetta_jit.lowering.bear import bear, opened_lanes, places_left
 from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
+from rosetta_jit.lowering.defaults import has_array
 from rosetta_jit.lowering.descent import descend
 from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
@@ -160,6 +161,8 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
         Runner(writer, wire, holder).run(rules, Values(writer, wire, {}))
         writer.position = end
         return
+    if any(has_array(place.type, mapped.schema, told=False) for place in places_left(rules)):
+        raise NotInPlaceError
     values = Values(writer, holder, {})
     look_up_arrays(rules, holder, values)
     wire = WireSide(writer, WireFields(writer, found, Supplies(rules, holder, values)))

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, IsText, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, Has, IsText, LenOf, Local, Unary
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
@@ -157,6 +157,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
+        case Has(place):
+            return atom(f"has {_path_shape(place)}", *_indices(place))
         case Choice(cases, otherwise):
             parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
             return atom("choice", *map(polynomial_of, parts))

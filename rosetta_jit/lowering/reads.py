@@ -110,7 +110,7 @@ def places_read(value: Expr) -> Iterator[Place]:
 
 def _in(value: Expr) -> Iterator[Place]:
     match value:
-        case typed.Access(place) | typed.LenOf(place) | typed.IsText(place):
+        case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
             yield place
             yield from _in_indices(place)
         case typed.Unary(_, operand) | typed.Convert(operand):

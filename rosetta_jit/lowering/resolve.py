@@ -14,8 +14,9 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
-from rosetta_jit.lowering.defaults import default_rules
+from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.typed import (
     Access,
@@ -32,6 +33,7 @@ from rosetta_jit.lowering.typed import (
     SetLength,
     When,
 )
+from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
@@ -39,6 +41,7 @@ from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struc
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
@@ -51,9 +54,6 @@ MAX_TEXTS = 50
 
 MAX_PROBLEMS = 200
 """Reports of one mapping after which no more rules are looked at: most of them say the same."""
-
-MAX_NESTED = 20
-"""Structs within each other that are looked into for what has no default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +76,11 @@ class Resolved:
     problems: tuple[Diagnostic, ...]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[Diagnostic, ...]:
-    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message."""
+def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
+
+    ``others`` are the mappings that its rules may use.
+    """
     problems: list[Diagnostic] = []
     holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
     wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
@@ -86,7 +89,7 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema) -> Resolved | tuple[
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, others)
     try:
         unpack = _block(mapping.unpack_rules, scope)
         pack = _block(mapping.pack_rules, replace(scope, target="wire"))
@@ -128,19 +131,24 @@ class _Block:
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
         """Rules for the fields of the message that no other rule sets, and that the other side has too."""
-        origin, aim = (scope.messages[side].root for side in (_other(scope.target), scope.target))
+        origin, aim = (scope.messages[side].root for side in (scope.origin, scope.target))
         names = {field.name for field in origin.fields}
         excepted = [resolve_path(path, scope, type_index) for path in rule.but]
         set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
-        taken = {fields[0] for fields in (*set_already, *self.broken) if fields}
+        around = len(field_names(scope.base(scope.target)))
+        taken = {fields[around] for fields in (*set_already, *self.broken) if len(fields) > around}
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
-        made = [self.assign(_same_name(name, scope.target, rule.span), scope) for name in wanted]
+        made = (each for name in wanted for each in self.made(_same_name(name, scope.target, rule.span), scope))
         return [each for each in made if each is not None]
 
     def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
         """The rules that one of the mapping stands for."""
+        if isinstance(rule, model.Assign):
+            nested = nest(rule, scope, self.rules)
+            if nested is not None:
+                return [*nested]
         found = self.rule(rule, scope)
         return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
@@ -174,7 +182,7 @@ class _Block:
             return None
         if isinstance(rule, model.Ignore):
             return Ignore(place, rule.span)
-        if scope.target == "wire" and _has_fixed_array(place.type, scope.messages["wire"]):
+        if has_array(place.type, scope.messages[scope.target].schema, told=True):
             scope.problems.append(words.no_default(rule.span, describe(place.type)))
             self.broken.append(field_names(place))
             return None
@@ -201,7 +209,9 @@ class _Block:
         if fitting is None:
             self.broken.append(field_names(place))
             return None
-        return _by_case(place, fitting, rule.span)
+        change = change_within(fitting, place, scope)
+        made = _by_case(place, fitting, rule.span)
+        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
 
     def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
         place = self.place(rule, scope)
@@ -233,7 +243,7 @@ class _Block:
             scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
-        return For(Local(rule.variable), start, stop, body, rule.span)
+        return For(Local(rule.variable + scope.suffix), start, stop, body, rule.span)
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
@@ -269,23 +279,8 @@ def _places(rule: Rule) -> list[Place]:
 
 
 def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
-    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in (_other(target), target))
+    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in ("wire" if target == "holder" else "holder", target))
     return model.Assign(here, there, span)
-
-
-def _has_fixed_array(type_: Type, message: Message, depth: int = 0) -> bool:
-    """Whether a type has elements that are there whatever their count: the wire has no default for them."""
-    match message.value_type(type_):
-        case Array(length=length, element=element):
-            return length is not None or _has_fixed_array(element, message, depth + 1)
-        case Bytes(length=int()):
-            return True
-        case Struct(fields=fields) if depth <= MAX_NESTED:
-            return any(_has_fixed_array(field.type, message, depth + 1) for field in fields)
-        case Struct():
-            return True
-        case _:
-            return False
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
@@ -345,7 +340,7 @@ def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
 
 def _whole(source: Type, target: Type, scope: Scope) -> bool:
     """Whether an array, struct, text or blob can be assigned as a whole."""
-    origin, aim = (scope.messages[side] for side in (_other(scope.target), scope.target))
+    origin, aim = (scope.messages[side] for side in (scope.origin, scope.target))
     source, target = origin.value_type(source), aim.value_type(target)
     match source, target:
         case ((String() | Bytes()), (String() | Bytes())):
@@ -358,10 +353,6 @@ def _whole(source: Type, target: Type, scope: Scope) -> bool:
             return source == target
         case _:
             return False
-
-
-def _other(side: Side) -> Side:
-    return "wire" if side == "holder" else "holder"
 
 
 def _mismatch(value: Expr, target: Type) -> Diagnostic:
@@ -385,7 +376,7 @@ def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
         case Array(length=int(length)) if not (isinstance(value, Const) and value.value == length):
             scope.problems.append(words.length_not_settable(place.span, describe(place.type)))
             return False
-        case Array() | Bytes():
+        case Array() | Bytes() | Map():
             return True
         case other:
             scope.problems.append(words.length_not_settable(place.span, describe(other)))

@@ -17,10 +17,11 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
-from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, wire_key
+from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
+from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -42,9 +43,9 @@ class Runner:
             here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here)
+                    self.assign(place, value, here, rule.change)
                 case typed.SetLength(place, value):
-                    self.target.set_length(place, self.count(here.of(value)), here)
+                    self.take(place, self.count(here.of(value)), here)
                 case typed.For():
                     self.loop(rule, here)
                 case typed.When(condition, (typed.Reject(text, span),), ()):
@@ -77,6 +78,23 @@ class Runner:
         """A length that is used more than once."""
         return self.writer.let("length", value)
 
+    def take(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """Room for so many elements or bytes, if the target's type can have as many; those of a wire in place are bounded by the walk."""
+        if isinstance(self.target, HolderSide):
+            self.bound(place, count, values)
+        self.target.set_length(place, count, values)
+
+    def bound(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """A number of elements that the type of a place allows."""
+        kind = "count" if isinstance(place.type, Array | Map) else "length"
+        match place.type:
+            case Array(length=int(length)) | Bytes(length=int(length)):
+                self.writer.expect(Compare("eq", count, index(length)), kind, values.where, f"must be {length}", line=values.line)
+            case Array(maximum=int(most)) | Bytes(maximum=int(most)) | String(maximum=int(most)) | Map(maximum=int(most)):
+                self.writer.expect(Compare("le", count, index(most)), kind, values.where, f"at most {most}", line=values.line)
+            case _:
+                pass
+
     def loop(self, rule: typed.For, values: Values) -> None:
         """A loop; what is looked up within it is forgotten behind it."""
         start = values.of(rule.start)
@@ -89,23 +107,23 @@ class Runner:
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
         self.writer.emit(For(number.name, count, block(body)))
 
-    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
+                self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
-                self.assign_array(place, origin, values)
-            case ((Struct() | Map() | Union()), typed.Access(origin)):
-                self.copy(place, origin, values)
+                self.assign_array(place, origin, values, change)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
                 self.target.set_number(place, values.of(value), values)
 
     def assign_text(self, place: typed.Place, text: bytes, values: Values) -> None:
-        self.target.set_length(place, index(len(text)), values)
+        self.take(place, index(len(text)), values)
         for number, byte in enumerate(text):
             self.target.set_byte(place, number, byte, values)
 
@@ -119,10 +137,10 @@ class Runner:
         if isinstance(source, Wire) and isinstance(place.type, Bytes) and isinstance(self.target, HolderSide) and self.target.borrows:
             self.target.borrow(place, source.at, size, values)
             return
-        self.target.set_length(place, size, values)
+        self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 
-    def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
@@ -130,18 +148,17 @@ class Runner:
         target, target_path, _ = self.target.descend(place, values)
         if is_endless(source.layout, source.find(path).slot):
             raise MappingError((endless_copy(place.span),))
-        copy(source, path, target, target_path)
+        if isinstance(place.type, Array | Map):
+            self.bound(place, self.source.count(origin, values), values)
+        with self.writer.nested() as there:
+            copy(source, path, target, target_path, change)
+        present = presence(source, path, outer=True)
+        self.writer.emit(*there if present is None else (If(present, block(there)),))
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""
-        element = place.type.element if isinstance(place.type, Array) else place.type
         count = self.source.count(origin, values)
-        self.target.set_length(place, count, values)
-        variable = typed.Local("element")
-        step = typed.IndexStep(variable)
-        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
-        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if isinstance(element, Bool | Int | Float | Enum) and origin_type != element:
-            read = typed.Convert(read, element, "widen")
-        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        self.take(place, count, values)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        rule = element_rule(place, origin, variable, change)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
 from rosetta_jit.model.expr import Index, Member
-from rosetta_jit.model.types import Array, Bytes, Enum, Int, Optional, Struct, Union
+from rosetta_jit.model.layout import map_entry
+from rosetta_jit.model.types import Array, Bytes, Enum, Int, Map, Optional, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
@@ -36,7 +38,11 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The names that are known at one point of a mapping; where problems go, and the enums that were named."""
+    """The names that are known at one point of a mapping; where problems go, and the enums that were named.
+
+    Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
+    ``suffix`` tells its loop variables from those around.
+    """
 
     messages: Mapping[Side, Message]
     enums: Mapping[str, Enum]
@@ -45,9 +51,21 @@ class Scope:
     locals: tuple[str, ...]
     problems: list[Diagnostic]
     named_enums: set[str]
+    others: Others
+    bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
+    suffix: str = ""
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))
+
+    @property
+    def origin(self) -> Side:
+        """The side that rules read."""
+        return "wire" if self.target == "holder" else "holder"
+
+    def base(self, side: Side) -> Place:
+        """The message of a side."""
+        return self.bases.get(side) or Place(side, (), self.messages[side].root)
 
 
 def enums_of(*schemas: Schema) -> dict[str, Enum]:
@@ -76,9 +94,9 @@ class Broken:
 
 def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Expr | None]) -> Place | Broken:
     """The place that a path names; ``index`` types the expressions within."""
-    message = scope.messages[path.side]
+    message, base = scope.messages[path.side], scope.base(path.side)
     type_: Type = message.root
-    steps: list[Step] = []
+    steps: list[Step] = [*base.steps]
     for step in path.steps:
         found: tuple[list[Step], Type] | Broken
         match step:
@@ -92,7 +110,7 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Exp
             return Broken(tuple(done.field.name for done in steps if isinstance(done, FieldStep)) + found.fields)
         steps += found[0]
         type_ = message.value_type(found[1])
-    return Place(path.side, tuple(steps), type_, path.span)
+    return Place(base.side, tuple(steps), type_, path.span)
 
 
 def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Side) -> tuple[list[Step], Type] | Broken:
@@ -118,16 +136,16 @@ def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, 
     """What can be named in a struct: its fields, and the cases of its unions as if they were fields."""
     fields = type_.fields if isinstance(type_, Struct) else type_.cases
     members: dict[str, tuple[Field, ...]] = {}
-    for field in fields:
-        union = schema.resolve(field.type)
+    for each in fields:
+        union = schema.resolve(each.type)
         if isinstance(union, Union):
-            members |= {case.name: (field, case) for case in union.cases}
-    return members | {field.name: (field,) for field in fields}
+            members |= {case.name: (each, case) for case in union.cases}
+    return members | {each.name: (each,) for each in fields}
 
 
 def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, Scope], Expr | None]) -> tuple[list[Step], Type] | Broken:
     index = typed(step.index, scope)
-    if not isinstance(type_, Array | Bytes):
+    if not isinstance(type_, Array | Bytes | Map):
         scope.problems.append(words.not_indexable(step.span, describe(type_)))
         return Broken(())
     if index is None or not _in_range(index, type_, scope):
@@ -135,7 +153,7 @@ def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, S
     return [IndexStep(index, step.span)], element_type(type_)
 
 
-def _in_range(index: Expr, type_: Array | Bytes, scope: Scope) -> bool:
+def _in_range(index: Expr, type_: Array | Bytes | Map, scope: Scope) -> bool:
     length = type_.fixed if isinstance(type_, Array) else None
     if not isinstance(index, Const) or 0 <= int(index.value) < (2**63 if length is None else length):
         return True
@@ -143,6 +161,12 @@ def _in_range(index: Expr, type_: Array | Bytes, scope: Scope) -> bool:
     return False
 
 
-def element_type(type_: Array | Bytes) -> Type:
-    """The type of one element; a byte is a uint8."""
-    return type_.element if isinstance(type_, Array) else Int(8, signed=False)
+def element_type(type_: Array | Bytes | Map) -> Type:
+    """The type of one element; a byte is a uint8, an entry of a map has the fields ``key`` and ``value``."""
+    match type_:
+        case Array(element):
+            return element
+        case Bytes():
+            return Int(8, signed=False)
+        case Map(key, value):
+            return map_entry(key, value)

@@ -5,7 +5,7 @@ A side can be read (`values.Source`) and be written; which one is which depends 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
@@ -15,8 +15,8 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Expr,
-    Fill,
     Get,
+    If,
     Load,
     Place,
     Select,
@@ -31,8 +31,8 @@ from rosetta_jit.lowering.bear import bear_each
 from rosetta_jit.lowering.bound import EACH, NotInPlaceError
 from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
-from rosetta_jit.lowering.writer import Where
-from rosetta_jit.model.layout import Number, Row
+from rosetta_jit.lowering.writer import Where, block
+from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.model.types import Array
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
-"""A place by names and the kernel's expressions of its indices."""
+"""A place by names and the expressions of its indices."""
 
 
 def inside(number: Expr, count: Expr) -> Expr:
@@ -75,15 +75,15 @@ class HolderSide:
     def number(self, place: typed.Place, values: Values) -> Expr:
         fields, path, last = self.descend(place, values)
         value = self.writer.let(path[-1] if path else "element", _got(fields, path))
-        if not path:
+        present = presence(fields, path)
+        if present is None or last is None:
             return value
-        owner = fields.find(path[:-1])
-        member = member_of(owner.slot, path[-1])
-        if member.presence is None or last is None or not isinstance(owner.slot, Row):
-            return value
-        place_of_bit, mask = presence_bit(owner, owner.slot, member.presence)
-        present = Compare("ne", Binary("and", Get("u64", place_of_bit), mask), Const("u64", 0))
-        return self.present_or_default(present, member, last, value, values)
+        return self.present_or_default(present, member_of(fields.find(path[:-1]).slot, path[-1]), last, value, values)
+
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there, on the way from the innermost element."""
+        fields, path, _ = self.descend(place, values)
+        return presence(fields, path, outer=True) or Const("bool", value=True)
 
     def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
         """What reading gives: the value; where it is absent, its default, or an error if it is required."""
@@ -103,15 +103,22 @@ class HolderSide:
 
     def array(self, place: typed.Place, values: Values) -> tuple[HolderElements, Expr]:
         """The elements of an array, and how many there are."""
-        key = self.key(place, values)
+        key = _key(place)
         if key not in self.arrays:
             fields, path, _ = self.descend(place, values)
             stored = fields.stored(path)
-            self.arrays[key] = fields.elements(path, stored), stored.size
+            self.arrays[key] = fields.elements(path, stored), self.count_in_case(fields, path, stored.size)
         return self.arrays[key]
 
-    def key(self, place: typed.Place, values: Values) -> Key:
-        return tuple(step.field.name if isinstance(step, FieldStep) else values.of(step.index) for step in place.steps)
+    def count_in_case(self, fields: HolderFields, path: Path, size: Expr) -> Expr:
+        """A number of elements; none where they are of a case that is not set: a message may have had it before another."""
+        if not any(isinstance(fields.find(path[:number]).slot, Variant) for number in range(len(path))):
+            return size
+        present = presence(fields, path)
+        count = self.writer.let("count", size if present is None else Select(present, size, index(0)))
+        known = Binary("and", Compare("ge", count, index(0)), Compare("le", count, size))  # true anyway; said for the proof
+        self.writer.expect(known, "length", fields.where.members(path), "the holder is damaged")
+        return count
 
     def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
         """The fields of the innermost element, the path from there, and the last field of it."""
@@ -119,6 +126,8 @@ class HolderSide:
         for done, step in enumerate(place.steps):
             match step:
                 case FieldStep(each):
+                    if path and isinstance(fields.find(path).slot, Span):
+                        fields, path = self.single(fields, path, values), ()
                     path, last = (*path, each.name), each
                 case IndexStep(at):
                     elements, count = self.array(_prefix(place, done), values)
@@ -127,6 +136,18 @@ class HolderSide:
                     self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
                     fields, path, last = elements.at(number), (), None
         return fields, path, last
+
+    def single(self, fields: HolderFields, path: Path, values: Values) -> HolderFields:
+        """A message that has a row of its own, since it can contain itself: it is there, or it comes now."""
+        where = fields.where.members(path)
+        if self.births is not None:
+            with self.writer.nested() as new:
+                elements = fields.open(path, index(1))
+                fields.clear(elements.lane, elements.start, index(1))
+            self.writer.emit(If(Compare("eq", fields.stored(path).size, index(0)), block(new)))
+        stored = fields.stored(path)
+        self.writer.expect(Compare("ge", stored.size, index(1)), "missing", where, "it is not there", line=values.line)
+        return replace(fields.elements(path, stored).at(index(0)), where=where)
 
     # --- writing -------------------------------------------------------------------------------------------------------
 
@@ -140,11 +161,11 @@ class HolderSide:
         where = fields.where.members(path)
         self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
         elements = fields.open(path, count)
-        self.arrays[self.key(place, values)] = elements, count
+        self.arrays[_key(place)] = elements, count
         lane = self.root.layout.lanes[elements.lane]
         if not isinstance(lane.element, Number):
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
-            self.writer.emit(Fill(Place(elements.lane, elements.start), mul(count, lane.stride)))
+            self.root.clear(elements.lane, elements.start, count)
         if isinstance(place.type, Array) and self.births is not None:
             bear_each(fields, self.births.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
 
@@ -192,6 +213,11 @@ class WireSide:
         if key not in self.root.found.regions:
             raise NotInPlaceError(key)
         return Wire(self.root.found.regions[key].first)
+
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there; fields of which this can be said are not read in place."""
+        del values
+        raise NotInPlaceError(wire_key(place)[0])
 
     def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
         """How the elements of an array lie, and where one of them is; it is checked to be there."""
@@ -244,6 +270,30 @@ def wire_key(place: typed.Place) -> tuple[Path, list[typed.Expr]]:
                 key.append(EACH)
                 indices.append(at)
     return tuple(key), indices
+
+
+def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr | None:
+    """Whether a field is there, if it can be absent: its own bit (``outer``: also those of all around it), and the cases of unions."""
+    found: Expr | None = None
+    for number, name in enumerate(path):
+        owner = fields.find(path[:number])
+        member = member_of(owner.slot, name)
+        match owner.slot:
+            case Variant(offset, members):
+                there = Compare("eq", Get("i64", owner.place(offset)), index(1 + members.index(member)))
+            case Row() if member.presence is not None and isinstance(member.slot, Span) and fields.is_own_row(member.slot):
+                there = Compare("ne", fields.stored(path[: number + 1]).size, index(0))
+            case Row() if member.presence is not None and (outer or number == len(path) - 1):
+                place, mask = presence_bit(owner, owner.slot, member.presence)
+                there = Compare("ne", Binary("and", Get("u64", place), mask), Const("u64", 0))
+            case _:
+                continue
+        found = there if found is None else Binary("and", found, there)
+    return found
+
+
+def _key(place: typed.Place) -> Key:
+    return tuple(step.field.name if isinstance(step, FieldStep) else step.index for step in place.steps)
 
 
 def _prefix(place: typed.Place, steps: int) -> typed.Place:

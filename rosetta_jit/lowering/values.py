@@ -38,6 +38,10 @@ class Source(Protocol):
         """Where the bytes of a string or bytes field begin."""
         ...
 
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Values:
@@ -74,6 +78,8 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.Has(place):
+                return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
             case _:

@@ -1,7 +1,7 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
     Mapping = Import*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
-    Rule    = Assign(place, Expr) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
+    Rule    = Assign(place, Expr, via) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
             | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
             | Ignore(Path) | Default(Path) | SameNames(Path*)
 
@@ -28,13 +28,26 @@ class Import:
 
 
 @dataclass(frozen=True, slots=True)
+class Via:
+    """``via "path" to depth 4``: the mapping by which a value becomes another, and how often it may be within itself."""
+
+    mapping: str
+    depth: int | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Assign:
-    """``.place = value``; where it ``fits``, a value that the place cannot hold is an error when it comes, and needs no word before."""
+    """``.place = value``; where it ``fits``, a value that the place cannot hold is an error when it comes, and needs no word before.
+
+    With ``via``, the value is a message, or several, that another mapping relates to the place.
+    """
 
     place: Path
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
     fits: bool = False
+    via: Via | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +95,7 @@ class Relation:
     place: Path | Len
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
+    via: Via | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 FOLDER = GOLDEN / "mapping"
 WRONG = sorted(FOLDER.glob("*.mapping"))
 FRONT_ENDS = Readers({name: installed()[name] for name in ("yarp", "protobuf")})
-FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".txt"}}
+FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".txt", ".units"}}
 CATALOGUE = (mapping_words, resolve_words, check_words, derive_words, units_words)
 MAKERS = ("error", "warning", "placed", "in_one_way")
 FILE_SYSTEM = ("file_too_large", "file_not_text", "file_unreadable", "mapping_not_found")

@@ -102,3 +102,41 @@ def test_image(encoding, channels, color, backend):
         encode(image)
     with pytest.raises(rj.DecodeError, match="no such encoding"):
         decode(raw(theirs("sensor_msgs/msg/Image", header=header(), **{**fields, "encoding": "bayer_rggb8"})))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_joints_with_names(backend):
+    decode, encode = programs("proprioception", backend)
+    state = {"name": ["a", "elbow", ""], "position": np.array([0.5, -0.25, 1.0]), "velocity": np.ones(3), "effort": np.zeros(1)}
+    joints = decode.into(raw(theirs("sensor_msgs/msg/JointState", header=header(), **state)), decode.new())
+    assert [(bytes(each.name).decode(), each.value) for each in joints.joints] == list(zip(state["name"], state["position"], strict=True))
+    back = STORE.deserialize_ros1(encode(joints), "sensor_msgs/msg/JointState")
+    assert (back.name, list(back.position), len(back.velocity), len(back.effort)) == (state["name"], list(state["position"]), 0, 0)
+    with pytest.raises(rj.DecodeError, match="as many names as positions"):
+        decode(raw(theirs("sensor_msgs/msg/JointState", header=header(), **{**state, "name": ["a"]})))
+    joints.joints[1].stiffness = 0.0
+    with pytest.raises(rj.EncodeError, match="no stiffness"):
+        encode(joints)
+    odd = encode.holder_type.from_dict({"joints": [{"name": b"\xff", "value": 0.0}]})
+    with pytest.raises(rj.EncodeError) as error:
+        encode(odd)
+    assert error.value.kind == "text"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_diagnostic_status(backend):
+    decode, encode = programs("diagnostic_status", backend)
+    values = [theirs("diagnostic_msgs/msg/KeyValue", key=f"k{number}", value="v" * number) for number in range(5)]
+    status = theirs("diagnostic_msgs/msg/DiagnosticStatus", level=2, name="motor", message="hot", hardware_id="m1", values=values)
+    found = decode(raw(status)).to_dict()["entries"]
+    text = [("name", "motor"), ("message", "hot"), ("hardware_id", "m1"), *((each.key, each.value) for each in values)]
+    wanted = [{"key": key, "value": {"type": "STRING", "string": value, "array": []}} for key, value in text]
+    assert found == [{"key": "level", "value": {"type": "INT", "int": 2, "array": []}}, *wanted]
+    assert encode(decode(raw(status))) == raw(status)
+    for change, words in (
+        (found[1:], "begins with its level"),
+        (found[:3], "begins with level, name"),
+        ([*found, {"key": "x", "value": {"type": "BOOL", "bool": True, "array": []}}], "the value is no text"),
+    ):
+        with pytest.raises(rj.EncodeError, match=words):
+            encode(encode.holder_type.from_dict({"entries": change}))

@@ -1,0 +1,114 @@
+"""The mappings that a mapping's rules use: read beforehand, with all that they import and use themselves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import nested as words
+from rosetta_jit.errors import ReportError
+from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.lowering.derive import derive
+from rosetta_jit.model.mapping import Assign, For, When
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frontend.search import Reading, SearchPath
+    from rosetta_jit.model import mapping as model
+    from rosetta_jit.model.mapping import Rule, Via
+    from rosetta_jit.source import Source, Span
+
+MAPPING_SUFFIX = ".mapping"
+"""Of an import that is a mapping."""
+
+MAX_MAPPINGS = 64
+"""Mappings that one mapping may use, those that they use included."""
+
+MAX_USES = 1000
+"""How often mappings may be used in all: each use is a copy of its rules."""
+
+
+@dataclass(frozen=True, slots=True)
+class Others:
+    """The mappings that can be used, by the file that names them and the name there; and what is being used at the moment.
+
+    ``using`` are the files of the mappings around, from the outermost on; ``uses`` counts all that were made.
+    """
+
+    found: Mapping[tuple[str, str], model.Mapping]
+    imported: Mapping[str, tuple[str, ...]]
+    using: tuple[str, ...]
+    uses: list[str] = field(default_factory=list[str])
+
+    @property
+    def used(self) -> list[model.Mapping]:
+        """Each of them once."""
+        return [*{mapping.source.name: mapping for mapping in self.found.values()}.values()]
+
+    def named(self, via: Via) -> model.Mapping | None:
+        """The mapping of a ``via``; None where it could not be read, which is reported."""
+        return self.found.get((self.using[-1], via.mapping))
+
+    def by_type(self) -> list[model.Mapping]:
+        """The mappings that the file of the innermost one imports."""
+        here = self.using[-1]
+        return [self.found[here, name] for name in self.imported.get(here, ()) if (here, name) in self.found]
+
+
+def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic]) -> Others:
+    """Read all mappings that a mapping uses, directly or through others."""
+    found: dict[tuple[str, str], model.Mapping] = {}
+    imported: dict[str, tuple[str, ...]] = {}
+    read: dict[str, model.Mapping] = {mapping.source.name: mapping}
+    pending = [mapping]
+    while pending:
+        user = pending.pop()
+        imported[user.source.name] = tuple(each.path for each in user.imports if each.path.endswith(MAPPING_SUFFIX))
+        for name, span in _named(user):
+            if (user.source.name, name) in found:
+                continue
+            source = search.loader(reading, user.source)(name)
+            if source is None:
+                problems.append(words.no_such_mapping(span, name, map(str, search.folders)))
+                continue
+            if source.name not in read:
+                if len(read) > MAX_MAPPINGS:
+                    problems.append(words.many_mappings(span, MAX_MAPPINGS))
+                    return Others(found, imported, (mapping.source.name,))
+                other = _read(source, problems)
+                if other is None:
+                    continue
+                read[source.name] = other
+                pending.append(other)
+            found[user.source.name, name] = read[source.name]
+    return Others(found, imported, (mapping.source.name,))
+
+
+def _read(source: Source, problems: list[Diagnostic]) -> model.Mapping | None:
+    try:
+        return derive(parse(source), problems)
+    except ReportError as error:
+        problems.extend(error.diagnostics)
+        return None
+
+
+def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
+    """The names of the mappings that one uses, and where."""
+    yield from ((each.path, each.span) for each in mapping.imports if each.path.endswith(MAPPING_SUFFIX))
+    for rules in (mapping.unpack_rules, mapping.pack_rules):
+        yield from ((via.mapping, via.span) for via in _vias(rules or ()))
+
+
+def _vias(rules: tuple[Rule, ...]) -> Iterator[Via]:
+    for rule in rules:
+        match rule:
+            case Assign(via=via) if via is not None:
+                yield via
+            case For(body=body):
+                yield from _vias(body)
+            case When(_, then, otherwise):
+                yield from _vias((*then, *otherwise))
+            case _:
+                pass

@@ -1,0 +1,182 @@
+"""Mappings that use mappings: named with `via`, or found by type; of arrays, in either direction, and of types within themselves."""
+
+from __future__ import annotations
+
+import pytest
+
+import rosetta_jit as rj
+
+BACKENDS = ["numba", "python", "interpreter"]
+
+FILES = {
+    "geo.proto": """syntax = "proto3"; package geo;
+message Point { double x = 1; double y = 2; string label = 3; }
+message Path { Point start = 1; Point end = 2; repeated Point between = 3; }
+message Tree { int32 value = 1; repeated Tree kids = 2; Tree next = 3; }
+""",
+    "tree.proto": 'syntax = "proto3"; package wide; message Tree { int64 number = 1; repeated Tree kids = 2; Tree next = 3; }',
+    "lab/msg/Point.msg": "float32 east\nfloat32 north\nstring label\n",
+    "lab/msg/Path.msg": "Point start\nPoint end\nPoint[] between\n",
+    "point.mapping": """import "geo.proto"
+import "lab/msg/Point.msg"
+data-holder: geo.Point
+wire-schema: lab/msg/Point
+rules:
+  .x <-> .east * 1000
+  .y <-> .north * 1000
+  .label <-> .label
+""",
+    "path.mapping": """import "geo.proto"
+import "lab/msg/Path.msg"
+import "point.mapping"
+data-holder: geo.Path
+wire-schema: lab/msg/Path
+rules:
+  .start <-> .start via "point.mapping"
+  same names
+""",
+    "back.mapping": """import "geo.proto"
+import "lab/msg/Path.msg"
+data-holder: lab/msg/Path
+wire-schema: geo.Path
+rules:
+  .start <-> .end via "point.mapping"
+  .end <-> .start via "point.mapping"
+  .between <-> .between via "point.mapping"
+""",
+    "tree.mapping": """import "geo.proto"
+import "tree.proto"
+data-holder: geo.Tree
+wire-schema: wide.Tree
+rules:
+  .value <-> int32(.number)
+  .kids <-> .kids via "tree.mapping" to depth 2
+  default .next
+  ignore .next
+""",
+    "list.mapping": """import "geo.proto"
+import "tree.proto"
+data-holder: geo.Tree
+wire-schema: wide.Tree
+rules:
+  .value <-> int32(.number)
+  default .kids
+  ignore .kids
+  .next <-> .next via "list.mapping" to depth 3
+""",
+}
+
+
+def programs(name, backend):
+    return tuple(kind(name, schema=FILES, backend=backend) for kind in (rj.Decoder, rj.Encoder))
+
+
+def wire(type_, *imports):
+    return (
+        rj.Decoder.of(type_, schema=FILES, imports=imports),
+        rj.Encoder.of(type_, schema=FILES, imports=imports),
+    )
+
+
+def point(number, names=("x", "y"), scale=1000.0):
+    return {names[0]: number * scale, names[1]: -number * scale, "label": f"p{number}"}
+
+
+def path(**how):
+    return {"start": point(1, **how), "end": point(2, **how), "between": [point(number, **how) for number in range(3, 40)]}
+
+
+METRES = {"names": ("east", "north"), "scale": 1.0}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_messages_and_arrays_of_them(backend):
+    decode, encode = programs("path.mapping", backend)
+    plain, of_wire = wire("lab/msg/Path", "lab/msg/Path.msg")
+    message = of_wire(of_wire.holder_type.from_dict(path(**METRES)))
+    assert decode(message).to_dict() == path()
+    assert plain(encode(decode(message))).to_dict() == path(**METRES)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_mapping_serves_both_ways_round(backend):
+    decode, encode = programs("back.mapping", backend)
+    _, of_wire = wire("geo.Path", "geo.proto")
+    message = of_wire(of_wire.holder_type.from_dict(path()))
+    swapped = path(**METRES)
+    swapped["start"], swapped["end"] = swapped["end"], swapped["start"]
+    assert decode(message).to_dict() == swapped
+    assert encode(decode(message)) == message
+
+
+def tree(depth, name="value", width=2):
+    return {name: depth, "kids": [tree(depth - 1, name, width) for _ in range(width)] if depth else []}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_types_within_themselves_to_a_depth(backend):
+    decode, encode = programs("tree.mapping", backend)
+    _, of_wire = wire("wide.Tree", "tree.proto")
+    for depth in range(3):
+        message = of_wire(of_wire.holder_type.from_dict(tree(depth, "number")))
+        assert decode(message).to_dict() == tree(depth)
+        assert encode(decode(message)) == message
+    with pytest.raises(rj.DecodeError, match="more than 2 messages within each other") as error:
+        decode(of_wire(of_wire.holder_type.from_dict(tree(3, "number"))))
+    assert error.value.kind == "rejected"
+    with pytest.raises(rj.EncodeError, match="more than 2 messages"):
+        encode(encode.holder_type.from_dict(tree(3)))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_chains_that_may_end_anywhere(backend):
+    decode, encode = programs("list.mapping", backend)
+    _, of_wire = wire("wide.Tree", "tree.proto")
+
+    def chain(length, name):
+        rest = {"next": chain(length - 1, name)} if length > 1 else {}
+        return {name: length, "kids": [], **rest}
+
+    for length in (1, 2, 4):
+        message = of_wire(of_wire.holder_type.from_dict(chain(length, "number")))
+        assert decode(message).to_dict() == chain(length, "value")
+        assert encode(decode(message)) == message
+    with pytest.raises(rj.DecodeError, match="more than 3 messages within each other"):
+        decode(of_wire(of_wire.holder_type.from_dict(chain(5, "number"))))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ('via "point.mapping"', 'via "pont.mapping"', "there is no mapping `pont.mapping`"),
+        ('.start via "point.mapping"', '.start via "path.mapping"', "has no rules from lab/msg/Point to geo.Point"),
+        ('.start <-> .start via "point.mapping"', '.start.x <-> .start.east via "point.mapping"', "these are float32 and float64"),
+        ('.start <-> .start via "point.mapping"', '.start <-> 2 via "point.mapping"', "`via` maps a field"),
+        ("same names", '.end <-> .end\n  .between <-> .between via "path.mapping"', "has no rules from"),
+    ],
+)
+def test_wrong_uses(before, after, words):
+    files = FILES | {"path.mapping": FILES["path.mapping"].replace(before, after)}
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("path.mapping", schema=files)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize(("depth", "words"), [("", "used within itself"), (" to depth 99", "at most 16")])
+def test_depth_must_be_said(depth, words):
+    files = FILES | {"tree.mapping": FILES["tree.mapping"].replace(" to depth 2", depth)}
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("tree.mapping", schema=files)
+    assert words in str(error.value)
+
+
+def test_mappings_that_use_each_other_too_often_are_refused():
+    rules = "\n".join(f'  .kids{number} = .kids{number} via "many.mapping" to depth 16' for number in range(4))
+    fields = " ".join(f"repeated T kids{number} = {number + 1};" for number in range(4))
+    files = {
+        "a.proto": f'syntax = "proto3"; package a; message T {{ {fields} }}',
+        "b.proto": f'syntax = "proto3"; package b; message T {{ {fields} }}',
+        "many.mapping": f'import "a.proto"\nimport "b.proto"\ndata-holder: a.T\nwire-schema: b.T\nunpack-rules:\n{rules}\n',
+    }
+    with pytest.raises(rj.MappingError, match="more than 1000 times"):
+        rj.Decoder("many.mapping", schema=files)
