@@ -32,6 +32,7 @@ from rosetta_jit.kernel.ir import (
     Place,
     Scalar,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -64,6 +65,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return frame.builder.load(frame.used_slot(lane), typ=I64)
         case Capacity(lane):
             return frame.capacity(lane)
+        case Told(what):
+            return frame.told(what)
         case Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
         case Binary(op, left, right):

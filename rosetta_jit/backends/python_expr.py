@@ -27,11 +27,13 @@ from rosetta_jit.kernel.ir import (
     Place,
     Scalar,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
     type_of,
 )
+from rosetta_jit.kernel.state import NOW, NUMBER
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.base import Namespace
@@ -41,6 +43,7 @@ FORMATS = {"bool": "?", "i8": "b", "u8": "B", "i16": "h", "u16": "H", "i32": "i"
 
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+TOLD = {"now": f"int(state[{NOW}])", "number": f"(int(state[{NUMBER}]) + row)"}
 FLOATS = frozenset({"f32", "f64"})
 
 
@@ -77,6 +80,8 @@ def expression(names: Names, expr: Expr) -> str:
             return names.used_name(lane)
         case Capacity(lane):
             return names.capacity_name(lane)
+        case Told(what):
+            return TOLD[what]
         case Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
         case Unary(function, operand):

@@ -19,7 +19,7 @@ def never_set(span: Span | None, side: str, path: str, declared: Span | None, *,
     """A field that cannot be absent and has no rule."""
     place = path.replace("[]", "[i]")
     empty = f", or say that it is empty: `len({place}) = 0`" if kind == "array" else ""
-    meant = f", or say that it is meant: `default {path}`" if "[" not in path and kind == "value" else ""
+    meant = f", or say that it is meant: `default {path}`" if "[" not in path and kind != "array" else ""
     hint = f"add a rule: `{place} = ...`{empty}{meant}"
     notes = (f"declared at {declared}",) if declared else ()
     return error("never-set", f"`{path}` of the {side} is never set", span, notes=notes, help_=hint)

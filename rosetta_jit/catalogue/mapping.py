@@ -73,7 +73,7 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
     if "INTEGER" in expected:
         return "a value is a field (`.a.b[0]`), a number, a text in quotes, a function of those, or a table"
     if "IMPORT" in expected and "FOR" not in expected:
-        return "statements are `import`, `data-holder:`, `wire-schema:`, `rules:`, `unpack-rules:` and `pack-rules:`"
+        return "statements are `import`, `function`, `data-holder:`, `wire-schema:`, `rules:`, `unpack-rules:` and `pack-rules:`"
     return ""
 
 

@@ -115,6 +115,8 @@ class _Counter:
                 return FREE
             case ir.Call(routine):
                 return self.routines.get(routine, FREE)
+            case ir.HostCall(_, arguments):
+                return _sum((Cost(operations=1, checks=1), *map(self.value, arguments)))
             case ir.For() | ir.While() | ir.If() | ir.Switch():
                 return self.nest(stmt)
             case _:

@@ -25,6 +25,7 @@ from rosetta_jit.kernel.ir import (
     Local,
     Place,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -214,6 +215,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Capacity(lane):
             check_lane(scope, lane)
             return "i64", scope.capacity[lane]
+        case Told(what):
+            return "i64", scope.facts.named(("told", what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
         case Fits(op, left, right):

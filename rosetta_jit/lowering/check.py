@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.idl import FrontEnds
     from rosetta_jit.frontend.search import SearchPath
     from rosetta_jit.frontend.unit_file import UnitFile
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.mapping import Import, Mapping
@@ -50,6 +51,7 @@ class Checked:
     wire: Message
     unpack: tuple[Rule, ...] | None
     pack: tuple[Rule, ...] | None
+    functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
 
 
@@ -83,7 +85,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
     others = read_others(mapping, search, reading, problems)
     imports = _Imports(mapping.source, front_ends, search, reading)
     imported = _imports(mapping, imports, problems)
-    theirs = [each for other in others.used for each in _imports(other, replace(imports, importer=other.source), problems)]
+    theirs = [each for other in others.mappings() for each in _imports(other, replace(imports, importer=other.source), problems)]
     everything = [*imported, *theirs]
     schema = annotated(_merged(everything, problems), [file for each in everything for file in each.units], imports.has, problems)
     complete = not any(problem.severity == "error" for problem in problems[derived:])
@@ -100,7 +102,7 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         raise MappingError(_sorted(problems))
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, _sorted(problems))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
 
 
 @dataclass(frozen=True, slots=True)

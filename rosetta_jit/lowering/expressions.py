@@ -13,6 +13,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
+from rosetta_jit.lowering.functions import type_host_call
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
 from rosetta_jit.lowering.units import check_agree
@@ -50,6 +51,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
+        case model.Call(function) if function in scope.functions:
+            return type_host_call(expr, scope.functions[function], scope, type_expr)
         case model.Call("has", (model.Path() as path,)):
             return _presence(path, expr.span, scope)
         case model.Call():

@@ -42,14 +42,13 @@ class Others:
     using: tuple[str, ...]
     uses: list[str] = field(default_factory=list[str])
 
-    @property
-    def used(self) -> list[model.Mapping]:
-        """Each of them once."""
-        return [*{mapping.source.name: mapping for mapping in self.found.values()}.values()]
-
     def named(self, via: Via) -> model.Mapping | None:
         """The mapping of a ``via``; None where it could not be read, which is reported."""
         return self.found.get((self.using[-1], via.mapping))
+
+    def mappings(self) -> list[model.Mapping]:
+        """Each mapping once."""
+        return list({each.source.name: each for each in self.found.values()}.values())
 
     def by_type(self) -> list[model.Mapping]:
         """The mappings that the file of the innermost one imports."""

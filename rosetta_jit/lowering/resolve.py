@@ -16,8 +16,10 @@ from rosetta_jit.lowering.conversions import convert, describe, other_way, same,
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.functions import signatures
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
@@ -28,6 +30,7 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     For,
     Ignore,
+    ImageCall,
     Local,
     Reject,
     SetLength,
@@ -40,11 +43,13 @@ from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
 
@@ -74,9 +79,10 @@ class Resolved:
     pack: TypedRules | None
     enums: frozenset[str]
     problems: tuple[Diagnostic, ...]
+    functions: Mapping[str, Signature]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 
     ``others`` are the mappings that its rules may use.
@@ -89,13 +95,14 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> R
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, others)
+    functions = signatures((mapping, *others.mappings()), problems)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
     try:
         unpack = _block(mapping.unpack_rules, scope)
         pack = _block(mapping.pack_rules, replace(scope, target="wire"))
     except _EnoughError:
         return tuple(problems)
-    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
@@ -307,6 +314,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Choice):
         value = _adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None

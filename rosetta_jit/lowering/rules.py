@@ -17,6 +17,7 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
@@ -113,6 +114,8 @@ class Runner:
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((Bytes() | Array()), typed.ImageCall()):
+                self.assign_image(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
                 self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
@@ -139,6 +142,14 @@ class Runner:
             return
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
+
+    def assign_image(self, place: typed.Place, value: typed.ImageCall, values: Values) -> None:
+        """An image or its pixels. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError(())
+        made = bytes_of(value, values)
+        self.take(place, made.size, values)
+        self.writer.emit(Copy(self.target.address(place, values), made.address, made.size))
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""

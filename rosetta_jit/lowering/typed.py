@@ -1,6 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Asked      each with `type`
+    Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
     Rule = Assign(Place, Expr, Change?) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
@@ -162,6 +163,40 @@ class Has:
 
 
 @dataclass(frozen=True, slots=True)
+class Told:
+    """When this message came, in ns since 1970, or how many came before it; int64."""
+
+    what: OneOf["now", "number"]
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class HostCall:
+    """A function that the mapping declares and its user gives; the arguments have the types that it declares."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+ImageFunction = OneOf["decompress", "compress", "image_width", "image_height", "image_channels", "image_depth"]
+
+
+@dataclass(frozen=True, slots=True)
+class ImageCall:
+    """Bytes as an image, or as the pixels of one: ``numbers`` are their width, height, channels and quality, if it is compressed."""
+
+    function: ImageFunction
+    bytes: Expr
+    type: Type
+    format: str = ""
+    numbers: tuple[Expr, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Choice:
     """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
 
@@ -175,7 +210,10 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice
+Asked = Told | HostCall | ImageCall
+"""What the kernel's host answers."""
+
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Asked
 
 
 @dataclass(frozen=True, slots=True)

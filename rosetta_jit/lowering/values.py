@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
+from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
@@ -82,6 +83,8 @@ class Values:
                 return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
+            case typed.Told() | typed.HostCall() | typed.ImageCall():
+                return asked(value, self)
             case _:
                 assert_never(value)
 
