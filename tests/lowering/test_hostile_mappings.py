@@ -95,7 +95,7 @@ def test_a_report_is_short_and_safe(name):
     [
         ("#" + "x" * 10_000_000, "file-too-large"),
         (".a = .b\n" * 100_000, "too-many"),
-        ("\n".join(f'import "x{i}.proto"' for i in range(100_000)), "too-many"),
+        ("\n".join(f'import "x{i}.proto"' for i in range(30_000)), "too-many"),
         ("\n".join(f'import "x{i}.proto"' for i in range(201)), "too-many"),
     ],
 )
