@@ -2,8 +2,8 @@
 
 now ()   counter ()   and what the mapping declares
 int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
-int8 … uint64 (x [, round | truncate])     of a float
-float32 float64 (x)   bool (x)   enum.name (x)
+int8 … uint64 (x [, round | truncate | saturate])     of a float
+float32 float64 (x [, exact])   bool (x)   enum.name (x)
 radians degrees sqrt sin cos tan asin acos atan (x) atan2 (y, x) of float64
 floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide (x, y)
 """
@@ -96,11 +96,11 @@ def rules_between(source: Type, target: Type) -> tuple[ConversionRule, ...]:
         case Int(), Int():
             return ("exact", "saturate", "wrap")
         case Float(), Int():
-            return ("exact", "round", "truncate")
+            return ("exact", "round", "truncate", "saturate")
         case ((Bool() | Enum()), Int()) | (Int(), (Bool() | Enum())):
             return ("exact",)
         case ((Int() | Float()), Float()):
-            return ("nearest",)
+            return ("nearest", "exact")
         case _:
             return ()
 

@@ -175,6 +175,8 @@ class Values:
     def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
+        if target in ("f32", "f64"):
+            return self.exact_float(local, target)
         if source in ("f32", "f64"):
             whole = self.writer.let("whole", Unary("rint" if rule == "round" else "trunc", local))
             if rule == "exact":
@@ -182,6 +184,18 @@ class Values:
             local = whole
         self.in_range(local, target)
         return Convert(target, local)
+
+    def exact_float(self, value: Local, target: Scalar) -> Expr:
+        """A float that is the same number; NaN stays one."""
+        source = type_of(value)
+        made = self.writer.let("float", Convert(target, value))
+        same: Expr = Compare("eq", Convert(source, made), value)
+        if source in ("f32", "f64"):
+            same = Binary("or", same, Compare("ne", value, value))
+        elif RANGES[source][1] >= 1 << 62:  # what is rounded up beyond the integers comes back as the last of them
+            same = Binary("and", same, Compare("lt", made, Const(target, float(RANGES[source][1]))))
+        self.expect(same, target)
+        return made
 
     def in_range(self, value: Local, target: Scalar) -> None:
         source = type_of(value)
@@ -200,8 +214,10 @@ class Values:
 
     def saturated(self, value: Expr, target: Scalar) -> Expr:
         source = type_of(value)
-        if source in ("f32", "f64") or target in ("f32", "f64"):
-            return Convert(target, value)
+        if source in ("f32", "f64"):
+            number = self.writer.let("number", value)
+            self.expect(Compare("eq", number, number), target)  # NaN is none
+            return Convert(target, Unary("rint", number))
         low, high = RANGES[target]
         least, most = RANGES[source]
         if low > least:
@@ -226,7 +242,7 @@ RANGES: dict[str, tuple[int, int]] = {
 }
 """Least value and first one too large."""
 
-NAMES = {"i8": "int8", "u8": "uint8", "i16": "int16", "u16": "uint16", "i32": "int32", "u32": "uint32", "i64": "int64", "u64": "uint64"}
+NAMES = {scalar: f"{'u' if scalar[0] == 'u' else ''}int{scalar[1:]}" for scalar in RANGES} | {"f32": "float32", "f64": "float64"}
 
 
 def scalar_type(type_: Type) -> Scalar:

@@ -174,6 +174,30 @@ def test_many_units_take_no_time(tmp_path):
     rules = "".join(f"  .b{number} = .a[len(.a) - {number}]\n" for number in range(500))
     fields = " ".join(f'("b{number}" :double (:unit :m))' for number in range(500))
     files = schemas(f'("a" (:list :double) (:units {units}))', fields, f"unpack-rules:\n{rules}")
-    start = time.perf_counter()
+    start = time.process_time()
     assert {code for code, _ in found(files, tmp_path)} == {"unit"}
-    assert time.perf_counter() - start < 30
+    assert time.process_time() - start < 30
+
+
+VIA = {
+    "m.proto": """syntax = "proto3"; package m; import "rosetta_jit/unit.proto";
+message V { double x = 1; double y = 2; } message P { double x = 1; double y = 2; }
+message W { V there = 1 [(rosetta_jit.unit) = "mm"]; V here = 2 [(rosetta_jit.unit) = "km"]; }
+message H { P there = 1 [(rosetta_jit.unit) = "m"]; P here = 2 [(rosetta_jit.unit) = "m"]; }""",
+    "p.mapping": 'import "m.proto"\ndata-holder: m.P\nwire-schema: m.V\nrules:\n  same names\n',
+    "m.mapping": """import "m.proto"
+data-holder: m.H
+wire-schema: m.W
+unpack-rules:
+  .there = .there via "p.mapping"
+  .here = .here via "p.mapping"
+""",
+}
+
+
+def test_a_nested_mapping_converts_where_it_is_used():
+    own = {"schema": VIA, "imports": ["m.proto"], "encoding": "protobuf", "backend": "interpreter"}
+    write = rj.Encoder.of("m.W", **own)
+    decode = rj.Decoder("m.mapping", schema=VIA, encoding="protobuf", backend="interpreter")
+    held = decode(write(write.holder_type.from_dict({"there": {"x": 250.0, "y": 1.0}, "here": {"x": 2.0, "y": 0.5}}))).to_dict()
+    assert held == {"there": {"x": 0.25, "y": 0.001}, "here": {"x": 2000.0, "y": 500.0}}
