@@ -5,10 +5,10 @@ The words of each diagnostic stand in `rosetta_jit.catalogue`, one function a mi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.cells import TAB_CELLS, cells, printable
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

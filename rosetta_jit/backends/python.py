@@ -21,6 +21,7 @@ from rosetta_jit.kernel.ir import (
     Block,
     Call,
     Copy,
+    Digits,
     Expect,
     Expr,
     Failure,
@@ -30,11 +31,13 @@ from rosetta_jit.kernel.ir import (
     If,
     Kernel,
     Let,
+    Nearest,
     Order,
     Require,
     Reserve,
     Return,
     Routine,
+    Scale,
     SetField,
     Stmt,
     Store,
@@ -44,7 +47,7 @@ from rosetta_jit.kernel.ir import (
     Wire,
     type_of,
 )
-from rosetta_jit.kernel.shape import extents_of
+from rosetta_jit.kernel.shape import expressions_of, extents_of, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 
 if TYPE_CHECKING:
@@ -63,7 +66,8 @@ IMPORTS = (
 HOST_IMPORTS = ("from rosetta_jit.kernel.host import RefusedError",)
 """Of a kernel that calls functions of its host."""
 
-CALLED = frozenset(name.strip(",") for line in IMPORTS + HOST_IMPORTS for name in line.partition(" import ")[2].split())
+OF_DECIMALS = "from rosetta_jit.kernel.decimals import digits, nearest, scale"
+CALLED = frozenset(name.strip(",") for line in (*IMPORTS, *HOST_IMPORTS, OF_DECIMALS) for name in line.partition(" import ")[2].split())
 PARAMETERS = "buffer, begin, end, state, lanes, row"
 
 
@@ -85,7 +89,7 @@ def python_text(kernel: Kernel) -> str:
     writer = Writer()
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
     calls_host = any(isinstance(stmt, HostCall) for body in kernel.bodies for stmt in statements(body))
-    for line in IMPORTS + (HOST_IMPORTS if calls_host else ()):
+    for line in (*IMPORTS, *(HOST_IMPORTS if calls_host else ()), *([OF_DECIMALS] if _has_decimals(kernel) else [])):
         writer.line(line)
     for routine in kernel.routines:
         writer.line()
@@ -103,6 +107,13 @@ def python_text(kernel: Kernel) -> str:
         hidden = f", {kernel.lanes}, {kernel.strides[kernel.lanes :]}" if kernel.hidden else ""
         writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row{hidden})")
     return writer.text()
+
+
+def _has_decimals(kernel: Kernel) -> bool:
+    """Whether a kernel reads or writes floats in decimal."""
+    blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
+    expressions = (expr for block in blocks for stmt in statements(block) for expr in expressions_of(stmt))
+    return any(isinstance(part, Nearest | Digits | Scale) for expr in expressions for part, _ in subexpressions(expr))
 
 
 def _reserved(kernel: Kernel) -> frozenset[str]:

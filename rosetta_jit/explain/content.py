@@ -8,9 +8,10 @@ Direction   = Line*, Loss*, Refusal*, cost                            unpack: wi
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
 from rosetta_jit.explain.lines import Line, Lines

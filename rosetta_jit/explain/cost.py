@@ -8,11 +8,12 @@ several attempts the first. Operations are those on values: where a value lies i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.counts import count_text, named_counts
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import operands

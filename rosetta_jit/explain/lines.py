@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.lowering import typed

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import nodes, places
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.conversions import describe

@@ -39,6 +39,9 @@ OPERATIONS: tuple[Operation, ...] = get_args(Operation)
 Direction = Literal["unpack", "pack"]
 Uses = dict[Operation, tuple[Direction, ...]]
 
+DATES = frozenset(("iso8601", "seconds", "fraction", "nanoseconds"))
+"""Functions of texts that are dates."""
+
 MOMENT = re.compile(r"(?:^|_)(time|timestamp|stamp|duration|date|n?secs?|nanosec|usecs?)(?:_|$)")
 """A field that holds a moment or a duration, by its name, or by that of a field around it."""
 
@@ -98,6 +101,8 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "predicate assignment"
             if otherwise is None:
                 yield "rejection"
+        case typed.TextCall(function):
+            yield "date manipulation" if function in DATES else "string manipulation"
         case typed.ImageCall():
             yield "image compression"
         case typed.Told() | typed.HostCall():

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.printer import show_expr, show_type, show_way
 from rosetta_jit.model.types import Array, Optional, Struct, Union
 

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, Via, When
 from rosetta_jit.source import Span
@@ -130,7 +130,8 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
         case "path":
             return _path(tree, context.origin, context)
         case "length":
-            return Len(_path(_trees(tree)[0], context.origin, context), span)
+            measured = _expr(_trees(tree)[0], context)
+            return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
         case "negative" | "inversion":
             return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
         case "conditional":

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel import arithmetic
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel import arithmetic, decimals
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
 from rosetta_jit.kernel.ir import (
@@ -24,6 +25,7 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Digits,
     Expect,
     Fill,
     Fits,
@@ -35,10 +37,12 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Nearest,
     Place,
     Require,
     Reserve,
     Return,
+    Scale,
     Select,
     SetField,
     Store,
@@ -343,6 +347,20 @@ def _value(machine: _Machine, expr: Expr) -> Value:
             return chosen if _value(machine, condition) else other
         case IsText(address, size):
             return _is_text(bytes(_bytes(machine, address, _integer(machine, size))))
+        case Nearest() | Digits() | Scale():
+            return _decimal(machine, expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(machine: _Machine, expr: Nearest | Digits | Scale) -> Value:
+    match expr:
+        case Nearest(address, size, exponent):
+            return decimals.nearest(bytes(_bytes(machine, address, _integer(machine, size))), _integer(machine, exponent))
+        case Digits(value, places):
+            return decimals.digits(type_of(value), float(_value(machine, value)), places)
+        case Scale(value):
+            return decimals.scale(type_of(value), float(_value(machine, value)))
         case _:
             assert_never(expr)
 

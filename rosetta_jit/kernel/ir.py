@@ -12,7 +12,7 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
     Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
            | Unary | Binary | Compare | Fits | Convert | Select
-           | IsText(address, size)
+           | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value)
     Place  = lane, row, offset                            a typed field of a row of a lane
     Address = Wire(at) | Place
 
@@ -70,8 +70,9 @@ replaces what the holder held. Later rows of a batch are added to the rows befor
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from rosetta_jit.dataclass import dataclass
 
 Scalar = Literal["bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"]
 Order = Literal["<", ">"]
@@ -225,7 +226,36 @@ class IsText:
     size: Expr
 
 
-Expr = Const | Local | Load | Get | Used | Capacity | Told | Unary | Binary | Compare | Fits | Convert | Select | IsText
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """The f64 nearest to the integer that the digits among ``size`` bytes spell, times ten to the power of ``exponent`` (i64)."""
+
+    address: Address
+    size: Expr
+    exponent: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Digits:
+    """Decimal digits of a float's absolute value, as a u64: the fewest that, rounded correctly, read back.
+
+    With ``places`` (up to 17) those of the number rounded to so many decimals, half to even, of which the low 64 bits count.
+    What is not finite has the digits 0.
+    """
+
+    value: Expr
+    places: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """The power of ten (i64) times which the fewest `Digits` are the float."""
+
+    value: Expr
+
+
+Decimal = Nearest | Digits | Scale
+Expr = Const | Local | Load | Get | Used | Capacity | Told | Unary | Binary | Compare | Fits | Convert | Select | IsText | Decimal
 
 # --- statements --------------------------------------------------------------------------------------------------------
 
@@ -517,3 +547,9 @@ def type_of(expr: Expr) -> Scalar:
             return "bool"
         case Select(_, then, _):
             return type_of(then)
+        case Nearest():
+            return "f64"
+        case Digits():
+            return "u64"
+        case Scale():
+            return "i64"

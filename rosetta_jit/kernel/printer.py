@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Digits,
     Expect,
     Fill,
     Fits,
@@ -28,10 +29,12 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Nearest,
     Place,
     Require,
     Reserve,
     Return,
+    Scale,
     Select,
     SetField,
     Store,
@@ -134,6 +137,20 @@ def expression_text(expr: Expr) -> str:
             return f"({expression_text(then)} if {expression_text(condition)} else {expression_text(otherwise)})"
         case IsText(address, size):
             return f"is_text({_address(address)}, {expression_text(size)})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(expr: Nearest | Digits | Scale) -> str:
+    match expr:
+        case Nearest(address, size, exponent):
+            return f"nearest({_address(address)}, {expression_text(size)}, {expression_text(exponent)})"
+        case Digits(value, places):
+            return f"digits({expression_text(value)}{'' if places is None else f', {places}'})"
+        case Scale(value):
+            return f"scale({expression_text(value)})"
         case _:
             assert_never(expr)
 

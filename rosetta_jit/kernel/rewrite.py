@@ -16,6 +16,7 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Digits,
     Expect,
     Extent,
     Failure,
@@ -29,10 +30,12 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Nearest,
     Place,
     Require,
     Reserve,
     Return,
+    Scale,
     Select,
     SetField,
     Store,
@@ -77,6 +80,12 @@ def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return Select(change(condition), change(then), change(otherwise))
         case IsText(address, size):
             return IsText(_address(address, change), change(size))
+        case Nearest(address, size, exponent):
+            return Nearest(_address(address, change), change(size), change(exponent))
+        case Digits(value, places):
+            return Digits(change(value), places)
+        case Scale(value):
+            return Scale(change(value))
         case _:
             assert_never(expr)
 
@@ -157,7 +166,7 @@ def names_read(block: Block) -> set[str]:
 
 def reads_memory(expr: Expr) -> bool:
     """Whether an expression looks at the message or the holder."""
-    return any(isinstance(part, Load | Get | Used | IsText) for part, _ in subexpressions(expr))
+    return any(isinstance(part, Load | Get | Used | IsText | Nearest) for part, _ in subexpressions(expr))
 
 
 def ends(block: Block) -> bool:

@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Digits,
     Expect,
     Fill,
     Fits,
@@ -28,10 +29,12 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Nearest,
     Place,
     Require,
     Reserve,
     Return,
+    Scale,
     Select,
     SetField,
     Store,
@@ -138,6 +141,10 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
             return (condition, then, otherwise)
         case IsText(address, size):
             return (_start(address), size)
+        case Nearest(address, size, exponent):
+            return (_start(address), size, exponent)
+        case Digits(value, _) | Scale(value):
+            return (value,)
         case _:
             assert_never(expr)
 

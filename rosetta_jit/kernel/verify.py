@@ -6,10 +6,11 @@ survives where paths meet), `contracts` (routines), `shape` (the text). A failed
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import field
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import contracts, paths
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -65,6 +66,9 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.prove import Formula
     from rosetta_jit.kernel.symbolic import Typed
 
+MAX_PROOFS = 256
+"""Routines of which it is remembered that they were proven."""
+
 MAX_TERMS = 6
 """A longer sum gets a name: sums over many fields would cost more with each field."""
 
@@ -97,7 +101,7 @@ def verify(kernel: Kernel) -> None:
     """
     routines = _proven_routines(kernel)
     for body in kernel.bodies:
-        _body(_Walk(entry(kernel), routines), kernel, body)
+        _body(_Walk(entry(kernel.strides), routines), kernel, body)
 
 
 def settled(kernel: Kernel) -> frozenset[int]:
@@ -112,7 +116,7 @@ def settled(kernel: Kernel) -> frozenset[int]:
     needed: set[int] = set()
     routines = _proven_routines(kernel)
     for body in kernel.bodies:
-        walk = _Walk(entry(kernel), routines, notes=True)
+        walk = _Walk(entry(kernel.strides), routines, notes=True)
         _body(walk, kernel, body)
         found |= walk.seen.keys()
         needed |= walk.needed
@@ -124,19 +128,20 @@ def _proven_routines(kernel: Kernel) -> Mapping[str, Routine]:
     problem = shape_error(kernel)
     if problem is not None:
         raise VerificationError(f"kernel {kernel.name}: {problem}")
-    routines = {routine.name: routine for routine in kernel.routines}
-    for routine in kernel.routines:
-        _routine(kernel, routine, routines)
-    return routines
+    for number, routine in enumerate(kernel.routines):
+        try:
+            _prove_routine(kernel.strides, routine, kernel.routines[:number])
+        except UnprovenError as error:
+            raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
+    return {routine.name: routine for routine in kernel.routines}
 
 
-def _routine(kernel: Kernel, routine: Routine, routines: Mapping[str, Routine]) -> None:
-    try:
-        walk = _Walk(contracts.inside(kernel, routine), routines)
-        _block(walk, routine.body)
-        contracts.keep(walk.scope, routine)
-    except UnprovenError as error:
-        raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
+@lru_cache(maxsize=MAX_PROOFS)
+def _prove_routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...]) -> None:
+    """Prove a routine, which calls those before it. No pass changes one, so that a proof holds for all rounds of all passes."""
+    walk = _Walk(contracts.inside(strides, routine), {each.name: each for each in before})
+    _block(walk, routine.body)
+    contracts.keep(walk.scope, routine)
 
 
 def _body(walk: _Walk, kernel: Kernel, body: Block) -> None:

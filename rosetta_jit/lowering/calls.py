@@ -5,7 +5,7 @@ int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate | saturate])     of a float
 float32 float64 (x [, exact])   bool (x)   enum.name (x)
 radians degrees sqrt sin cos tan asin acos atan (x) atan2 (y, x) of float64
-floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide (x, y)
+floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide floor_divide modulo (x, y)
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
 from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS, type_image_call
+from rosetta_jit.lowering.type_texts import NAMES, type_length, type_text_call
 from rosetta_jit.lowering.typed import INT64, Call, Const, Convert, Told
 from rosetta_jit.lowering.units import check_arguments
 from rosetta_jit.model.expr import Name
@@ -39,7 +40,24 @@ INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uin
 FLOATS = ("float32", "float64")
 ANGULAR = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
 TOLD: dict[str, Literal["now", "number"]] = {"now": "now", "counter": "number"}
-FUNCTIONS = (*TOLD, "radians", "degrees", *ANGULAR, "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide")
+DIVISIONS = ("divide", "floor_divide", "modulo")
+FUNCTIONS = (
+    *TOLD,
+    "radians",
+    "degrees",
+    *ANGULAR,
+    "sqrt",
+    "floor",
+    "ceil",
+    "round",
+    "abs",
+    "min",
+    "max",
+    "align",
+    "divide",
+    "floor_divide",
+    "modulo",
+)
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -48,10 +66,14 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if target is not None:
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
+    if expr.function == "len":
+        return type_length(expr, scope, type_expr)
+    if expr.function in NAMES:
+        return type_text_call(expr, scope, type_expr)
     if expr.function in IMAGE_FUNCTIONS:
         return type_image_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *IMAGE_FUNCTIONS, "bool", "has", "len", *scope.enums, *scope.functions}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *NAMES, *IMAGE_FUNCTIONS, "bool", "has", "len", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
@@ -141,7 +163,7 @@ def _arity(expr: model.Call, scope: Scope) -> bool:
             fits, expected = found == 0, "no values"
         case "align":
             fits, expected = found == 2, "a number and a quantum"
-        case "divide" | "atan2":
+        case "divide" | "floor_divide" | "modulo" | "atan2":
             fits, expected = found == 2, "two numbers"
         case _:
             fits, expected = found == 1, "one value"
@@ -165,7 +187,7 @@ def _function(expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | N
 def _candidates(function: str) -> tuple[Int | Float, ...]:
     """The types in which a function is computed, narrowest first."""
     match function:
-        case "align":
+        case "align" | "floor_divide" | "modulo":
             return (INT64,)
         case "abs" | "min" | "max" | "divide":
             return (INT64, Float(32), FLOAT64)
@@ -188,7 +210,7 @@ def _narrows(arguments: list[Expr], target: Int | Float, targets: tuple[Int | Fl
 def _folded(expr: model.Call, arguments: list[Expr], target: Int | Float) -> Expr:
     function = cast("Function", expr.function)
     numbers = [argument.value for argument in arguments if isinstance(argument, Const) and isinstance(argument.value, int)]
-    if isinstance(target, Int) and len(numbers) == len(arguments) and function != "divide":
+    if isinstance(target, Int) and len(numbers) == len(arguments) and function not in DIVISIONS:
         known = _of_integers(function, numbers)
         if conversions.holds(target, known):
             return Const(known, target, expr.span)

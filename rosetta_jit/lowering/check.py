@@ -5,10 +5,11 @@ Imports are read by the front ends, names and types resolved, and each direction
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.annotate import annotated

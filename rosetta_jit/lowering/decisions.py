@@ -1,7 +1,7 @@
 """Types of what is decided: comparisons, logic, and choices among values.
 
-Two numbers are compared as arithmetic would unify them, integers of up to 64 bits exactly. A text is compared with one that the mapping
-writes down; an enum with its constants; a bool with another.
+Two numbers are compared as arithmetic would unify them, integers of up to 64 bits exactly. Texts are compared byte by
+byte, an enum with its constants, a bool with another.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, same
+from rosetta_jit.lowering.type_texts import comparison
 from rosetta_jit.lowering.typed import BOOL, Access, Binary, Choice, Const, IsText, Unary
 from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
@@ -88,7 +89,7 @@ def _compared(left: Expr, right: Expr, operator: model.Operator, expr: model.Bin
             pair = _numbers(left, right)
             return None if pair is None else Binary(operator, *pair, BOOL, expr.span)
         case _:
-            return None
+            return comparison(left, right, operator, expr.span)
 
 
 def _numbers(left: Expr, right: Expr) -> tuple[Expr, Expr] | None:

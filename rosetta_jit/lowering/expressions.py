@@ -14,7 +14,9 @@ from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.functions import type_host_call
+from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
 from rosetta_jit.lowering.scope import Broken, resolve_path
+from rosetta_jit.lowering.type_texts import concatenation, is_textual
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
 from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model import expr as model
@@ -56,7 +58,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Call("has", (model.Path() as path,)):
             return _presence(path, expr.span, scope)
         case model.Call():
-            return type_call(expr, scope, type_expr)
+            return type_call(for_comparison(expr), scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
         case _:
@@ -65,7 +67,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
 
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
     """An expression that must be an integer, as int64."""
-    typed = type_expr(expr, scope)
+    typed = type_expr(for_type(expr, INT64), scope)
     if typed is None:
         return None
     integer = as_int64(typed)
@@ -144,6 +146,8 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
     if left is None or right is None:
         return None
+    if expr.operator == "+" and (is_textual(left.type) or is_textual(right.type)):
+        return concatenation(left, right, expr.span, scope)
     if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
         scope.problems.append(words.zero_division(right.span))
         return None

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.frontend import unit_file
 from rosetta_jit.frontend.search import refusal

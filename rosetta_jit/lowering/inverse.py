@@ -13,13 +13,16 @@
 | `radians(x)`      | degrees(value), and the reverse   |
 | `float32(x)` …    | the value, as the field holds it  |
 | `table(x) {a = b}`| table(value) {b = a}              |
+
+Those of texts stand in `rosetta_jit.lowering.inverse_texts`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.inverse_texts import opposite, without
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Name, Path, Unary
 
 if TYPE_CHECKING:
@@ -117,6 +120,8 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return argument, Call(OPPOSITE[function], (value,), span)
         case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
             return argument, value
+        case Call() if (found := opposite(expr, value)) is not None:
+            return found
         case Call(function):
             raise NoInverseError(expr, f"`{function}` gives the same for several values")
         case Choice():
@@ -126,6 +131,8 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
 
 
 def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
+    if (found := without(expr, value)) is not None:
+        return found
     left = bool(fields_in(expr.left))
     inner, other = (expr.left, expr.right) if left else (expr.right, expr.left)
     if fields_in(other):

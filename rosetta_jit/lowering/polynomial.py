@@ -9,9 +9,10 @@ quotient, a call. Its arguments are polynomials again, so that a substitution re
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import (
     Access,
@@ -27,6 +28,7 @@ from rosetta_jit.lowering.typed import (
     IsText,
     LenOf,
     Local,
+    TextCall,
     Told,
     Unary,
 )
@@ -173,6 +175,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
+        case TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):

@@ -6,20 +6,23 @@ the checks that follow do not report the same mistake in other words.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.functions import signatures
+from rosetta_jit.lowering.inverse_texts import for_type
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_images import is_bytes
+from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
@@ -34,6 +37,7 @@ from rosetta_jit.lowering.typed import (
     Local,
     Reject,
     SetLength,
+    TextCall,
     When,
 )
 from rosetta_jit.lowering.unit_changes import change_within
@@ -205,6 +209,8 @@ class _Block:
 
     def assign(self, rule: model.Assign, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
+        if place is not None and rule.fits:
+            rule = replace(rule, value=for_type(rule.value, place.type))
         value = type_expr(rule.value, scope)
         if place is None:
             return None
@@ -316,6 +322,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
+        return value
+    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.sides import HolderSide, wire_key
+from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.values import constant, scalar_type
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
@@ -80,8 +82,8 @@ class Supplies:
                 return self.source.count(origin, here)
             case typed.Default():
                 return index(0)
-            case typed.Assign(_, typed.ImageCall()):
-                raise NotInPlaceError(())
+            case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
+                raise NotInPlaceError
             case _:
                 raise AssertionError(rule)
 
@@ -174,6 +176,9 @@ def _array_places(node: object) -> list[typed.Place]:
             return looked_at + _array_places((image, *numbers))
         case typed.Call(_, arguments, _) | typed.HostCall(_, arguments, _):
             return _array_places(arguments)
+        case typed.TextCall(_, arguments):
+            texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
+            return texts + _array_places(arguments)
         case _:
             return []
 

@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Asked      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked     each with `type`
     Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
@@ -16,10 +16,11 @@ text is checked, and a length that the target fixes is checked.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import Bool, Int
 
 if TYPE_CHECKING:
@@ -35,7 +36,31 @@ ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate"
 target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
 
 Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
-Function = OneOf["radians", "degrees", Angular, "atan2", "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", "divide"]
+Function = OneOf[
+    "radians",
+    "degrees",
+    Angular,
+    "atan2",
+    "sqrt",
+    "floor",
+    "ceil",
+    "round",
+    "abs",
+    "min",
+    "max",
+    "align",
+    "divide",
+    "floor_divide",
+    "modulo",
+]
+
+OfTexts = OneOf[
+    "lower", "upper", "strip", "replace", "slice", "part", "behind", "before", "until_nul", "padded", "concatenated", "decoded", "bytes"
+]
+FromText = OneOf[
+    "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
+]
+TextFunction = OneOf[OfTexts, FromText, "written", "iso8601"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,6 +206,16 @@ class HostCall:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class TextCall:
+    """A function that takes texts or gives one: strings, bytes, arrays of 8-bit integers. ``compared`` is below, at or above 0."""
+
+    function: TextFunction
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 ImageFunction = OneOf["decompress", "compress", "image_width", "image_height", "image_channels", "image_depth"]
 
 
@@ -213,7 +248,7 @@ class Choice:
 Asked = Told | HostCall | ImageCall
 """What the kernel's host answers."""
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | Choice | Asked
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
-from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -61,8 +63,9 @@ class Values:
                 return constant(number, scalar_type(type_))
             case typed.Local(name):
                 return self.variables[name]
-            case typed.Access(place):
-                return self.source.number(place, self)
+            case typed.Access(place, type_):
+                number = self.source.number(place, self)
+                return converted(number, "bool") if isinstance(type_, Bool) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
@@ -79,6 +82,8 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.TextCall():
+                return number_of(value, self)
             case typed.Has(place):
                 return self.source.present(place, self)
             case typed.Choice():
@@ -94,7 +99,7 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with writer.nested() as step:
+            with forgetting(self.source), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
@@ -104,7 +109,7 @@ class Values:
         if choice.otherwise is None:
             self.reject(choice.reason, when=undecided)
             return found
-        with writer.nested() as other:
+        with forgetting(self.source), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
@@ -148,6 +153,8 @@ class Values:
                 return result
             case "divide":
                 return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case "floor_divide" | "modulo":
+                return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import struct
 import sys
-from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 from typing import TYPE_CHECKING
 from weakref import WeakValueDictionary, finalize
 
 from llvmlite import binding
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -42,6 +43,7 @@ ALLOWED = frozenset(
         "clock_gettime",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
+        *("snprintf", "strtod", "strtoll"),
         *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
         *(f"{name}{suffix}" for suffix in ("", "f") for name in MATHEMATICS),
     ]

@@ -37,6 +37,9 @@ OF_INTEGERS = {
     ".i / .j * .j + .i % .j": lambda i, _j: i,
     "int64(float64(.i) / 2.0, round)": lambda i, _j: round(i / 2),
     "1 if .i < .j and not (.i == 0) else -1": lambda i, j: 1 if i < j and i != 0 else -1,
+    "floor_divide(.i, .j + 2) * 100 + modulo(.i, .j + 2)": lambda i, j: i // (j + 2) * 100 + i % (j + 2),
+    "floor_divide(.i, -3) * 100 + modulo(.i, -3)": lambda i, _j: i // -3 * 100 + i % -3,
+    ".i + int64(.x > 2) + int64(.x) + (3 if .y > 0 else 4)": lambda i, _j: i + 4,
 }
 
 
