@@ -47,19 +47,19 @@ def unknown_type(span: Span, name: str, known: Collection[str]) -> Diagnostic:
 def unknown_field(span: Span, name: str, owner: str, known: Collection[str]) -> Diagnostic:
     """A field that its type does not have."""
     near = nearest(name, known)
-    help_ = f"did you mean `.{near}`?" if near else ""
+    help_ = f"did you mean `.{near}`?" if near else "name one of its fields"
     return error("unknown-field", f"`{shorten(owner)}` has no field `.{shorten(name)}`", span, "named here", help_=help_)
 
 
 def wrong_step(span: Span, found: str, *, into: str) -> Diagnostic:
     """A member of what is no struct, or an element of what is no array."""
-    message = f"{shorten(found)} has no {into}"
-    return error("unknown-field", message, span, help_="write `[]` for each element of an array" if found.startswith("an array") else "")
+    help_ = "write `[]` for each element of an array" if found.startswith("an array") else "leave it out"
+    return error("unknown-field", f"{shorten(found)} has no {into}", span, help_=help_)
 
 
 def index_range(span: Span, length: int) -> Diagnostic:
     """An element behind the end of an array."""
-    return error("index", f"the array has {length} elements, counted from 0", span, "no such element")
+    return error("index", f"the array has {length} elements, counted from 0", span, "no such element", help_="correct the index")
 
 
 def no_numbers(span: Span, found: str) -> Diagnostic:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
+UNITS = "units are pint's: `degree`, `radian`, `m`, `mm`, `s`, `N*m`, `degC`; correct the schema"
 ANGLES = ("degree", "degrees", "deg", "radian", "radians", "rad")
 
 
@@ -55,6 +56,14 @@ def too_much_within(span: Span | None, found: str) -> Diagnostic:
     return error("unit", message, span, help_="assign its fields one by one")
 
 
+def wrong_factor(span: Span | None, factor: float, source: str, target: str, right: float) -> Diagnostic:
+    """A factor that converts the other way."""
+    message = f"times {factor:.6g} converts {shorten(target)} to {shorten(source)}, and this is in {shorten(source)}"
+    function = {"degree": "radians", "radian": "degrees"}.get(source, "")
+    how = f"write `{function}(...)`" if function and target in {"degree", "radian"} else f"multiply by {right:.6g}"
+    return error("unit", message, span, "the wrong way", help_=f"{how}, or leave the factor out where both units are declared")
+
+
 def no_float(span: Span | None, found: str) -> Diagnostic:
     """Something else than a float whose unit has to change."""
     message = f"the units differ, and {found} is no float that could be converted"
@@ -70,4 +79,4 @@ def one_sided(span: Span | None, unit: str, *, is_source: bool) -> Diagnostic:
 
 def unknown_unit(span: Span | None, unit: str) -> Diagnostic:
     """A unit that the library of units does not know."""
-    return warning("unknown-unit", f"`{shorten(unit)}` is no unit that is known: nothing is converted", span)
+    return warning("unknown-unit", f"`{shorten(unit)}` is no unit that is known: nothing is converted", span, help_=UNITS)

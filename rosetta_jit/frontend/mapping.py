@@ -7,6 +7,7 @@ an index within the place included, is on the other side: a target has nothing t
 from __future__ import annotations
 
 from functools import cache
+from itertools import islice
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, cast
 
@@ -33,6 +34,12 @@ if TYPE_CHECKING:
 
 GRAMMAR = FilePath(__file__).with_name("mapping.lark")
 
+MAX_CHARACTERS = 1 << 20
+MAX_TOKENS = 50_000
+"""Words and signs of one mapping: some sixteen thousand rules, which take seconds."""
+
+MAX_IMPORTS = 200
+
 MAX_NESTING = 64
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
@@ -55,10 +62,12 @@ def parse(source: Source) -> Mapping:
     MappingError
         All syntax errors that were found, each with its place.
     """
-    tokens: list[Token] = list(cast("Any", _grammar()).lex(source.text))  # lark types it in part only
-    deep = _too_deep(tokens, source)
-    if deep is not None:
-        raise MappingError((deep,))
+    if len(source.text) > MAX_CHARACTERS:
+        raise MappingError((words.file_too_large(source.name, MAX_CHARACTERS),))
+    tokens: list[Token] = list(islice(cast("Any", _grammar()).lex(source.text), MAX_TOKENS + 1))  # lark types it in part only
+    refused = _too_many(tokens, source) or _too_deep(tokens, source)
+    if refused is not None:
+        raise MappingError((refused,))
     tree = parse_tokens(_grammar(), source, tokens, _recovery(), words.unexpected)
     if not isinstance(tree, Tree):
         raise MappingError(tuple(tree))
@@ -92,6 +101,15 @@ def _recovery() -> Recovery:
     statements = ("IMPORT", "PARAMETER", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
+
+
+def _too_many(tokens: list[Token], source: Source) -> Diagnostic | None:
+    """The token, or the import, from which on there are too many."""
+    imports = [token for token in tokens if token.type == "IMPORT"]
+    for found, most, what in ((tokens, MAX_TOKENS, "words and signs"), (imports, MAX_IMPORTS, "imports")):
+        if len(found) > most:
+            return words.too_many(Span(source, found[most].start_pos or 0, found[most].end_pos or 0), what, most)
+    return None
 
 
 def _too_deep(tokens: list[Token], source: Source) -> Diagnostic | None:

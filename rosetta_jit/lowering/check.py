@@ -16,7 +16,10 @@ from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
+from rosetta_jit.lowering.file_name import misnamed
+from rosetta_jit.lowering.hand_factors import wrong_factors
 from rosetta_jit.lowering.imports import Imports, merge, read_imports
+from rosetta_jit.lowering.other_lengths import other_lengths
 from rosetta_jit.lowering.others import read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
@@ -89,8 +92,10 @@ def check(
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
     problems += resolved.problems
-    problems += _directions(mapping, resolved)
+    problems += _directions(mapping, resolved, packs=not derived)
+    problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += _unused(imported, resolved)
+    problems += misnamed(mapping, schema)
     errors = [problem for problem in problems if problem.severity == "error"]
     if errors:
         raise MappingError(_sorted(problems))
@@ -99,15 +104,18 @@ def check(
     return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
 
 
-def _directions(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
-    """Each direction as a whole. An empty block says that the direction is not meant to exist."""
+def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Diagnostic]:
+    """Each direction as a whole; ``packs`` unless rules to pack are missing that could not be derived.
+
+    An empty block says that the direction is not meant to exist.
+    """
     if resolved.unpack is None and resolved.pack is None:
         return [words.no_rules(mapping.wire_span)]
     problems: list[Diagnostic] = []
     holder, wire = resolved.holder, resolved.wire
     if mapping.unpack_rules and resolved.unpack is not None:
         problems += check_complete(resolved.unpack, holder, "holder", mapping.holder_span)
-    if mapping.pack_rules and resolved.pack is not None:
+    if packs and mapping.pack_rules and resolved.pack is not None:
         problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
     return problems
 
@@ -119,6 +127,7 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
     for block, (source, read_at), (target, set_at) in ((resolved.unpack, wire, holder), (resolved.pack, holder, wire)):
         if block is not None and block.rules:
             warnings += left_out(block.rules, source, target, (read_at, set_at))
+            warnings += other_lengths(block.rules)
     return warnings
 
 

@@ -39,7 +39,7 @@ def describe(type_: Type) -> str:
         case Enum(name=name):
             return f"enum {name}"
         case Array(element, length):
-            return f"an array of {'' if length is None else f'{length} '}{describe(element)}"
+            return f"an array of {f'{length} ' if isinstance(length, int) else ''}{describe(element)}"
         case Struct(name=name) | Union(name=name) | Ref(name=name):
             return name
         case Optional(value):

@@ -62,6 +62,9 @@ if TYPE_CHECKING:
 MAX_TEXTS = 50
 """Cases of a choice among texts."""
 
+MAX_PROBLEMS = 200
+"""Reports of one mapping after which no more rules are looked at: most of them say the same."""
+
 
 @dataclass(frozen=True, slots=True)
 class TypedRules:
@@ -99,8 +102,11 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
     named: set[str] = set()
     functions = signatures((mapping, *others.mappings()), problems)
     scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
-    unpack = _block(mapping.unpack_rules, scope)
-    pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    try:
+        unpack = _block(mapping.unpack_rules, scope)
+        pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    except _EnoughError:
+        return tuple(problems)
     return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
 
@@ -113,6 +119,10 @@ def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagno
     else:
         problems.append(words.not_a_message(span, name))
     return None
+
+
+class _EnoughError(Exception):
+    """More problems than anybody reads; never leaves this module."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +165,8 @@ class _Block:
         return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
+        if len(scope.problems) >= MAX_PROBLEMS:
+            raise _EnoughError
         match rule:
             case model.Assign():
                 return self.assign(rule, scope)
@@ -184,6 +196,7 @@ class _Block:
             return Ignore(place, rule.span)
         if has_array(place.type, scope.messages[scope.target].schema, told=True):
             scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            self.broken.append(field_names(place))
             return None
         return Default(place, rule.span)
 

@@ -120,6 +120,10 @@ def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Sid
     if not isinstance(type_, Struct | Union):
         scope.problems.append(words.not_a_struct(step.span, step.name, describe(type_)))
         return Broken(())
+    # Most names are a field's own; all that can be named is gathered for the others alone.
+    own = next((field for field in (type_.fields if isinstance(type_, Struct) else type_.cases) if field.name == step.name), None)
+    if own is not None:
+        return [FieldStep(own)], own.type
     members = members_of(type_, message.schema)
     if step.name in members:
         fields = members[step.name]

@@ -15,7 +15,7 @@ from rosetta_jit.lowering.conversions import FLOAT64, convert, describe
 from rosetta_jit.lowering.dimensions import conversion
 from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, Unary
 from rosetta_jit.lowering.unit_places import Mixed, pairs_in_step, unit_at
-from rosetta_jit.model.types import Float, Int
+from rosetta_jit.model.types import Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +39,7 @@ Factors = tuple[float, float]
 
 def in_unit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     """The value in the unit of its place; None, and reported, where that cannot be."""
-    if not isinstance(place.type, Int | Float):
+    if not isinstance(place.type, Int | Float | Enum):
         return value
     known, wanted = unit_of(value), unit_at(place)
     if _is_plain(value) and (known is None) != (wanted is None):

@@ -66,6 +66,9 @@ def show_expr(value: expr.Expr) -> str:
             return f"({show_expr(left)} {operator} {show_expr(right)})"
         case expr.Call(function, arguments):
             return f"{function}({', '.join(map(show_expr, arguments))})"
+        case expr.Choice() if (subject := _subject(value)) is not None:
+            entries = [f"{show_expr(key.right)} = {show_expr(each)}" for key, each in value.cases if isinstance(key, expr.Binary)]
+            return f"table({show_expr(subject)}) {{ {', '.join([*entries, _last(value)])} }}"
         case expr.Choice(cases, otherwise, reason):
             last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
@@ -79,6 +82,17 @@ def show_expr(value: expr.Expr) -> str:
             return show_expr(held)
         case _:
             assert_never(value)
+
+
+def _subject(choice: expr.Choice) -> expr.Expr | None:
+    """What a table looks up, if a choice is one: all of its conditions compare the same."""
+    subjects = {key.left if isinstance(key, expr.Binary) and key.operator == "==" else None for key, _ in choice.cases}
+    return subjects.pop() if len(subjects) == 1 else None
+
+
+def _last(choice: expr.Choice) -> str:
+    """How a table ends."""
+    return f"otherwise {f'reject {choice.reason!r}' if choice.otherwise is None else show_expr(choice.otherwise)}"
 
 
 def show_way(path: tuple[str | int | None, ...]) -> str:
