@@ -25,9 +25,9 @@ from rosetta_jit.errors import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
-    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.checked import CheckedMapping
     from rosetta_jit.programs import Decoder, Encoder
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
@@ -69,8 +69,10 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-def check(mapping: str, *, search_path: Iterable[str] = ()) -> tuple[Diagnostic, ...]:
-    """Check a mapping in both directions without compiling it; returns its warnings.
+def check(mapping: str, *, search_path: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+    """Check a mapping in both directions without compiling it; returns its ``warnings`` and ``laws``.
+
+    Without ``parameters``, it is checked for all values that its parameters may get.
 
     Raises
     ------
@@ -79,7 +81,7 @@ def check(mapping: str, *, search_path: Iterable[str] = ()) -> tuple[Diagnostic,
     """
     from rosetta_jit.pipeline import check_mapping
 
-    return check_mapping(mapping, search_path)
+    return check_mapping(mapping, search_path, parameters)
 
 
 def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> str:

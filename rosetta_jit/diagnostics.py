@@ -5,14 +5,24 @@ The words of each diagnostic stand in `rosetta_jit.catalogue`, one function a mi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.cells import TAB_CELLS, cells, printable
+from rosetta_jit.dataclass import dataclass
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosetta_jit.source import Span
 
 MAX_LINE = 160
 """Longer source lines are cut around the caret, so that a hostile line cannot flood a terminal."""
+
+MAX_WORDS = 2_000
+"""Characters of a message, note or help that are shown."""
+
+MAX_REPORTED = 50
+"""Diagnostics of one report that are shown; more are counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,44 +49,65 @@ def render(diagnostic: Diagnostic) -> str:
     lines += [f"  = note: {note}" for note in diagnostic.notes]
     if diagnostic.help:
         lines.append(f"  = help: {diagnostic.help}")
-    return "\n".join(_printable(line) for line in lines)
+    return "\n".join(printable(line[:MAX_WORDS]) for line in lines)
+
+
+def render_all(diagnostics: Sequence[Diagnostic]) -> str:
+    """One report of several: errors first where not all are shown."""
+    if len(diagnostics) <= MAX_REPORTED:
+        return "\n\n".join(map(render, diagnostics))
+    shown = sorted(diagnostics, key=lambda each: each.severity)[:MAX_REPORTED]
+    return "\n\n".join([*map(render, shown), f"and {len(diagnostics) - MAX_REPORTED} more"])
 
 
 def to_json(diagnostic: Diagnostic) -> dict[str, object]:
-    """The same for a program: plain values, lines and columns counted from 1."""
-    place: dict[str, object] = {}
+    """The same for a program: plain values, always the same fields; lines and columns are counted from 1, and `end` is exclusive."""
+    line = column = end_line = end_column = None
     if diagnostic.span is not None:
-        line, column = diagnostic.span.source.line_column(diagnostic.span.start)
-        place = {"file": diagnostic.span.source.name, "line": line, "column": column}
+        source = diagnostic.span.source
+        line, column = source.line_column(diagnostic.span.start)
+        end_line, end_column = source.line_column(diagnostic.span.end)
     return {
+        "file": None if diagnostic.span is None else diagnostic.span.source.name,
+        "line": line,
+        "column": column,
+        "end_line": end_line,
+        "end_column": end_column,
         "severity": diagnostic.severity,
         "code": diagnostic.code,
         "message": diagnostic.message,
-        **place,
         "label": diagnostic.label,
-        "notes": list(diagnostic.notes),
         "help": diagnostic.help,
+        "notes": list(diagnostic.notes),
     }
 
 
 def _excerpt(span: Span, label: str) -> list[str]:
+    """The line of a place, cut around it, with carets below as many cells as the place fills."""
+    text = span.source.text
     line_number, column = span.source.line_column(span.start)
     start = span.start - column + 1
-    end = span.source.text.find("\n", start)
-    line = span.source.text[start : end if end >= 0 else len(span.source.text)].replace("\t", " ")
-    cut = max(0, column - 1 - MAX_LINE // 2)
-    width = max(1, min(span.end, start + len(line)) - span.start)
-    shown = line[cut : cut + MAX_LINE]
-    caret = " " * (column - 1 - cut) + "^" * min(width, MAX_LINE - (column - 1 - cut))
+    first = start if _end(text, start) < start + MAX_LINE else max(start, span.start - MAX_LINE // 2)
+    last = _end(text, first)
+    before, marked = _shown(text[first : span.start]), _shown(text[span.start : min(span.end, last)])
+    before = before if first == start else f"…{before[1:]}"
+    caret = " " * cells(before) + "^" * max(1, cells(marked))
     margin = " " * len(str(line_number))
     return [
         f"{margin}--> {span.source.name}:{line_number}:{column}",
         f"{margin} |",
-        f"{line_number} | {shown}",
+        f"{line_number} | {before}{marked}{_shown(text[max(span.start, min(span.end, last)) : last])}".rstrip(),
         f"{margin} | {caret} {label}".rstrip(),
     ]
 
 
-def _printable(line: str) -> str:
-    """Control characters of a hostile text must not reach a terminal."""
-    return "".join(char if char.isprintable() else f"\\x{ord(char):02x}" for char in line)
+def _end(text: str, start: int) -> int:
+    """Where a line ends, or where the part of it that is shown does."""
+    last = min(len(text), start + MAX_LINE)
+    end = text.find("\n", start, last)
+    return last if end < 0 else end
+
+
+def _shown(text: str) -> str:
+    """A part of a line with blanks for tabs, and codes for what does not print, so that carets can be counted."""
+    return printable(text.replace("\t", " " * TAB_CELLS).rstrip("\r"))

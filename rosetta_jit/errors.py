@@ -33,6 +33,7 @@ Kind = Literal[
     "range",  # a value that its target cannot hold
     "index",  # a mapping reads or writes an element that is not there
     "missing",  # a required field did not come
+    "image",  # a compressed image that is none, or pixels that cannot be compressed
     "rejected",  # the mapping refuses the message
 ]
 
@@ -45,10 +46,10 @@ class ReportError(RosettaError):
     """Something is wrong in a text; `diagnostics` says what, where, and what to do."""
 
     def __init__(self, diagnostics: tuple[Diagnostic, ...]) -> None:
-        from rosetta_jit.diagnostics import render
+        from rosetta_jit.diagnostics import render_all
 
         self.diagnostics = diagnostics
-        super().__init__("\n\n".join(render(diagnostic) for diagnostic in diagnostics))
+        super().__init__(render_all(diagnostics))
 
 
 class SchemaError(ReportError):

@@ -6,17 +6,22 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import field
 from functools import cached_property
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.checked import CheckedMapping
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
 from rosetta_jit.frontend.search import Reading, SearchPath
+from rosetta_jit.frontend.unit_file import SUFFIX
+from rosetta_jit.given import called_functions, check_compiled, check_given
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import Mapped, lower
@@ -26,10 +31,12 @@ from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.request import Backend, Request
     from rosetta_jit.wire.codec import Encoding
@@ -46,6 +53,7 @@ class Types:
     wire: Struct
     schema: Schema
     rules: tuple[Rule, ...] | None
+    functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
 
 
 @dataclass
@@ -60,8 +68,17 @@ class Build:
         self.search = SearchPath.of(self.request.folders, files=self.files_given)
 
     @cached_property
+    def checked(self) -> Checked:
+        """The mapping, with the parameters of the request."""
+        source = self.search.open(self.request.mapping or "")
+        self.reading.record(source.name, None, source)
+        return check(parse_mapping(source), _readers(self.request), self.search, self.reading, json.loads(self.request.parameters))
+
+    @cached_property
     def types(self) -> Types:
-        return _mapped_types(self) if self.request.mapping is not None else _own_types(self)
+        types = _mapped_types(self) if self.request.mapping is not None else _own_types(self)
+        check_given(self.request, types.functions)
+        return types
 
     @cached_property
     def encoding(self) -> Encoding:
@@ -131,13 +148,22 @@ class Build:
 
     @cached_property
     def backend(self) -> Backend:
-        return self.request.backend or ("numba" if find_spec("numba") is not None else "llvm")
+        """The one that was asked for, or LLVM: what numba adds, a type for users' own functions, `Decoder.kernel` has in any case."""
+        return self.request.backend or "llvm"
+
+    @cached_property
+    def functions(self) -> tuple[UserFunction, ...]:
+        """The functions of the user's that the kernels call."""
+        return called_functions(self.request, self.types.functions, self.kernels)
 
     @cached_property
     def text(self) -> str:
         """All that the code and its `header` depend on besides this process."""
         kernels = [to_text(kernel) for kernel in self.kernels]
-        return "\n".join([self.backend, self.entry, self.manners, json.dumps(self.header["type"], sort_keys=True), *kernels])
+        called = {function.name for function in self.functions}
+        digests = [f"{given.name} {given.digest}" for given in self.request.functions if given.name in called]
+        holder = json.dumps(self.header["type"], sort_keys=True)
+        return "\n".join([self.backend, self.entry, self.manners, holder, *kernels, *digests])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:
@@ -153,13 +179,16 @@ class Build:
             "manners": self.manners,
             "entry": self.entry,
             "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
+            "told": is_told(self.kernels),
+            "host": our_functions(self.kernels),
         }
 
     def image(self) -> bytes:
         """The object code."""
         from rosetta_jit.backends.link import compile_program
 
-        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba")
+        check_compiled(self.functions, self.types.functions)
+        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""
@@ -181,11 +210,11 @@ class Build:
             case "llvm":
                 from rosetta_jit.backends.link import llvm_text
 
-                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba")
+                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
             case "asm":
                 from rosetta_jit.backends.link import assembly
 
-                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba")
+                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
             case _:
                 raise ValueError(f"no stage `{stage}`; there are {', '.join(STAGES)}")
 
@@ -202,22 +231,19 @@ class Build:
         return found
 
 
-def check_mapping(path: str, folders: Iterable[str] = ()) -> tuple[Diagnostic, ...]:
-    """The warnings of a mapping; raises MappingError with all that is wrong."""
+def check_mapping(path: str, folders: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+    """What is known of a mapping; raises MappingError with all that is wrong."""
     search, reading = SearchPath.of(folders), Reading()
-    checked = check(parse_mapping(search.open(path)), Readers(installed()), search, reading)
-    return checked.warnings
+    return CheckedMapping(check(parse_mapping(search.open(path)), Readers(installed()), search, reading, parameters))
 
 
 def _mapped_types(build: Build) -> Types:
     request = build.request
-    source = build.search.open(request.mapping or "")
-    build.reading.record(source.name, None, source)
-    checked = check(parse_mapping(source), _readers(request), build.search, build.reading)
+    checked = build.checked
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
-    return Types(checked.holder.root, checked.wire.root, _both(checked), rules)
+    return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions)
 
 
 def _both(checked: Checked) -> Schema:
@@ -227,6 +253,8 @@ def _both(checked: Checked) -> Schema:
 
 def _own_types(build: Build) -> Types:
     request = build.request
+    for name in json.loads(request.parameters):
+        raise _report(request, needless(name))
     if request.plain is not None:
         type_, schema = from_plain(json.loads(request.plain))
         struct = schema.resolve(type_)
@@ -264,7 +292,8 @@ def _imported(build: Build) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
     request, readers = build.request, _readers(build.request)
     asked = request.type or ""
-    names = request.imports or tuple(build.files_given) or tuple(readers.guesses(asked))
+    given = tuple(name for name in build.files_given if not name.endswith(SUFFIX))
+    names = request.imports or given or tuple(readers.guesses(asked))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}

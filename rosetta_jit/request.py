@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import os
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
 Direction = Literal["decode", "encode"]
 ByteOrder = Literal["little", "big"]
 Backend = Literal["numba", "llvm", "python", "interpreter"]
+
+
+@dataclass(frozen=True, slots=True)
+class GivenFunction:
+    """A function of the user's own. The digest changes with whatever it computes."""
+
+    name: str
+    digest: str
+    function: Callable[..., Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +54,12 @@ class Request:
         None for the usual one, or for either, where messages say which it is.
     lenient
         What the encoding is asked to forgive, by name.
+    parameters
+        The values of the mapping's parameters, as JSON.
+    functions
+        Functions of the user's own that the mapping calls.
     backend
-        What runs the kernels; None for numba where it is installed, else LLVM.
+        What runs the kernels; None for LLVM.
     """
 
     direction: Direction
@@ -58,8 +74,32 @@ class Request:
     borrow: bool = False
     byte_order: ByteOrder | None = None
     lenient: tuple[str, ...] = ()
+    parameters: str = "{}"
+    functions: tuple[GivenFunction, ...] = ()
     backend: Backend | None = None
 
     def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
         """The request as plain data, with the surroundings that relative names depend on."""
-        return {**asdict(self), "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more
+        functions = [[each.name, each.digest] for each in self.functions]
+        plain = asdict(replace(self, functions=()))
+        return {**plain, "functions": functions, "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more
+
+
+def plain_parameters(parameters: Mapping[str, object]) -> str:
+    """The values of parameters as JSON; arrays and scalars of numpy are lists and numbers.
+
+    Raises
+    ------
+    TypeError
+        A value is no bool, number, text or list of these.
+    """
+    return json.dumps({name: _plain(name, value) for name, value in parameters.items()}, sort_keys=True)
+
+
+def _plain(name: str, value: Any) -> Any:
+    """A list is looked into once: parameters are lists of scalars."""
+    plain: object = value.tolist() if hasattr(value, "tolist") else value
+    items: list[object] = list(cast("Iterable[object]", plain)) if isinstance(plain, list | tuple) else [plain]
+    if not all(isinstance(item, bool | int | float | str) for item in items):
+        raise TypeError(f"parameter {name!r}: a bool, a number, a text, or a list of these is needed, not {type(value).__name__}")
+    return items if isinstance(plain, list | tuple) else plain

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
 
+from rosetta_jit.backends import llvm_decimals
 from rosetta_jit.backends.llvm_frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
 from rosetta_jit.backends.llvm_utf8 import is_text_function
 from rosetta_jit.kernel.ir import (
@@ -22,16 +23,20 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Convert,
+    Digits,
     Expr,
     Fits,
     Get,
     IsText,
     Load,
     Local,
+    Nearest,
     Order,
     Place,
     Scalar,
+    Scale,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -64,6 +69,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return frame.builder.load(frame.used_slot(lane), typ=I64)
         case Capacity(lane):
             return frame.capacity(lane)
+        case Told(what):
+            return frame.told(what)
         case Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
         case Binary(op, left, right):
@@ -79,6 +86,24 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return frame.builder.select(expression(frame, condition), *values)
         case IsText(address, size):
             return frame.builder.call(is_text_function(frame.module), [pointer(frame, address), expression(frame, size)])
+        case Nearest() | Digits() | Scale():
+            return _decimal(frame, expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(frame: Frame, expr: Nearest | Digits | Scale) -> ir.Value:
+    match expr:
+        case Nearest(address, size, exponent):
+            text, length, power = pointer(frame, address), expression(frame, size), expression(frame, exponent)
+            return llvm_decimals.nearest(frame.module, frame.builder, text, length, power)
+        case Digits(value, places):
+            number = expression(frame, value)
+            if places is None:
+                return llvm_decimals.shortest(frame.module, frame.builder, number, 0)
+            return llvm_decimals.fixed(frame.module, frame.builder, number, places)
+        case Scale(value):
+            return llvm_decimals.shortest(frame.module, frame.builder, expression(frame, value), 1)
         case _:
             assert_never(expr)
 

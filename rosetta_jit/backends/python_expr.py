@@ -7,9 +7,10 @@ exception, and one that is only moved keeps all bits of a NaN.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -18,20 +19,25 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Convert,
+    Digits,
     Expr,
     Fits,
     Get,
     IsText,
     Load,
     Local,
+    Nearest,
     Place,
     Scalar,
+    Scale,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
     type_of,
 )
+from rosetta_jit.kernel.state import NOW, NUMBER
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.base import Namespace
@@ -41,6 +47,7 @@ FORMATS = {"bool": "?", "i8": "b", "u8": "B", "i16": "h", "u16": "H", "i32": "i"
 
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+TOLD = {"now": f"int(state[{NOW}])", "number": f"(int(state[{NUMBER}]) + row)"}
 FLOATS = frozenset({"f32", "f64"})
 
 
@@ -73,10 +80,8 @@ def expression(names: Names, expr: Expr) -> str:
             return _read(names, type_, Wire(at), order)
         case Get(type_, place):
             return _read(names, type_, place, "<")
-        case Used(lane):
-            return names.used_name(lane)
-        case Capacity(lane):
-            return names.capacity_name(lane)
+        case Used() | Capacity() | Told():
+            return _known(names, expr)
         case Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
         case Unary(function, operand):
@@ -94,6 +99,32 @@ def expression(names: Names, expr: Expr) -> str:
             return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
         case IsText(address, size):
             return f"is_text({part(names, address, expression(names, size))})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(names, expr)
+        case _:
+            assert_never(expr)
+
+
+def _known(names: Names, expr: Used | Capacity | Told) -> str:
+    match expr:
+        case Used(lane):
+            return names.used_name(lane)
+        case Capacity(lane):
+            return names.capacity_name(lane)
+        case Told(what):
+            return TOLD[what]
+        case _:
+            assert_never(expr)
+
+
+def _decimal(names: Names, expr: Nearest | Digits | Scale) -> str:
+    match expr:
+        case Nearest(address, size, exponent):
+            return f"nearest({part(names, address, expression(names, size))}, {expression(names, exponent)})"
+        case Digits(value, places):
+            return f'digits("{type_of(value)}", {expression(names, value)}, {places})'
+        case Scale(value):
+            return f'scale("{type_of(value)}", {expression(names, value)})'
         case _:
             assert_never(expr)
 

@@ -12,9 +12,15 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
-def never_set(span: Span | None, side: str, path: str, declared: Span | None, *, array: bool) -> Diagnostic:
+BEYOND = "indices count from 0 and stay below the length: correct the index, or the length"
+
+
+def never_set(span: Span | None, side: str, path: str, declared: Span | None, *, kind: str) -> Diagnostic:
     """A field that cannot be absent and has no rule."""
-    hint = f"set it, or say that it is empty: `len({path}) = 0`" if array else f"add a rule for `{path}`"
+    place = path.replace("[]", "[i]")
+    empty = f", or say that it is empty: `len({place}) = 0`" if kind == "array" else ""
+    meant = f", or say that it is meant: `default {path}`" if "[" not in path and kind != "array" else ""
+    hint = f"add a rule: `{place} = ...`{empty}{meant}"
     notes = (f"declared at {declared}",) if declared else ()
     return error("never-set", f"`{path}` of the {side} is never set", span, notes=notes, help_=hint)
 
@@ -69,7 +75,7 @@ def too_many_ways(span: Span | None, most: int) -> Diagnostic:
 
 def in_one_way(problem: Diagnostic) -> Diagnostic:
     """A mistake that not every way through the rules makes."""
-    return replace(problem, notes=(*problem.notes, "in one way through the `when` blocks, not in all"))
+    return replace(problem, notes=(*problem.notes, "in one way through the `when` blocks, not in all: an `else` may be missing"))
 
 
 def never_read(span: Span | None, path: str) -> Diagnostic:
@@ -80,6 +86,17 @@ def never_read(span: Span | None, path: str) -> Diagnostic:
 def left_out(span: Span | None, path: str) -> Diagnostic:
     """An optional field without a rule."""
     return warning("left-out", f"no rule sets `{path}`", span, help_=f"say that it is meant: `default {path}`")
+
+
+def other_length(span: Span | None, array: str, other: str) -> Diagnostic:
+    """An array that a loop reads up to the length of another one."""
+    return warning(
+        "other-length",
+        f"`{array}` is read as far as `{other}` is long, and nothing says that both have one length",
+        span,
+        f"the loop goes to len({other})",
+        help_=f'write `reject "..." when len({array}) != len({other})`, or let the loop go to `len({array})`',
+    )
 
 
 def length_without_elements(span: Span | None, path: str) -> Diagnostic:
@@ -116,7 +133,7 @@ def element_missing(span: Span | None, path: str, first: int, last: int) -> Diag
 
 def element_beyond(span: Span | None, path: str, index: int, length: int) -> Diagnostic:
     """A known element beyond the length."""
-    return error("index-range", f"`{path}[{index}]` is beyond the length {length}", span, "out of range")
+    return error("index-range", f"`{path}[{index}]` is beyond the length {length}", span, "out of range", help_=BEYOND)
 
 
 def coverage(span: Span | None, path: str, length: str, shown: tuple[str, ...]) -> Diagnostic:
@@ -129,6 +146,17 @@ def coverage(span: Span | None, path: str, length: str, shown: tuple[str, ...]) 
         notes=tuple(f"shown: {shorten(part)}" for part in shown),
         help_="let loops from 0 run over the index without gaps, and use the expressions of the length:"
         " `(y * width + x) * 3 + c` for y to height, x to width, c to 3",
+    )
+
+
+def loop_of_other_length(span: Span | None, path: str, length: str, found: str) -> Diagnostic:
+    """A loop that sets more or fewer elements than there are."""
+    return error(
+        "coverage",
+        f"the rules set `{shorten(found)}` elements of `{path}`, but its length is `{shorten(length)}`",
+        span,
+        "to another length",
+        help_="use one expression for the length and for the end of the loop; where two must agree, reject the rest",
     )
 
 

@@ -7,8 +7,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue.mapping import error, shorten
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
+
+MAX_SHOWN = 5
+"""Fields that one report lists."""
 
 
 def disagrees(place: str, wanted: str) -> str:
@@ -16,17 +21,31 @@ def disagrees(place: str, wanted: str) -> str:
     return f"`{shorten(place)}` is not `{shorten(wanted)}`, as the mapping says"
 
 
-def no_inverse(span: Span | None, why: str, rule: Span | None) -> Diagnostic:
+def other_block(condition: str, *, holds: bool) -> str:
+    """Why a holder is refused whose message would be unpacked by the other block of a `when`."""
+    return f"the message would be unpacked as if `{shorten(condition)}` were {'false' if holds else 'true'}"
+
+
+def no_inverse(span: Span | None, why: str, rule: Span | None, place: str) -> Diagnostic:
     """A relation that cannot be packed."""
     notes = (f"the relation is at {rule}",) if rule is not None and span is not None and rule != span else ()
-    help_ = "write one rule in `unpack-rules:` and one in `pack-rules:`"
-    return error("no-inverse", f"this cannot be turned round to pack: {why}", span or rule, "has no inverse", notes=notes, help_=help_)
+    message = f"this cannot be turned round to pack: {why}"
+    return error("no-inverse", message, span or rule, "has no inverse", notes=notes, help_=_by_hand([place]))
 
 
-def several_fields(span: Span | None) -> Diagnostic:
+def changes(span: Span | None, function: str) -> Diagnostic:
+    """A relation to what is another value each time."""
+    message = f"`{function}()` is another one when the message is packed, so that no relation can hold"
+    return error("no-inverse", message, span, "changes", help_="write it in `unpack-rules:`, or in `pack-rules:`")
+
+
+def several_fields(span: Span | None, places: Sequence[str]) -> Diagnostic:
     """A relation among more fields of the wire than one, some of which nothing else sets."""
-    help_ = "relate each field of the wire to the holder by a rule of its own"
-    return error("several-fields", "one rule cannot set several fields of the wire", span, help_=help_)
+    listed = " and ".join(f"`{shorten(place)}`" for place in places[:MAX_SHOWN])
+    message = f"one rule cannot set several fields of the wire: nothing else says what {listed} are"
+    return error(
+        "several-fields", message, span, help_=f"relate all but one of them to the holder by rules of their own, or {_by_hand(places)}"
+    )
 
 
 def unknown_bound(span: Span | None) -> Diagnostic:
@@ -40,7 +59,58 @@ def unknown_bound(span: Span | None) -> Diagnostic:
     )
 
 
+def unknown_layout(span: Span | None, field: str) -> Diagnostic:
+    """An array whose order depends on a field of the wire that nothing tells of."""
+    help_ = f"relate it to the holder, or set it in `pack-rules:`: `{shorten(field)} = ...`"
+    return error("unknown-layout", f"to pack, nothing says what `{shorten(field)}` is", span, "the elements lie as it says", help_=help_)
+
+
 def index_reads(span: Span | None) -> Diagnostic:
-    """An index that depends on a field, in a rule for both directions."""
-    help_ = "use loop variables and numbers, or write a rule for each direction"
-    return error("index-reads", "an index of a rule for both directions cannot read fields", span, help_=help_)
+    """An index that depends on a field that packing does not know, in a rule for both directions."""
+    help_ = "relate the field to the holder by a rule of its own, or write a rule for each direction"
+    return error("index-reads", "to pack, nothing says what this index is", span, "no relation sets it", help_=help_)
+
+
+def unknown_condition(span: Span | None, place: str) -> Diagnostic:
+    """A rejection for a reason that packing does not know."""
+    message = f"to pack, nothing says what `{shorten(place)}` is"
+    help_ = f"relate `{shorten(place)}` to the holder, or write the rejection in `unpack-rules:`"
+    return error("unknown-condition", message, span, "no relation sets it", help_=help_)
+
+
+def undetermined(span: Span | None, place: str, *, holds: bool) -> Diagnostic:
+    """A block in which a field of its condition may have any value but some."""
+    which = "where the condition holds" if holds else "where the condition does not hold"
+    message = f"to pack, nothing says what `{shorten(place)}` is {which}"
+    help_ = f"relate it to the holder outside of the `when`, or in its block; or {_by_hand([place])}"
+    return error("undetermined-field", message, span, "the condition reads it", help_=help_)
+
+
+def alike_blocks(span: Span | None, place: str) -> Diagnostic:
+    """A `when` whose blocks nothing in the holder tells apart."""
+    return error(
+        "alike-blocks",
+        "to pack, nothing tells which block of the `when` a holder is of",
+        span,
+        "the condition reads the wire",
+        help_=f"relate `{shorten(place)}` to the holder outside of the `when`, relate one field of the holder to other constants in each"
+        " block, or write the `when` in `unpack-rules:` and one in `pack-rules:`",
+    )
+
+
+def too_many_blocks(span: Span | None, most: int) -> Diagnostic:
+    """Conditions in expressions that multiply."""
+    message = f"to pack, the conditions in these relations make more than {most} blocks"
+    return error("too-many-ways", message, span, help_="relate what the conditions read by rules of their own, or use `when`")
+
+
+def too_complex(span: Span | None) -> Diagnostic:
+    """Relations that name each other's fields more often than is followed."""
+    help_ = "relate fields to the holder one by one, and write the rest in `unpack-rules:` and `pack-rules:`"
+    return error("too-complex", "to pack, these relations are too large to be turned round", span, help_=help_)
+
+
+def _by_hand(places: Sequence[str]) -> str:
+    """What to write where nothing can be derived."""
+    rules = ", ".join(f"`{shorten(place)} = ...`" for place in places[:MAX_SHOWN])
+    return f"say in `pack-rules:` what the wire is to have: {rules}"

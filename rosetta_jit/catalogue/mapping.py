@@ -21,6 +21,7 @@ EXPECTATIONS = (
     ("FOR", "a rule"),
     ("IMPORT", "a statement"),
     ("EQUAL", "`=`"),
+    ("RELATES", "`<->`"),
     ("COLON", "`:`"),
     ("LPAR", "`(`"),
     ("RPAR", "`)`"),
@@ -60,14 +61,21 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
         return f"write the plain character `{TYPESET[found]}`"
     if kind == "UNCLOSED":
         return 'close the text with `"` on the same line'
+    if kind == "EQUAL" and "RELATES" in expected:
+        return "under `rules:` a rule is for both directions: `.place <-> value`"
+    if kind == "RELATES" and "EQUAL" in expected:
+        return "`<->` stands under `rules:`; here a place is set: `.place = value`"
     if kind == "MEMBER" or found == ".":
         return "a path is written without blanks and begins with a dot: `.a.b[0]`"
     if kind == "END":
-        return "every `end` closes one `for`"
+        return "every `end` closes one `for` or `when`"
     if kind == "$END" and "END" in expected:
-        return "every `for` needs an `end`"
+        return "every `for` and every `when` needs an `end`"
+    if "INTEGER" in expected:
+        return "a value is a field (`.a.b[0]`), a number, a text in quotes, a function of those, or a table"
     if "IMPORT" in expected and "FOR" not in expected:
-        return "statements are `import`, `data-holder:`, `wire-schema:`, `rules:`, `unpack-rules:` and `pack-rules:`"
+        names = ("import", "parameter", "function", "data-holder:", "wire-schema:", "rules:", "unpack-rules:")
+        return f"statements are {', '.join(f'`{name}`' for name in names)} and `pack-rules:`"
     return ""
 
 
@@ -89,7 +97,7 @@ def escape(span: Span, text: str) -> Diagnostic:
 
 def number(span: Span, target: str) -> Diagnostic:
     """A number that no type of the language holds."""
-    return error("number", f"the number does not fit {target}", span, "too large")
+    return error("number", f"the number does not fit {target}", span, "too large", help_="write a smaller one")
 
 
 def picked(span: Span | None) -> Diagnostic:
@@ -115,7 +123,7 @@ def no_rules(span: Span | None) -> Diagnostic:
         "no-rules",
         "the mapping has no rules for either direction",
         span,
-        help_="add `unpack-rules:` or `pack-rules:`; an empty block says that the direction is not meant to exist",
+        help_="add `rules:`, `unpack-rules:` or `pack-rules:`; an empty block says that the direction is not meant to exist",
     )
 
 
@@ -145,7 +153,8 @@ def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
 def import_suffix(span: Span | None, name: str, suffixes: Iterable[str]) -> Diagnostic:
     """An imported file that no framework reads."""
     known = ", ".join(sorted(suffixes)) or "none"
-    return error("import-suffix", f'no front end reads "{shorten(name)}"', span, notes=(f"known suffixes: {known}",))
+    help_ = "import the IDL file that declares the types; mappings themselves are not imported"
+    return error("import-suffix", f'no front end reads "{shorten(name)}"', span, notes=(f"known suffixes: {known}",), help_=help_)
 
 
 def import_repeated(span: Span | None, name: str) -> Diagnostic:
@@ -156,6 +165,16 @@ def import_repeated(span: Span | None, name: str) -> Diagnostic:
 def import_unused(span: Span | None, name: str) -> Diagnostic:
     """An import without any type or constant that the mapping names."""
     return warning("import-unused", f'nothing of "{shorten(name)}" is used', span, help_="remove the import")
+
+
+def misnamed(span: Span | None, named: str, holder: str, wire: str) -> Diagnostic:
+    """A file that is named after another type."""
+    return warning(
+        "file-name",
+        f"the file is named after `{shorten(named)}`, but maps `{shorten(holder)}` and `{shorten(wire)}`",
+        span,
+        help_="correct the type, or rename the file",
+    )
 
 
 def conflicting_type(span: Span | None, name: str, first: str, second: str) -> Diagnostic:
@@ -172,6 +191,11 @@ def conflicting_type(span: Span | None, name: str, first: str, second: str) -> D
 def file_too_large(name: str, limit: int) -> Diagnostic:
     """A file beyond the size limit."""
     return error("file-too-large", f"{name} is larger than {limit >> 20} MiB", None)
+
+
+def too_many(span: Span | None, what: str, most: int) -> Diagnostic:
+    """More of something than any mapping needs."""
+    return error("too-many", f"a mapping has at most {most} {what}", span, "one too many", help_="split the mapping")
 
 
 def file_not_text(name: str) -> Diagnostic:

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 MAX_NAMES = 20
-MAX_CANDIDATES = 2000
+MAX_CANDIDATES = 500
+MAX_QUOTED = 40
 
 
 def nearest(name: str, known: Collection[str]) -> str | None:
@@ -72,7 +73,7 @@ def other_side(name: str, origin: str) -> str:
 
 def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
     """A field of something that has none."""
-    hint = "index it first: `[i]`" if found.startswith("an array") else ""
+    hint = "index it first: `[i]`" if found.startswith("an array") else f"leave out `.{shorten(name)}`"
     return error("no-fields", f"`.{shorten(name)}` of {found}, which has no fields", span, f"this is {found}", help_=hint)
 
 
@@ -105,7 +106,8 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
         span,
         "not known here",
         notes=_there_are("known", known),
-        help_=_did_you_mean(name, known) or "a field begins with a dot: `.name`; an enum constant is written with its full name",
+        help_=_did_you_mean(name, known)
+        or f"a field begins with a dot: `.{shorten(name)}`; an enum constant is written with its full name",
     )
 
 
@@ -122,13 +124,15 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
 
 def arguments(span: Span | None, function: str, expected: str, found: int) -> Diagnostic:
     """A wrong number of arguments."""
-    return error("arguments", f"`{function}` takes {expected}, not {found}", span)
+    return error("arguments", f"`{function}` takes {expected}, not {found}", span, help_="docs/mappings.md shows each function")
 
 
 def conversion_rule(span: Span | None, function: str, allowed: Collection[str]) -> Diagnostic:
     """A second argument of a conversion that is none of its rules."""
     names = ", ".join(f"`{name}`" for name in sorted(allowed)) or "none"
-    return error("conversion-rule", f"`{function}` has no such rule here", span, "not a rule", notes=(f"rules: {names}",))
+    return error(
+        "conversion-rule", f"`{function}` has no such rule here", span, "not a rule", help_=f"write one of {names}, or leave it out"
+    )
 
 
 def shadowed(span: Span | None, name: str) -> Diagnostic:
@@ -143,41 +147,50 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
         f"{source} does not always fit {target}",
         span,
         f"this is {source}",
-        help_=f"say how: {how}",
+        help_=f"say how: {how.replace('...', _written(span))}",
     )
+
+
+def _written(span: Span | None) -> str:
+    """The text of an expression, where it is short enough to be shown again."""
+    text = "" if span is None else span.source.text[span.start : span.end]
+    return text if 0 < len(text) <= MAX_QUOTED and text.isprintable() else "..."
 
 
 def type_clash(span: Span | None, source: str, target: str, how: str = "") -> Diagnostic:
     """A value that no conversion makes fit."""
-    return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=how)
+    help_ = how or "assign another field, or compute what is meant from it"
+    return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=help_)
 
 
 def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
     """A known value outside the range of its target."""
-    return error("constant-range", f"{shorten(value)} does not fit {target}", span, "known to be out of range")
+    help_ = f"write a value that {target} holds, or take a wider type"
+    return error("constant-range", f"{shorten(value)} does not fit {target}", span, "known to be out of range", help_=help_)
 
 
 def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
     """Arithmetic with something that is not a number."""
-    hint = "convert it first: `int64(...)`" if found == "uint64" else "only numbers can be computed with"
+    convertible = found.startswith(("uint", "float", "enum", "bool"))
+    hint = f"convert it first: `int64({_written(span)})`" if convertible else "only numbers can be computed with"
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
 
 
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     """A length, index or loop bound that is not an integer."""
-    hint = "convert it: `int64(...)`" if found in {"uint64", "float32", "float64"} else ""
+    hint = f"convert it: `int64({_written(span)})`" if found in {"uint64", "float32", "float64"} else ""
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
 def zero_division(span: Span | None) -> Diagnostic:
     """A divisor that is known to be zero."""
-    return error("zero-division", "division by zero", span, "this is zero")
+    return error("zero-division", "division by zero", span, "this is zero", help_="divide by something else")
 
 
 def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic:
     """An index that is known to be out of range."""
     has = "indices count from 0" if length is None else f"there are {length} elements, counted from 0"
-    return error("index-range", f"index {index} is out of range", span, has)
+    return error("index-range", f"index {index} is out of range", span, has, help_="correct the index")
 
 
 def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
@@ -187,7 +200,8 @@ def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
 
 def condition_needed(span: Span | None, found: str) -> Diagnostic:
     """A number or a text where true or false is meant."""
-    return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_="compare it: `!= 0`")
+    hint = "compare it: `" + _written(span) + (' == "..."`' if found == "text" else " != 0`")
+    return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_=hint)
 
 
 def not_comparable(span: Span | None, operator: str, left: str, right: str) -> Diagnostic:
@@ -198,7 +212,7 @@ def not_comparable(span: Span | None, operator: str, left: str, right: str) -> D
 
 def long_text(span: Span | None, most: int) -> Diagnostic:
     """A text too long to compare with."""
-    return error("long-text", f"a field is compared with at most {most} bytes of text", span)
+    return error("long-text", f"a field is compared with at most {most} bytes of text", span, help_="compare a part that tells it apart")
 
 
 def mixed_choice(span: Span | None, kinds: Collection[str]) -> Diagnostic:

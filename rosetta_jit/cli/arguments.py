@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+import json
+from argparse import ArgumentTypeError
+from typing import TYPE_CHECKING, Protocol, cast
+
+from rosetta_jit.request import plain_parameters
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -38,6 +42,39 @@ def add_encoding(command: ArgumentParser, default: str | None = None) -> None:
     """Which bytes, where a framework has several."""
     shown = default or "the mapping's own"
     command.add_argument("--encoding", default=default, help=f"one of those that `rosetta-jit frameworks` lists (default: {shown})")
+
+
+def add_parameters(command: ArgumentParser) -> None:
+    """The values of the mapping's parameters."""
+    command.add_argument(
+        "--parameter",
+        metavar="NAME=JSON",
+        action="append",
+        default=[],
+        type=_parameter,
+        help="a parameter of the mapping: --parameter scale=2.5",
+    )
+
+
+def _parameter(text: str) -> tuple[str, object]:
+    """A name and a value; what is no JSON is a text."""
+    name, equals, value = text.partition("=")
+    if not equals or not name:
+        raise ArgumentTypeError(f"{text!r} is not NAME=JSON")
+    try:
+        found: object = json.loads(value)
+    except (ValueError, RecursionError):
+        return name, value
+    try:
+        plain_parameters({name: found})
+    except TypeError as error:
+        raise ArgumentTypeError(str(error)) from error
+    return name, found
+
+
+def parameters_of(arguments: Namespace) -> dict[str, object]:
+    """The parameters that the user gave; of one that is given twice, the last."""
+    return dict(cast("list[tuple[str, object]]", arguments.parameter))
 
 
 def encoding_of(arguments: Namespace) -> str | None:

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.recording import read_messages
 
@@ -23,6 +23,7 @@ def add(commands: Commands) -> None:
     add_mapping(command)
     command.add_argument("files", metavar="FILE", nargs="+", help="one message, or a recording (.rec, .rec.xz)")
     add_encoding(command)
+    add_parameters(command)
     form = command.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help='one JSON object a message and line; bytes as {"base64": …}')
     form.add_argument("--npz", metavar="OUT", help="write the columns of all messages to a numpy archive")
@@ -32,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Messages that cannot be decoded are reported and skipped; then the exit code is 1."""
     import rosetta_jit
 
-    decode = rosetta_jit.Decoder(arguments.mapping, encoding=encoding_of(arguments))
+    decode = rosetta_jit.Decoder(arguments.mapping, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
     failures: list[str] = []
     holders = _holders(decode, cast("list[str]", arguments.files), failures)
     if arguments.npz:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
 
 if TYPE_CHECKING:
     import argparse
@@ -19,6 +19,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--stage", choices=STAGES, default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
     add_encoding(command)
+    add_parameters(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -26,5 +27,5 @@ def run(arguments: argparse.Namespace) -> int:
     import rosetta_jit
 
     program = rosetta_jit.Encoder if arguments.direction == "encode" else rosetta_jit.Decoder
-    print(program(arguments.mapping, encoding=encoding_of(arguments)).stage(arguments.stage))
+    print(program(arguments.mapping, encoding=encoding_of(arguments), parameters=parameters_of(arguments)).stage(arguments.stage))
     return 0

@@ -6,36 +6,53 @@ an index within the place included, is on the other side: a target has nothing t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
+from itertools import islice
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, cast
 
-from lark import Lark, Token, Tree
+from lark import Token, Tree
 from lark.lark import PostLex
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
+from rosetta_jit.frontend.mapping_rules import Context, read_parameter, read_rule, read_string
+from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
-from rosetta_jit.model.mapping import Import, Mapping
+from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from lark import Lark
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Source
 
+GRAMMAR = FilePath(__file__).with_name("mapping.lark")
+
+MAX_CHARACTERS = 1 << 20
+MAX_TOKENS = 50_000
+"""Words and signs of one mapping: some sixteen thousand rules, which take seconds."""
+
+MAX_IMPORTS = 200
+
 MAX_NESTING = 64
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
-NESTING = frozenset(("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "slice", "list", "loop", "when"))
+NESTING = frozenset(
+    ("binary", "negative", "inversion", "conditional", "table", "group", "call", "index", "slice", "list", "length", "loop", "when")
+)
 """Rules of the grammar that one of their kind can stand in."""
 
 
-RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "SAME")
+ONLY_BEHIND = {"NAMES": "_SAME", "LIST": "COLON", "OF": "LIST"}
+"""Words that are words behind another token alone."""
+
+RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "_SAME")
 """Tokens that a rule begins with."""
 
 
@@ -47,10 +64,12 @@ def parse(source: Source) -> Mapping:
     MappingError
         All syntax errors that were found, each with its place.
     """
-    tokens: list[Token] = list(cast("Any", _grammar()).lex(source.text))  # lark types it in part only
-    deep = _too_deep(tokens, source)
-    if deep is not None:
-        raise MappingError((deep,))
+    if len(source.text) > MAX_CHARACTERS:
+        raise MappingError((words.file_too_large(source.name, MAX_CHARACTERS),))
+    tokens: list[Token] = list(islice(cast("Any", _grammar()).lex(source.text), MAX_TOKENS + 1))  # lark types it in part only
+    refused = _too_many(tokens, source) or _too_deep(tokens, source)
+    if refused is not None:
+        raise MappingError((refused,))
     tree = parse_tokens(_grammar(), source, tokens, _recovery(), words.unexpected)
     if not isinstance(tree, Tree):
         raise MappingError(tuple(tree))
@@ -59,19 +78,13 @@ def parse(source: Source) -> Mapping:
 
 @cache
 def _grammar() -> Lark:
-    text = FilePath(__file__).with_name("mapping.lark").read_text(encoding="utf-8")
-    return Lark(
-        text,
-        parser="lalr",
-        lexer="basic",
-        postlex=_Tokens(),
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
+    return parser_of(GRAMMAR, postlex=Tokens(), positions=True)
 
 
-class _Tokens(PostLex):
-    """Tells the `when` of a rejection from one that begins a block, and makes lark keep the tokens that stand for mistakes."""
+class Tokens(PostLex):
+    """Tells the `when` of a rejection from one that begins a block, and words from the names that they are elsewhere; makes lark keep
+    the tokens that stand for mistakes.
+    """
 
     always_accept = ("UNCLOSED", "STRANGE")
 
@@ -80,14 +93,25 @@ class _Tokens(PostLex):
         for token in stream:
             if token.type == "WHEN" and kinds == ("REJECT", "STRING"):
                 token.type = "GUARD"
+            if token.type in ONLY_BEHIND and kinds[1] != ONLY_BEHIND[token.type]:
+                token.type = "NAME"
             kinds = kinds[1], token.type
             yield token
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = ("IMPORT", "PARAMETER", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
+
+
+def _too_many(tokens: list[Token], source: Source) -> Diagnostic | None:
+    """The token, or the import, from which on there are too many."""
+    imports = [token for token in tokens if token.type == "IMPORT"]
+    for found, most, what in ((tokens, MAX_TOKENS, "words and signs"), (imports, MAX_IMPORTS, "imports")):
+        if len(found) > most:
+            return words.too_many(Span(source, found[most].start_pos or 0, found[most].end_pos or 0), what, most)
+    return None
 
 
 def _too_deep(tokens: list[Token], source: Source) -> Diagnostic | None:
@@ -125,6 +149,12 @@ class _Reader:
             self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
             holder_span,
             wire_span,
+            tuple(self._function(child) for child in statements if child.data == "function"),
+            tuple(
+                read_parameter(child, Context(self.source, "wire", "holder", self.problems))
+                for child in statements
+                if child.data == "parameter"
+            ),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
@@ -144,6 +174,11 @@ class _Reader:
     def _import(self, tree: Tree[Token]) -> Import:
         token = _token(tree)
         return Import(read_string(token, self.source, self.problems), self._token_span(token))
+
+    def _function(self, tree: Tree[Token]) -> Function:
+        name, *types = (child for child in tree.children if isinstance(child, Token) and child.type == "NAME")
+        *parameters, result = (TypeName(str(token), self._token_span(token)) for token in types)
+        return Function(str(name), tuple(parameters), result, self._span(tree))
 
     def _type_name(self, statements: list[Tree[Token]], rule: str, keyword: str) -> tuple[str, Span | None]:
         found = self._only(statements, rule, keyword)

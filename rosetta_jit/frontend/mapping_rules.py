@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, List, Literal, Member, Name, Path, Pick, Slice, Unary
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, Via, When
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Item, Len, List, Literal, Member, Name, Path, Pick, Slice, Unary
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Parameter, Reject, Relation, SameNames, SetLength, Via, When
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Source
 
 ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
+
+OTHERWISE = ("otherwise", "otherwise_of_both")
 
 MAX_DIGITS = 400
 """The longest number that is looked at: a float64 has at most 309 digits before its point."""
@@ -61,7 +63,7 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
             return Relation(related, _expr(right, context), span, _via(via, context))
         case "arranged" | "arranged_both":
             return _arranged(tree, context, span)
-        case "when":
+        case "when" | "when_of_both":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)
         case "ignore":
@@ -95,8 +97,8 @@ def _via(trees: list[Tree[Token]], context: Context) -> Via | None:
 
 
 def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:
-    then = tuple(read_rule(rule, context) for rule in body if rule.data != "otherwise")
-    others = (rule for block in body if block.data == "otherwise" for rule in _trees(block))
+    then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
+    others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
     return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
 
 
@@ -139,7 +141,13 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
         case "path":
             return _path(tree, context.origin, context)
         case "length":
-            return Len(_path(_trees(tree)[0], context.origin, context), span)
+            measured = _expr(_trees(tree)[0], context)
+            return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
+        case "list":
+            return List(tuple(_expr(item, context) for item in _trees(tree)), span)
+        case "item":
+            index = _trees(_trees(tree)[0])[0]
+            return Item(Name(str(_tokens(tree)[0]), span), _expr(index, context), span)
         case "negative" | "inversion":
             return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
         case "conditional":
@@ -220,6 +228,14 @@ def _real(token: Token, context: Context) -> float:
         context.problems.append(words.number(context.span(token), "a float64"))
         return 0.0
     return value
+
+
+def read_parameter(tree: Tree[Token], context: Context) -> Parameter:
+    """A parameter with the name of its type, whatever that is."""
+    name, *_, type_ = (token for token in _tokens(tree) if token.type == "NAME")
+    default = next((_expr(value, context) for value in _trees(tree)), None)
+    is_list = any(token.type == "LIST" for token in _tokens(tree))
+    return Parameter(str(name), str(type_), is_list, default, context.span(tree))
 
 
 def _trees(tree: Tree[Token]) -> list[Tree[Token]]:

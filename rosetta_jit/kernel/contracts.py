@@ -9,15 +9,15 @@ from rosetta_jit.kernel.paths import from_begin, variable
 from rosetta_jit.kernel.symbolic import Scope, condition, demand, entry, evaluate, oblige, unknown
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Call, Kernel, Routine
+    from rosetta_jit.kernel.ir import Call, Routine
 
 MESSAGE = ("begin", "end")
 """What every routine sees of its caller."""
 
 
-def inside(kernel: Kernel, routine: Routine) -> Scope:
+def inside(strides: tuple[int, ...], routine: Routine) -> Scope:
     """The scope at the start of a routine: any arguments that it allows."""
-    scope = entry(kernel)
+    scope = entry(strides)
     scope.locals = {name: scope.locals[name] for name in MESSAGE}
     for parameter in routine.parameters:
         scope.locals[parameter.name] = parameter.type, unknown(scope, parameter.type)

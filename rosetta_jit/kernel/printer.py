@@ -17,24 +17,29 @@ from rosetta_jit.kernel.ir import (
     Const,
     Convert,
     Copy,
+    Digits,
     Expect,
     Fill,
     Fits,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
     Load,
     Local,
+    Nearest,
     Place,
     Require,
     Reserve,
     Return,
+    Scale,
     Select,
     SetField,
     Store,
     Switch,
+    Told,
     Unary,
     Used,
     Var,
@@ -45,7 +50,7 @@ from rosetta_jit.kernel.ir import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Part, Routine, Site, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Failure, Kernel, Part, Routine, Site, Stmt
 
 SYMBOL = {
     "add": "+",
@@ -118,6 +123,8 @@ def expression_text(expr: Expr) -> str:
             return f"used({lane})"
         case Capacity(lane):
             return f"capacity({lane})"
+        case Told(what):
+            return what
         case Unary(function, operand):
             return f"{function}({expression_text(operand)})"
         case Binary(op, left, right) | Compare(op, left, right):
@@ -130,6 +137,20 @@ def expression_text(expr: Expr) -> str:
             return f"({expression_text(then)} if {expression_text(condition)} else {expression_text(otherwise)})"
         case IsText(address, size):
             return f"is_text({_address(address)}, {expression_text(size)})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(expr: Nearest | Digits | Scale) -> str:
+    match expr:
+        case Nearest(address, size, exponent):
+            return f"nearest({_address(address)}, {expression_text(size)}, {expression_text(exponent)})"
+        case Digits(value, places):
+            return f"digits({expression_text(value)}{'' if places is None else f', {places}'})"
+        case Scale(value):
+            return f"scale({expression_text(value)})"
         case _:
             assert_never(expr)
 
@@ -165,6 +186,10 @@ def _statement(stmt: Stmt, depth: int) -> Iterator[str]:
             given = ", ".join(map(expression_text, arguments))
             within = "".join(f"[{expression_text(i)}]" for i in indices)
             yield f"let {bound} = call {_name(routine)}({given}) else {list(sites)}{within}"
+        case HostCall(function, arguments, result, failure, inputs, target):
+            given = ", ".join((*map(expression_text, arguments), *map(_extent, inputs)))
+            filled = "" if target is None else f" into {_extent(target)}"
+            yield f"let {expression_text(result)} = host {_name(function)}({given}){filled}{_failure(failure)}"
         case For() | While() | If() | Switch():
             yield from _nested(stmt, depth)
         case _:
@@ -228,6 +253,10 @@ def _address(address: Address) -> str:
             return f"[{expression_text(at)}]"
         case _:
             assert_never(address)
+
+
+def _extent(extent: Extent) -> str:
+    return f"{_address(extent.address)} {expression_text(extent.size)}"
 
 
 def _site(number: int, site: Site) -> Iterator[str]:

@@ -12,9 +12,10 @@ Facts are gained along a path and given up at its end (`mark`, `rollback`), so t
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
 
 FIRST = (6, 40)
@@ -63,6 +64,17 @@ def negated(formula: Formula) -> Formula:
 def bounded(formula: Formula) -> Formula:
     """The formula, or None where it is so large that taking it apart again and again would cost too much."""
     return formula if _size(formula) <= MAX_FORMULA else None
+
+
+def is_vague(formula: Formula) -> bool:
+    """Whether a formula says less than what it stands for."""
+    match formula:
+        case None:
+            return True
+        case All(parts) | Any(parts):
+            return any(map(is_vague, parts))
+        case _:
+            return False
 
 
 def _size(formula: Formula) -> int:
@@ -125,9 +137,13 @@ class Facts:
         return self._born[atom]
 
     def chosen(self, cases: tuple[tuple[Formula, Linear], ...]) -> Linear:
-        """The atom that is equal to one of some values, each under a condition; together they cover everything."""
+        """The atom that is equal to one of some values, each under a condition; together they cover everything.
+
+        The same choice is the same atom, unless nothing is known of its conditions: then two that look the same may differ.
+        """
         widest = [self.widest(value) for _, value in cases]
-        atom = self.named(cases, min(low for low, _ in widest), max(high for _, high in widest))
+        low, high = min(low for low, _ in widest), max(high for _, high in widest)
+        atom = self.fresh(low, high) if any(is_vague(condition) for condition, _ in cases) else self.named(cases, low, high)
         self._cases[atom.terms[0][0]] = cases
         self.assume(shifted(atom, -min(self.lower(value) for _, value in cases)))
         self.assume(shifted(times(atom, -1), max(self.upper(value) for _, value in cases)))
@@ -312,8 +328,11 @@ class Facts:
         return proven
 
     def _by_cases(self, goal: Linear, depth: int, effort: tuple[int, int]) -> bool:
-        """Whether a goal holds in each case of an atom that is chosen among values, or of a fact that has alternatives."""
-        atom = next((a for a, _ in goal.terms if a in self._cases), None)
+        """Whether a goal holds in each case of an atom that is chosen among values, or of a fact that has alternatives.
+
+        The youngest atom comes first: what it is chosen among may rest on the others.
+        """
+        atom = max((a for a, _ in goal.terms if a in self._cases), default=None)
         if atom is not None:
             return all(self._in_case(replaced(goal, atom, value), condition, depth, effort) for condition, value in self._cases[atom])
         alternatives = next((fact for fact in reversed(self._either) if _shares_atom(fact, goal)), None)

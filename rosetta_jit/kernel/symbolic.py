@@ -6,11 +6,13 @@ whoever has a value has the proof too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import integers
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
+from rosetta_jit.kernel.decimals import MAX_PLACES, MAX_SCALE, MOST_DIGITS
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Binary,
@@ -18,13 +20,17 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Convert,
+    Digits,
     Fits,
     Get,
     IsText,
     Load,
     Local,
+    Nearest,
     Place,
+    Scale,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -33,7 +39,7 @@ from rosetta_jit.kernel.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.prove import All, Any, Facts, bounded, equal, negated
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Kernel, Scalar
+    from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Scalar
     from rosetta_jit.kernel.prove import Formula
 
 MAX_POSITION = 1 << 60
@@ -66,15 +72,15 @@ class Scope:
     capacity: list[Linear] = field(default_factory=list[Linear])
 
 
-def entry(kernel: Kernel) -> Scope:
+def entry(strides: tuple[int, ...]) -> Scope:
     """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
-    scope = Scope(kernel.strides)
+    scope = Scope(strides)
     facts = scope.facts
     begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
     end = plus(begin, length)
     facts.assume(shifted(times(end, -1), MAX_POSITION))
     scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
-    for _ in kernel.strides:
+    for _ in strides:
         capacity, used = facts.fresh(0, MAX_ROWS), facts.fresh(0, MAX_ROWS)
         facts.assume(minus(capacity, used))
         scope.capacity.append(capacity)
@@ -214,6 +220,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Capacity(lane):
             check_lane(scope, lane)
             return "i64", scope.capacity[lane]
+        case Told(what):
+            return "i64", scope.facts.named(("told", what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
         case Fits(op, left, right):
@@ -225,6 +233,25 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case IsText(address, size):
             check_extent(scope, address, integer(scope, size))
             return "bool", None
+        case Nearest() | Digits() | Scale():
+            return _decimal(scope, expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:
+    match expr:
+        case Nearest(address, size, exponent):
+            check_extent(scope, address, integer(scope, size))
+            integer(scope, exponent)
+            return "f64", None
+        case Digits(value, places):
+            demand(evaluate(scope, value)[0] in FLOATS, "digits of an integer")
+            demand(places is None or 0 <= places <= MAX_PLACES, "too many decimals")
+            return "u64", scope.facts.fresh(0, MOST_DIGITS if places is None else limits("u64")[1])
+        case Scale(value):
+            demand(evaluate(scope, value)[0] in FLOATS, "the scale of an integer")
+            return "i64", scope.facts.fresh(-MAX_SCALE, MAX_SCALE)
         case _:
             assert_never(expr)
 

@@ -6,10 +6,11 @@ survives where paths meet), `contracts` (routines), `shape` (the text). A failed
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import field
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import contracts, paths
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -20,6 +21,7 @@ from rosetta_jit.kernel.ir import (
     Expect,
     Fill,
     For,
+    HostCall,
     If,
     Let,
     Place,
@@ -53,6 +55,7 @@ from rosetta_jit.kernel.symbolic import (
     integer,
     linear,
     oblige,
+    unknown,
 )
 
 if TYPE_CHECKING:
@@ -62,6 +65,9 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.loops import Guess
     from rosetta_jit.kernel.prove import Formula
     from rosetta_jit.kernel.symbolic import Typed
+
+MAX_PROOFS = 256
+"""Routines of which it is remembered that they were proven."""
 
 MAX_TERMS = 6
 """A longer sum gets a name: sums over many fields would cost more with each field."""
@@ -95,7 +101,7 @@ def verify(kernel: Kernel) -> None:
     """
     routines = _proven_routines(kernel)
     for body in kernel.bodies:
-        _body(_Walk(entry(kernel), routines), kernel, body)
+        _body(_Walk(entry(kernel.strides), routines), kernel, body)
 
 
 def settled(kernel: Kernel) -> frozenset[int]:
@@ -110,7 +116,7 @@ def settled(kernel: Kernel) -> frozenset[int]:
     needed: set[int] = set()
     routines = _proven_routines(kernel)
     for body in kernel.bodies:
-        walk = _Walk(entry(kernel), routines, notes=True)
+        walk = _Walk(entry(kernel.strides), routines, notes=True)
         _body(walk, kernel, body)
         found |= walk.seen.keys()
         needed |= walk.needed
@@ -122,19 +128,20 @@ def _proven_routines(kernel: Kernel) -> Mapping[str, Routine]:
     problem = shape_error(kernel)
     if problem is not None:
         raise VerificationError(f"kernel {kernel.name}: {problem}")
-    routines = {routine.name: routine for routine in kernel.routines}
-    for routine in kernel.routines:
-        _routine(kernel, routine, routines)
-    return routines
+    for number, routine in enumerate(kernel.routines):
+        try:
+            _prove_routine(kernel.strides, routine, kernel.routines[:number])
+        except UnprovenError as error:
+            raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
+    return {routine.name: routine for routine in kernel.routines}
 
 
-def _routine(kernel: Kernel, routine: Routine, routines: Mapping[str, Routine]) -> None:
-    try:
-        walk = _Walk(contracts.inside(kernel, routine), routines)
-        _block(walk, routine.body)
-        contracts.keep(walk.scope, routine)
-    except UnprovenError as error:
-        raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
+@lru_cache(maxsize=MAX_PROOFS)
+def _prove_routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...]) -> None:
+    """Prove a routine, which calls those before it. No pass changes one, so that a proof holds for all rounds of all passes."""
+    walk = _Walk(contracts.inside(strides, routine), {each.name: each for each in before})
+    _block(walk, routine.body)
+    contracts.keep(walk.scope, routine)
 
 
 def _body(walk: _Walk, kernel: Kernel, body: Block) -> None:
@@ -198,6 +205,8 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             for position in indices:
                 integer(scope, position)
             contracts.bind(scope, walk.routines[routine], stmt)
+        case HostCall():
+            _host_call(scope, stmt)
         case _:
             assert_never(stmt)
     return False
@@ -269,6 +278,23 @@ def _copy(scope: Scope, target: Place | Wire, source: Place | Wire, size: Linear
     if isinstance(target, Place) and isinstance(source, Place) and target.lane == source.lane:
         apart = Any((minus(minus(out_of, into), size), minus(minus(into, out_of), size)))
         oblige(scope, apart, "a copy onto itself")
+
+
+def _host_call(scope: Scope, call: HostCall) -> None:
+    for argument in call.arguments:
+        evaluate(scope, argument)
+    _failure(scope, call.failure)
+    filled = None if call.target is None else check_extent(scope, call.target.address, integer(scope, call.target.size))
+    for extent in call.inputs:
+        begin, size = check_extent(scope, extent.address, integer(scope, extent.size)), integer(scope, extent.size)
+        if filled is not None and call.target is not None and _same_memory(extent.address, call.target.address):
+            apart = Any((minus(minus(filled, begin), size), minus(minus(begin, filled), integer(scope, call.target.size))))
+            oblige(scope, apart, "a function that fills what it reads")
+    scope.locals[call.result.name] = call.result.type, unknown(scope, call.result.type)
+
+
+def _same_memory(one: Place | Wire, other: Place | Wire) -> bool:
+    return isinstance(one, Wire) == isinstance(other, Wire) and getattr(one, "lane", None) == getattr(other, "lane", None)
 
 
 def _rows(scope: Scope, stmt: Reserve | Advance) -> None:

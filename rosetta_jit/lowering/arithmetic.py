@@ -68,6 +68,18 @@ def divided(writer: Writer, left: Expr, right: Expr, where: Where, line: str = "
     return Binary("div", left, right)
 
 
+def floored(writer: Writer, function: str, left: Expr, right: Expr, where: Where, line: str = "") -> Expr:
+    """The quotient of integers rounded down, or what it leaves: that has the sign of ``right``."""
+    left, right = writer.let("dividend", left), writer.let("divisor", right)
+    over = writer.let("over", binary(writer, "%", left, right, where, line))
+    signs = Compare("ne", Compare("lt", over, index(0)), Compare("lt", right, index(0)))
+    is_between = Binary("and", Compare("ne", over, index(0)), signs)
+    if function == "modulo":
+        return binary(writer, "+", over, writer.let("missing", Select(is_between, right, index(0))), where, line)
+    quotient, more = writer.let("quotient", Binary("div", left, right)), writer.let("more", Select(is_between, index(1), index(0)))
+    return binary(writer, "-", quotient, more, where, line)
+
+
 def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str = "") -> Expr:
     """``number`` rounded up to a multiple of ``quantum``; a quantum of 1 or less changes nothing."""
     writer.expect(Compare("ge", number, index(0)), "range", where, "a negative size cannot be aligned", line=line)

@@ -5,30 +5,38 @@ Imports are read by the front ends, names and types resolved, and each direction
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.errors import MappingError, ReportError
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.search import Reading
+from rosetta_jit.lowering.annotate import annotated
+from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
-from rosetta_jit.lowering.others import SUFFIX, read_others
+from rosetta_jit.lowering.file_name import misnamed
+from rosetta_jit.lowering.hand_factors import wrong_factors
+from rosetta_jit.lowering.imports import Imports, merge, read_imports
+from rosetta_jit.lowering.other_lengths import other_lengths
+from rosetta_jit.lowering.others import read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
-from rosetta_jit.model.types import Schema
+from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping as Dictionary
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frontend.idl import FrontEnds
     from rosetta_jit.frontend.search import SearchPath
+    from rosetta_jit.lowering.functions import Signature
+    from rosetta_jit.lowering.imports import Imported
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
-    from rosetta_jit.model.mapping import Import, Mapping
-    from rosetta_jit.model.types import Declaration
-    from rosetta_jit.source import Source
+    from rosetta_jit.model.mapping import Mapping
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +51,17 @@ class Checked:
     wire: Message
     unpack: tuple[Rule, ...] | None
     pack: tuple[Rule, ...] | None
+    functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class _Imported:
-    """What one import declares."""
-
-    statement: Import
-    schema: Schema
-
-
-def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: Reading | None = None) -> Checked:
+def check(
+    mapping: Mapping,
+    front_ends: FrontEnds,
+    search: SearchPath,
+    reading: Reading | None = None,
+    parameters: Dictionary[str, object] | None = None,
+) -> Checked:
     """Read what a mapping imports, and check it.
 
     Parameters
@@ -63,6 +70,8 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Of all frameworks.
     reading
         Collects the files that were read.
+    parameters
+        The values of the mapping's parameters; None to check it for all values that they may get.
 
     Raises
     ------
@@ -70,92 +79,43 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
-    mapping, reading = derive(mapping, problems), reading or Reading()
+    mapping, reading = derive(bind(mapping, parameters, problems), problems), reading or Reading()
     derived = len(problems)
-    others = read_others(mapping, search, reading, problems)
-    imported = _imports(mapping, _Imports(mapping.source, front_ends, search, reading), problems)
-    theirs = [
-        each
-        for other in {other.source.name: other for other in others.found.values()}.values()
-        for each in _imports(other, _Imports(other.source, front_ends, search, reading), problems)
-    ]
-    schema = _merged([*imported, *theirs], problems)
+    others = read_others(mapping, search, reading, problems, parameters)
+    imports = Imports(mapping.source, front_ends, search, reading)
+    imported = read_imports(mapping, imports, problems)
+    theirs = [each for other in others.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
+    merged = merge([*imported, *theirs], problems)
     complete = not any(problem.severity == "error" for problem in problems[derived:])
+    schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
     problems += resolved.problems
-    problems += _directions(mapping, resolved)
+    problems += _directions(mapping, resolved, packs=not derived)
+    problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += _unused(imported, resolved)
+    problems += misnamed(mapping, schema)
     errors = [problem for problem in problems if problem.severity == "error"]
     if errors:
         raise MappingError(_sorted(problems))
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, _sorted(problems))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
 
 
-@dataclass(frozen=True, slots=True)
-class _Imports:
-    """How the imports of one source are read."""
+def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Diagnostic]:
+    """Each direction as a whole; ``packs`` unless rules to pack are missing that could not be derived.
 
-    importer: Source
-    front_ends: FrontEnds
-    search: SearchPath
-    reading: Reading
-
-    def read(self, statement: Import) -> Schema | Diagnostic:
-        source = self.search.loader(self.reading, self.importer)(statement.path)
-        if source is None:
-            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
-        front_end = self.front_ends.find(source.name)
-        if front_end is None:
-            return words.import_suffix(statement.span, statement.path, self.front_ends.suffixes)
-        return front_end(source, self.search.loader(self.reading, source))
-
-
-def _imports(mapping: Mapping, imports: _Imports, problems: list[Diagnostic]) -> list[_Imported]:
-    imported: list[_Imported] = []
-    seen: set[str] = set()
-    for statement in mapping.imports:
-        if statement.path.endswith(SUFFIX):
-            continue
-        if statement.path in seen:
-            problems.append(words.import_repeated(statement.span, statement.path))
-            continue
-        seen.add(statement.path)
-        try:
-            schema = imports.read(statement)
-        except ReportError as error:
-            problems.extend(words.placed(problem, statement.span) for problem in error.diagnostics)
-            continue
-        if isinstance(schema, Schema):
-            imported.append(_Imported(statement, schema))
-        else:
-            problems.append(schema)
-    return imported
-
-
-def _merged(imported: list[_Imported], problems: list[Diagnostic]) -> Schema:
-    types: dict[str, Declaration] = {}
-    owners: dict[str, str] = {}
-    for one in imported:
-        for name, declaration in one.schema.types.items():
-            if types.setdefault(name, declaration) != declaration:
-                problems.append(words.conflicting_type(one.statement.span, name, owners[name], one.statement.path))
-            owners.setdefault(name, one.statement.path)
-    return Schema(types, tuple(dict.fromkeys(source for one in imported for source in one.schema.sources)))
-
-
-def _directions(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
-    """Each direction as a whole. An empty block says that the direction is not meant to exist."""
+    An empty block says that the direction is not meant to exist.
+    """
     if resolved.unpack is None and resolved.pack is None:
         return [words.no_rules(mapping.wire_span)]
     problems: list[Diagnostic] = []
     holder, wire = resolved.holder, resolved.wire
     if mapping.unpack_rules and resolved.unpack is not None:
         problems += check_complete(resolved.unpack, holder, "holder", mapping.holder_span)
-    if mapping.pack_rules and resolved.pack is not None:
+    if packs and mapping.pack_rules and resolved.pack is not None:
         problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
     return problems
 
@@ -167,12 +127,19 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
     for block, (source, read_at), (target, set_at) in ((resolved.unpack, wire, holder), (resolved.pack, holder, wire)):
         if block is not None and block.rules:
             warnings += left_out(block.rules, source, target, (read_at, set_at))
+            warnings += other_lengths(block.rules)
     return warnings
 
 
-def _unused(imported: list[_Imported], resolved: Resolved) -> list[Diagnostic]:
+def _unused(imported: list[Imported], resolved: Resolved) -> list[Diagnostic]:
     used = {resolved.holder.root.name, resolved.wire.root.name, *resolved.enums}
-    return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not used & one.schema.types.keys()]
+    known = {name_parts(name) for name in resolved.holder.schema.types}
+    return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
+
+
+def _is_used(one: Imported, used: set[str], known: set[tuple[str, ...]]) -> bool:
+    measured = any(name_parts(each.text) in known for file in one.units for each in file.types)
+    return measured or bool(used & one.schema.types.keys())
 
 
 def _sorted(problems: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

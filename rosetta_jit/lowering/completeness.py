@@ -7,11 +7,11 @@ its length and all of its elements. Fields that the schema fixes need no rule.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.coverage import coverage
 from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.lowering.scope import element_type
@@ -39,7 +39,9 @@ def check_complete(rules: TypedRules, target: Message, side: str, span: Span | N
     except TooManyWaysError as error:
         return [words.too_many_ways(error.span, MAX_WAYS)]
     ways_with = Counter(problem for problems in found for problem in dict.fromkeys(problems))
-    return [*shared, *(problem if count == len(found) else words.in_one_way(problem) for problem, count in ways_with.items())]
+    # Where rounds set different places, what one way through them lacks is the same mistake again.
+    some = [words.in_one_way(problem) for problem, count in ways_with.items() if count < len(found) and not shared]
+    return [*shared, *(problem for problem, count in ways_with.items() if count == len(found)), *some]
 
 
 def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, side: str, span: Span | None) -> list[Diagnostic]:
@@ -96,8 +98,9 @@ class _Checker:
         elif writes:
             self.value(where, field.type, writes)
         elif self.must_be_set(field) and not self.is_broken(where):
-            array = isinstance(self.target.value_type(field.type), Array)
-            self.problems.append(words.never_set(self.span, self.side, where.text, field.span, array=array))
+            type_ = self.target.value_type(field.type)
+            kind = "value" if not isinstance(type_, Array) else "array" if type_.length is None else "fixed"
+            self.problems.append(words.never_set(self.span, self.side, where.text, field.span, kind=kind))
 
     def constant(self, where: _Where, constant: object, writes: list[Write]) -> None:
         known = constant.value if isinstance(constant, Literal) else None

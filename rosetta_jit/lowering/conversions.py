@@ -39,7 +39,7 @@ def describe(type_: Type) -> str:
         case Enum(name=name):
             return f"enum {name}"
         case Array(element, length):
-            return f"an array of {'' if length is None else f'{length} '}{describe(element)}"
+            return f"an array of {f'{length} ' if isinstance(length, int) else ''}{describe(element)}"
         case Struct(name=name) | Union(name=name) | Ref(name=name):
             return name
         case Optional(value):
@@ -128,7 +128,7 @@ def _fits_float32(number: float) -> bool:
     if not math.isfinite(number):
         return True
     try:
-        struct.pack("f", number)
+        struct.pack("<f", number)
     except OverflowError:
         return False
     return True
@@ -141,7 +141,7 @@ def word_for(source: Type, target: Type) -> str:
         case Int() | Bool() | Enum(), Int():
             return f"`{name}(...)` refuses what does not fit; `{name}(..., saturate)` and `{name}(..., wrap)` do not"
         case Float(), Int():
-            return f"`{name}(...)` refuses fractions; `{name}(..., round)` and `{name}(..., truncate)` do not"
+            return f"`{name}(...)` refuses fractions; `{name}(..., round)`, `{name}(..., truncate)` and `{name}(..., saturate)` do not"
         case Int() | Float(), Float():
             return f"`{name}(...)` rounds to the nearest"
         case Int(), Enum(name=enum):

@@ -42,6 +42,8 @@ def coverage(path: str, runs: list[Run], length: Polynomial, span: Span | None, 
     if optional or _is_whole(joined, length):
         return []
     place = joined[0].span if joined else span
+    if len(joined) == 1 and not joined[0].dimensions and joined[0].start == number(0):
+        return [words.loop_of_other_length(place, path, str(length), str(joined[0].length))]
     return [words.coverage(place, path, str(length), tuple(_shown(run) for run in joined[:MAX_SHOWN]))]
 
 

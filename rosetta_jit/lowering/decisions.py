@@ -1,7 +1,7 @@
 """Types of what is decided: comparisons, logic, and choices among values.
 
-Two numbers are compared as arithmetic would unify them, integers of up to 64 bits exactly. A text is compared with one that the mapping
-writes down; an enum with its constants; a bool with another.
+Two numbers are compared as arithmetic would unify them, integers of up to 64 bits exactly. Texts are compared byte by
+byte, an enum with its constants, a bool with another.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, same
+from rosetta_jit.lowering.type_texts import comparison
 from rosetta_jit.lowering.typed import BOOL, Access, Binary, Choice, Const, IsText, Unary
+from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+    CompareTexts = Callable[[Expr, Expr, model.Binary], Expr | None]
 
 EQUALITY = frozenset(("==", "!="))
 MAX_TEXT = 64
@@ -52,11 +55,14 @@ def type_logic(expr: model.Binary, scope: Scope, type_expr: TypeExpr) -> Expr | 
     return None if left is None or right is None else Binary(expr.operator, left, right, BOOL, expr.span)
 
 
-def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr) -> Expr | None:
-    """``left == right`` and its like."""
+def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr, texts: CompareTexts) -> Expr | None:
+    """``left == right`` and its like; ``texts`` compares those that are not all known."""
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
-    if left is None or right is None:
+    if left is None or right is None or not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
         return None
+    found = texts(left, right, expr) if expr.operator in EQUALITY else None
+    if found is not None:
+        return found
     found = _comparison(expr, left, right)
     if found is None:
         scope.problems.append(words.not_comparable(expr.span, expr.operator, describe(left.type), describe(right.type)))
@@ -87,7 +93,7 @@ def _compared(left: Expr, right: Expr, operator: model.Operator, expr: model.Bin
             pair = _numbers(left, right)
             return None if pair is None else Binary(operator, *pair, BOOL, expr.span)
         case _:
-            return None
+            return comparison(left, right, operator, expr.span)
 
 
 def _numbers(left: Expr, right: Expr) -> tuple[Expr, Expr] | None:
@@ -112,17 +118,20 @@ def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr |
     known = [value for value in values if value is not None]
     if len(known) < len(values) or any(condition is None for condition in conditions):
         return None
-    fitting = _unified(known)
+    fitting = unified(known)
     if fitting is None:
         kinds = sorted({describe(value.type) for value in known})
         scope.problems.append(words.mixed_choice(expr.span, kinds))
+        return None
+    if not check_agree("a choice", known, expr.span, scope):
         return None
     otherwise = None if expr.otherwise is None else fitting[-1]
     cases = tuple((condition, value) for condition, value in zip(conditions, fitting, strict=False) if condition is not None)
     return Choice(cases, otherwise, expr.reason, fitting[0].type, expr.span)
 
 
-def _unified(values: list[Expr]) -> list[Expr] | None:
+def unified(values: list[Expr]) -> list[Expr] | None:
+    """Values as one type: the first that all fit without a word."""
     targets = [value.type for value in values if not isinstance(value, Const)] + [values[0].type, FLOAT64]
     for target in targets:
         found = [convert(value, target) for value in values]

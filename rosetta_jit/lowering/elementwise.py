@@ -7,12 +7,13 @@ rejected. Rules for fields of the elements of one array share a loop.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
-from rosetta_jit.lowering.array_parts import has_each, is_many, parts_of, sources_in
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.array_parts import has_each, is_many, sources_in
 from rosetta_jit.lowering.counts import LayoutError, times
 from rosetta_jit.lowering.layouts import ARGUMENTS, PADDED, view_of
 from rosetta_jit.lowering.moves import Moves
@@ -22,6 +23,7 @@ from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Liter
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Bytes, Struct, Union
+from rosetta_jit.model.walk import parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -81,9 +83,9 @@ class _Expansion:
                 return (rule,)
 
     def assign(self, rule: Assign, lengths: Lengths, level: int) -> tuple[Rule, ...]:
-        if not any(is_many(part) for side in (rule.place, rule.value) for part in parts_of(side)):
+        if not any(is_many(part) for side in (rule.place, rule.value) for part in parts(side)):
             return (rule,)
-        is_each = any(has_each(part) for side in (rule.place, rule.value) for part in parts_of(side))
+        is_each = any(has_each(part) for side in (rule.place, rule.value) for part in parts(side))
         try:
             if isinstance(rule.value, Choice) and not is_each:
                 return self.chosen(rule, rule.value, lengths, level)
@@ -181,7 +183,7 @@ def _unless_equal(total: Expr, count: Expr, span: Span | None) -> list[Rule]:
 
 def _is_open(target: View) -> bool:
     """Whether a slice goes to the end of the array that is being filled."""
-    return target.axes[0].count != Len(target.array) and any(part == Len(target.array) for part in parts_of(target.axes[0].count))
+    return target.axes[0].count != Len(target.array) and any(part == Len(target.array) for part in parts(target.axes[0].count))
 
 
 def _add(made: list[Rule], rule: Rule, variable: str) -> None:

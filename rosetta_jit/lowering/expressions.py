@@ -9,13 +9,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
+from rosetta_jit.lowering.functions import type_host_call
+from rosetta_jit.lowering.held import type_held
+from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
+from rosetta_jit.lowering.listed import compared_text, type_listed
 from rosetta_jit.lowering.scope import Broken, resolve_path
+from rosetta_jit.lowering.type_texts import concatenation, is_textual
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
+from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
 
@@ -25,6 +30,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 CONSTANTS = {"pi": math.pi}
+SUMS = frozenset("+-%")
 
 
 def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
@@ -44,27 +50,30 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Unary():
             return _negative(expr, scope)
         case model.Binary(operator) if operator in model.COMPARISONS:
-            return type_comparison(expr, scope, type_expr)
+            return type_comparison(expr, scope, type_expr, compared_text)
         case model.Binary(operator) if operator in model.LOGIC:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
+        case model.Call(function) if function in scope.functions:
+            return type_host_call(expr, scope.functions[function], scope, type_expr)
         case model.Call("has", (model.Path() as path,)):
             return _presence(path, expr.span, scope)
         case model.Call():
-            return type_call(expr, scope, type_expr)
+            return type_call(for_comparison(expr), scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
-        case model.List():
-            scope.problems.append(layouts.out_of_place(expr.span))
-            return None
+        case model.List() | model.Item() | model.Given():
+            return type_listed(expr, scope, type_expr)
+        case model.Held():
+            return type_held(expr, scope, type_expr, type_index)
         case _:
             assert_never(expr)
 
 
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
     """An expression that must be an integer, as int64."""
-    typed = type_expr(expr, scope)
+    typed = type_expr(for_type(expr, INT64), scope)
     if typed is None:
         return None
     integer = as_int64(typed)
@@ -136,14 +145,16 @@ def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
     if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
         return _constant(-operand.value, expr.span, scope)
     number = _computable(operand, "-", scope)
-    number = as_int64(number) if number is not None and isinstance(number.type, Int) else number
-    return None if number is None else Unary("-", number, number.type, expr.span)
+    wide = as_int64(number) if number is not None and isinstance(number.type, Int) else number
+    return None if wide is None else Unary("-", wide, wide.type, expr.span)
 
 
 def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
     if left is None or right is None:
         return None
+    if expr.operator == "+" and (is_textual(left.type) or is_textual(right.type)):
+        return concatenation(left, right, expr.span, scope)
     if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
         scope.problems.append(words.zero_division(right.span))
         return None
@@ -153,6 +164,8 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
                 return _constant(_compute(expr.operator, x, y), expr.span, scope)
         case _:
             pass
+    if expr.operator in SUMS and not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
+        return None
     numbers = _computable(left, expr.operator, scope), _computable(right, expr.operator, scope)
     if numbers[0] is None or numbers[1] is None:
         return None

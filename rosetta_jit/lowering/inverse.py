@@ -12,23 +12,29 @@
 | `-x`, `not x`     | -value, not value                 |
 | `radians(x)`      | degrees(value), and the reverse   |
 | `float32(x)` …    | the value, as the field holds it  |
+| `divide(x, c)`    | value * c                         |
 | `table(x) {a = b}`| table(value) {b = a}              |
-| `reversed(x)` …   | see `layouts`                     |
+
+Those of texts stand in `rosetta_jit.lowering.inverse_texts`, those of arrays in `rosetta_jit.lowering.layouts`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.lowering.layouts import ARGUMENTS, opposite
-from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Name, Path, Slice, Unary
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.folding import folded, is_constant
+from rosetta_jit.lowering.inverse_texts import opposite, without
+from rosetta_jit.lowering.layouts import ARGUMENTS, put_back
+from rosetta_jit.model.expr import Binary, Call, Choice, Len, Path, Unary
+from rosetta_jit.model.walk import rebuilt, side_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.source import Span
+    from rosetta_jit.model.walk import Field
 
 CONVERSIONS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float32", "float64", "bool")
 OPPOSITE = {"radians": "degrees", "degrees": "radians"}
@@ -62,33 +68,23 @@ def solve(expr: Expr, value: Expr) -> Solution:
     return Solution(expr, value)
 
 
-def fields_in(expr: Expr) -> list[Path | Len]:
-    """The fields that an expression reads; those within an index are not among them."""
+def fields_in(expr: Expr) -> list[Field]:
+    """The fields of the wire that an expression reads; those within an index are not among them."""
     return list(dict.fromkeys(_fields(expr)))
 
 
-def _fields(expr: Expr) -> Iterator[Path | Len]:
-    match expr:
-        case Path() | Len():
+def _fields(expr: Expr) -> Iterator[Field]:
+    if isinstance(expr, Path | Len):
+        if side_of(expr) == "wire":
             yield expr
-        case Unary(_, operand):
-            yield from _fields(operand)
-        case Binary(_, left, right):
-            yield from _fields(left)
-            yield from _fields(right)
-        case Call(function, (array, *_)) if function in ARGUMENTS:
-            yield from _fields(array)  # its other arguments are no fields to solve for
-        case Call(_, arguments):
-            for argument in arguments:
-                yield from _fields(argument)
-        case Choice(cases, otherwise):
-            for condition, value in cases:
-                yield from _fields(condition)
-                yield from _fields(value)
-            if otherwise is not None:
-                yield from _fields(otherwise)
-        case _:
-            return
+        return
+    if isinstance(expr, Call) and expr.function in ARGUMENTS:
+        yield from _fields(expr.arguments[0]) if expr.arguments else ()  # the others are no fields to solve for
+        return
+    below: list[Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        yield from _fields(part)
 
 
 def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
@@ -102,8 +98,12 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return argument, Call(OPPOSITE[function], (value,), span)
         case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
             return argument, value
+        case Call("divide", (argument, divisor), span) if not fields_in(divisor):
+            return argument, Binary("*", value, divisor, span)
         case Call(function, (array, *_)) if function in ARGUMENTS:
-            return array, opposite(expr, value)
+            return array, put_back(expr, value)
+        case Call() if (found := opposite(expr, value)) is not None:
+            return found
         case Call(function):
             raise NoInverseError(expr, f"`{function}` gives the same for several values")
         case Choice():
@@ -113,6 +113,8 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
 
 
 def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
+    if (found := without(expr, value)) is not None:
+        return found
     left = bool(fields_in(expr.left))
     inner, other = (expr.left, expr.right) if left else (expr.right, expr.left)
     if fields_in(other):
@@ -136,45 +138,48 @@ def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
 
 
 def _table(expr: Choice, value: Expr) -> tuple[Expr, Expr]:
-    """A table with its columns exchanged. Of several keys with one value the first is written."""
-    if expr.otherwise is not None:
-        raise NoInverseError(expr.otherwise, "it is the value of several keys")
-    cases: list[tuple[Expr, Expr]] = []
-    subject: Expr | None = None
-    for condition, chosen in expr.cases:
-        match condition, chosen:
-            case Binary("==", found, (Literal() | Name()) as key), Literal() | Name() | Unary("-", Literal()):
-                subject = found
-                cases.append((Binary("==", value, chosen, condition.span), key))
-            case _:
-                raise NoInverseError(expr, "only a table of constants can be turned round")
+    """A table with its columns exchanged. Of several keys with one value the first is written; what has no key is refused."""
+    subject = subject_of(expr)
     if subject is None:
-        raise NoInverseError(expr, "the table is empty")
-    return subject, Choice(tuple(cases), None, expr.reason or "the table has no key for it", expr.span)
+        raise NoInverseError(expr, "only a table of constants can be turned round")
+    cases = tuple((Binary("==", value, chosen, condition.span), folded(_key(condition))) for condition, chosen in expr.cases)
+    return subject, Choice(cases, None, "the table has no key for it", expr.span)
 
 
-def replaced(expr: Expr, known: dict[Path | Len, Expr]) -> Expr:
-    """An expression with other expressions in place of some fields."""
-    match expr:
-        case Path() | Len():
-            return known.get(expr, expr)
-        case Unary(operator, operand, span):
-            return Unary(operator, replaced(operand, known), span)
-        case Binary(operator, left, right, span):
-            return Binary(operator, replaced(left, known), replaced(right, known), span)
-        case Call(function, arguments, span):
-            return Call(function, tuple(replaced(argument, known) for argument in arguments), span)
-        case Choice(cases, otherwise, reason, span):
-            pairs = tuple((replaced(condition, known), replaced(value, known)) for condition, value in cases)
-            return Choice(pairs, None if otherwise is None else replaced(otherwise, known), reason, span)
-        case _:
-            return expr
+def subject_of(expr: Choice) -> Expr | None:
+    """What a table of constants looks up; None for other choices."""
+    values = [value for _, value in expr.cases] + ([] if expr.otherwise is None else [expr.otherwise])
+    subjects = {condition.left for condition, _ in expr.cases if isinstance(condition, Binary) and condition.operator == "=="}
+    constant = all(map(is_constant, values)) and all(is_constant(_key(condition)) for condition, _ in expr.cases)
+    return subjects.pop() if len(subjects) == 1 and constant and not is_conditional(expr) else None
 
 
-def reads_in_index(path: Path) -> Span | None:
-    """Where an index of a place reads a field."""
-    for step in path.steps:
-        parts = (step.index,) if isinstance(step, Index) else (step.start, step.step, step.stop) if isinstance(step, Slice) else ()
-        if any(part is not None and fields_in(part) for part in parts):
-            return step.span
+def _key(condition: Expr) -> Expr:
+    """The key of an entry of a table."""
+    return condition.right if isinstance(condition, Binary) else condition
+
+
+def is_conditional(expr: Choice) -> bool:
+    """Whether a choice was written as `a if condition else b`: that one is never refused, and has no reason for it."""
+    return expr.otherwise is not None and not expr.reason
+
+
+def condition_in(expr: Expr) -> tuple[Expr, Expr, Expr] | None:
+    """The condition of a conditional on the way to the field of an expression, and the expression where it holds and where not."""
+    if isinstance(expr, Choice):
+        if not is_conditional(expr) or expr.otherwise is None:
+            return None
+        (condition, then), *others = expr.cases
+        return condition, then, replace(expr, cases=tuple(others)) if others else expr.otherwise
+    below: list[Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        found = condition_in(part)
+        if found is not None:
+            condition, then, other = found
+            return condition, _with(expr, part, then), _with(expr, part, other)
     return None
+
+
+def _with(expr: Expr, part: Expr, other: Expr) -> Expr:
+    return rebuilt(expr, lambda each: other if each is part else each)

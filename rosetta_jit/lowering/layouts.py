@@ -20,11 +20,12 @@ another order. All numbers are expressions of the mapping, computed when the ker
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
 from rosetta_jit.model.expr import Binary, Call, Each, Len, List, Literal, Path, Pick, Slice
 
@@ -235,7 +236,7 @@ def _rows(view: View, count: Expr, size: Expr, stride: Expr, call: Call) -> View
     return replace(view, axes=axes, refused=(*view.refused, *refused))
 
 
-def opposite(call: Call, value: Expr) -> Call:
+def put_back(call: Call, value: Expr) -> Call:
     """The function that puts the elements back."""
     _, *arguments = call.arguments
     match call.function, arguments:

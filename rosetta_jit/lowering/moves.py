@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.array_parts import substituted
 from rosetta_jit.lowering.counts import ONE, ZERO, LayoutError, minus, over, plus, times
 from rosetta_jit.lowering.layouts import PADDED, Axis, View

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import nested as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.lowering.bind import bind
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.model.mapping import Assign, For, When
 
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Rule, Via
     from rosetta_jit.source import Source, Span
 
-SUFFIX = ".mapping"
+MAPPING_SUFFIX = ".mapping"
 """Of an import that is a mapping."""
 
 MAX_MAPPINGS = 64
@@ -46,21 +48,27 @@ class Others:
         """The mapping of a ``via``; None where it could not be read, which is reported."""
         return self.found.get((self.using[-1], via.mapping))
 
+    def mappings(self) -> list[model.Mapping]:
+        """Each mapping once."""
+        return list({each.source.name: each for each in self.found.values()}.values())
+
     def by_type(self) -> list[model.Mapping]:
         """The mappings that the file of the innermost one imports."""
         here = self.using[-1]
         return [self.found[here, name] for name in self.imported.get(here, ()) if (here, name) in self.found]
 
 
-def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic]) -> Others:
-    """Read all mappings that a mapping uses, directly or through others."""
+def read_others(
+    mapping: model.Mapping, search: SearchPath, reading: Reading, problems: list[Diagnostic], parameters: Mapping[str, object] | None
+) -> Others:
+    """Read all mappings that a mapping uses, directly or through others. Of its ``parameters`` they have those that they declare."""
     found: dict[tuple[str, str], model.Mapping] = {}
     imported: dict[str, tuple[str, ...]] = {}
     read: dict[str, model.Mapping] = {mapping.source.name: mapping}
     pending = [mapping]
     while pending:
         user = pending.pop()
-        imported[user.source.name] = tuple(each.path for each in user.imports if each.path.endswith(SUFFIX))
+        imported[user.source.name] = tuple(each.path for each in user.imports if each.path.endswith(MAPPING_SUFFIX))
         for name, span in _named(user):
             if (user.source.name, name) in found:
                 continue
@@ -72,7 +80,7 @@ def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, pr
                 if len(read) > MAX_MAPPINGS:
                     problems.append(words.many_mappings(span, MAX_MAPPINGS))
                     return Others(found, imported, (mapping.source.name,))
-                other = _read(source, problems)
+                other = _read(source, problems, parameters)
                 if other is None:
                     continue
                 read[source.name] = other
@@ -81,9 +89,12 @@ def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, pr
     return Others(found, imported, (mapping.source.name,))
 
 
-def _read(source: Source, problems: list[Diagnostic]) -> model.Mapping | None:
+def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, object] | None) -> model.Mapping | None:
     try:
-        return derive(parse(source), problems)
+        mapping = parse(source)
+        declared = {each.name for each in mapping.parameters}
+        given = None if parameters is None else {name: value for name, value in parameters.items() if name in declared}
+        return derive(bind(mapping, given, problems), problems)
     except ReportError as error:
         problems.extend(error.diagnostics)
         return None
@@ -91,7 +102,7 @@ def _read(source: Source, problems: list[Diagnostic]) -> model.Mapping | None:
 
 def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
     """The names of the mappings that one uses, and where."""
-    yield from ((each.path, each.span) for each in mapping.imports if each.path.endswith(SUFFIX))
+    yield from ((each.path, each.span) for each in mapping.imports if each.path.endswith(MAPPING_SUFFIX))
     for rules in (mapping.unpack_rules, mapping.pack_rules):
         yield from ((via.mapping, via.span) for via in _vias(rules or ()))
 

@@ -9,16 +9,36 @@ quotient, a call. Its arguments are polynomials again, so that a substitution re
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, Has, IsText, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import (
+    Access,
+    Binary,
+    Call,
+    Choice,
+    Const,
+    Convert,
+    FieldStep,
+    Given,
+    Has,
+    HostCall,
+    ImageCall,
+    IsText,
+    LenOf,
+    Listed,
+    Local,
+    TextCall,
+    Told,
+    Unary,
+)
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.typed import Expr, Place
+    from rosetta_jit.lowering.typed import Asked, Expr, Place
 
 MAX_SIZE = 1000
 """Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
@@ -153,17 +173,44 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Convert(operand, _, rule):
             keeps = isinstance(operand.type, Int) and rule in {"widen", "exact"}
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
-        case Call(function, arguments):
-            return atom(function, *(polynomial_of(argument) for argument in arguments))
+        case Call(function, arguments) | TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
+        case Told() | HostCall() | ImageCall():
+            return _asked(expr)
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
             return atom(f"has {_path_shape(place)}", *_indices(place))
+        case Choice() | Listed() | Given():
+            return _chosen(expr)
+        case Const(value=value):
+            return atom(repr(value))
+        case _:
+            assert_never(expr)
+
+
+def _asked(asked: Asked) -> Polynomial:
+    match asked:
+        case Told(what):
+            return atom(f"{what}()")
+        case HostCall(function, arguments):
+            return atom(f"{function}()", *map(polynomial_of, arguments))
+        case ImageCall(function, image, _, _, numbers):
+            return atom(function, *map(polynomial_of, (image, *numbers)))
+        case _:
+            assert_never(asked)
+
+
+def _chosen(expr: Choice | Listed | Given) -> Polynomial:
+    """One of several values; it is the same under the same conditions, and for the same number."""
+    match expr:
         case Choice(cases, otherwise):
             parts = [part for case in cases for part in case] + ([] if otherwise is None else [otherwise])
             return atom("choice", *map(polynomial_of, parts))
-        case Const(value=value):
-            return atom(repr(value))
+        case Listed(items, index):
+            return atom("item", *map(polynomial_of, (*items, index)))
+        case Given(name, arguments):
+            return atom(name, *map(polynomial_of, arguments))
         case _:
             assert_never(expr)
 

@@ -23,22 +23,29 @@ Names = tuple[str, ...]
 
 def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None]) -> list[Diagnostic]:
     """Warnings about one direction; ``spans`` are where the types of source and target are named."""
-    read = {field_names(place) for place in _read(rules)}
-    unread = _without(read, source, source.root, ())
-    written = {field_names(place) for place in places_in(rules)}
-    unset = [names for names in _without(written, target, target.root, ()) if _may_be_absent(names, target)]
     return [
-        *(words.never_read(spans[0], _shown(names)) for names in unread),
-        *(words.left_out(spans[1], _shown(names)) for names in unset),
+        *(words.never_read(spans[0], _shown(names)) for names in unread(rules, source)),
+        *(words.left_out(spans[1], _shown(names)) for names in unset(rules, target)),
     ]
+
+
+def unread(rules: tuple[Rule, ...], source: Message) -> list[Names]:
+    """Fields of the source whose values go nowhere."""
+    return untouched({field_names(place) for place in _read(rules)}, source, source.root, ())
+
+
+def unset(rules: tuple[Rule, ...], target: Message) -> list[Names]:
+    """Fields of the target that stay absent."""
+    written = {field_names(place) for place in places_in(rules)}
+    return [names for names in untouched(written, target, target.root, ()) if _may_be_absent(names, target)]
 
 
 def _shown(names: Names) -> str:
     return "".join(f".{name}" for name in names)
 
 
-def _without(touched: set[Names], message: Message, struct: Struct | Union, prefix: Names) -> list[Names]:
-    """Fields of which neither a part nor anything around is touched: the outermost of each."""
+def untouched(touched: set[Names], message: Message, struct: Struct | Union, prefix: Names) -> list[Names]:
+    """The outermost fields of which neither a part nor anything around is ``touched``."""
     found: list[Names] = []
     for each in struct.fields if isinstance(struct, Struct) else struct.cases:
         names = (*prefix, each.name)
@@ -48,7 +55,7 @@ def _without(touched: set[Names], message: Message, struct: Struct | Union, pref
         if not any(other[: len(names)] == names for other in touched):
             found.append(names)
         elif isinstance(inner, Struct | Union):
-            found += _without(touched, message, inner, names)
+            found += untouched(touched, message, inner, names)
     return found
 
 
@@ -60,16 +67,18 @@ def _inside(message: Message, type_: Type) -> Type:
 
 def _may_be_absent(names: Names, message: Message) -> bool:
     """Whether a field need not be set: that one must be is an error already."""
+    *around, name = names
     struct: Struct | Union = message.root
-    for name in names:
-        fields = struct.fields if isinstance(struct, Struct) else struct.cases
-        last: Field = next(each for each in fields if each.name == name)
-        inner = _inside(message, last.type)
-        if isinstance(inner, Struct | Union):
-            struct = inner
-        if isinstance(message.schema.resolve(last.type), Optional | Union):
-            return not last.required
-    return False
+    for each in around:
+        inner = _inside(message, _field(struct, each).type)
+        assert isinstance(inner, Struct | Union)
+        struct = inner
+    last = _field(struct, name)
+    return isinstance(message.schema.resolve(last.type), Optional | Union) and not last.required
+
+
+def _field(struct: Struct | Union, name: str) -> Field:
+    return next(each for each in (struct.fields if isinstance(struct, Struct) else struct.cases) if each.name == name)
 
 
 # --- what is read ------------------------------------------------------------------------------------------------------
@@ -94,6 +103,11 @@ def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
                 pass
 
 
+def places_read(value: Expr) -> Iterator[Place]:
+    """The places that an expression looks at, those of its indices included."""
+    return _in(value)
+
+
 def _in(value: Expr) -> Iterator[Place]:
     match value:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
@@ -104,15 +118,24 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Binary(_, left, right):
             yield from _in(left)
             yield from _in(right)
-        case typed.Call(_, arguments):
+        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.TextCall(_, arguments):
             for argument in arguments:
                 yield from _in(argument)
+        case typed.ImageCall(_, image, _, _, numbers):
+            for part in (image, *numbers):
+                yield from _in(part)
         case typed.Choice(cases, otherwise):
             for part in (part for case in cases for part in case):
                 yield from _in(part)
             if otherwise is not None:
                 yield from _in(otherwise)
-        case typed.Const() | typed.Local():
+        case typed.Listed(items, index):
+            for part in (*items, index):
+                yield from _in(part)
+        case typed.Given(_, arguments):
+            for argument in arguments:
+                yield from _in(argument)
+        case typed.Const() | typed.Local() | typed.Told():
             pass
 
 

@@ -1,21 +1,26 @@
-"""What a relation of whole arrays says besides: which lengths are equal, and which fields its layout reads."""
+"""What a relation of whole arrays says besides: which lengths are equal, and what its layout depends on."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.inverse import fields_in
 from rosetta_jit.lowering.layouts import ARGUMENTS, KEEP_LENGTH
-from rosetta_jit.model.expr import Call, Each, Index, Len, Member, Path
+from rosetta_jit.model.expr import Call, Each, Held, Index, Len, Member, Path
+from rosetta_jit.model.walk import rebuilt
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.walk import Field
 
 
-def equal_lengths(place: Path | Len, value: Expr) -> tuple[Len, Len] | None:
+def equal_lengths(place: Field, value: Expr) -> tuple[Len, Len] | None:
     """The length of the array in a value, and that of the place, if both have as many elements."""
     array = value
-    while isinstance(array, Call) and array.function in KEEP_LENGTH:
+    while isinstance(array, Call) and array.function in KEEP_LENGTH and array.arguments:
         array = array.arguments[0]
     if not isinstance(place, Path):
         return None
@@ -26,13 +31,20 @@ def equal_lengths(place: Path | Len, value: Expr) -> tuple[Len, Len] | None:
     return (Len(found[0]), Len(wanted, place.span)) if len(found) == 1 and all(map(_is_plain, (found[0], wanted))) else None
 
 
-def layout_reads(value: Expr) -> list[Path | Len]:
-    """The fields that arguments of functions of arrays read."""
+def with_layouts(value: Expr, written: Mapping[Field, Expr]) -> Expr:
+    """A value whose layout depends on what `pack-rules:` write, with that in place of the fields of the wire."""
     match value:
         case Call(function, (array, *arguments)) if function in ARGUMENTS:
-            return [*layout_reads(array), *(each for argument in arguments for each in fields_in(argument))]
+            known = tuple(_with_written(argument, written) for argument in arguments)
+            return replace(value, arguments=(with_layouts(array, written), *known))
         case _:
-            return []
+            return value
+
+
+def _with_written(expr: Expr, written: Mapping[Field, Expr]) -> Expr:
+    if isinstance(expr, Path) and expr in written:
+        return Held(expr, written[expr], expr.span)
+    return rebuilt(expr, lambda part: _with_written(part, written))
 
 
 def _has_each(path: Path) -> bool:

@@ -6,51 +6,65 @@ the checks that follow do not report the same mistake in other words.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.lowering.calls import rules_between
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.elementwise import elementwise
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.functions import signatures
+from rosetta_jit.lowering.held import fitted
+from rosetta_jit.lowering.inverse_texts import for_type
+from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.type_images import is_bytes
+from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
     Choice,
     Const,
-    Convert,
     Default,
     FieldStep,
     For,
     Ignore,
+    ImageCall,
+    Listed,
     Local,
     Reject,
     SetLength,
+    TextCall,
     When,
 )
+from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
 
 
 MAX_TEXTS = 50
 """Cases of a choice among texts."""
+
+MAX_PROBLEMS = 200
+"""Reports of one mapping after which no more rules are looked at: most of them say the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,9 +85,10 @@ class Resolved:
     pack: TypedRules | None
     enums: frozenset[str]
     problems: tuple[Diagnostic, ...]
+    functions: Mapping[str, Signature]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 
     ``others`` are the mappings that its rules may use.
@@ -86,10 +101,14 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> R
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, others)
-    unpack = _block(mapping.unpack_rules, scope)
-    pack = _block(mapping.pack_rules, replace(scope, target="wire"))
-    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
+    functions = signatures((mapping, *others.mappings()), problems)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
+    try:
+        unpack = _block(mapping.unpack_rules, scope)
+        pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    except _EnoughError:
+        return tuple(problems)
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
@@ -101,6 +120,10 @@ def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagno
     else:
         problems.append(words.not_a_message(span, name))
     return None
+
+
+class _EnoughError(Exception):
+    """More problems than anybody reads; never leaves this module."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +170,8 @@ class _Block:
         return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
+        if len(scope.problems) >= MAX_PROBLEMS:
+            raise _EnoughError
         match rule:
             case model.Assign():
                 return self.assign(rule, scope)
@@ -176,6 +201,7 @@ class _Block:
             return Ignore(place, rule.span)
         if has_array(place.type, scope.messages[scope.target].schema, told=True):
             scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            self.broken.append(field_names(place))
             return None
         return Default(place, rule.span)
 
@@ -189,18 +215,22 @@ class _Block:
 
     def assign(self, rule: model.Assign, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
+        if place is not None and rule.fits:
+            rule = replace(rule, value=for_type(rule.value, place.type))
         value = type_expr(rule.value, scope)
         if place is None:
             return None
         if value is not None:
             value = in_unit(value, place, scope)
         if value is not None and rule.fits:
-            value = _fitted(value, place.type)
+            value = fitted(value, place.type)
         fitting = None if value is None else _fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
             return None
-        return _by_case(place, fitting, rule.span)
+        change = change_within(fitting, place, scope)
+        made = _by_case(place, fitting, rule.span)
+        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
 
     def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
         place = self.place(rule, scope)
@@ -282,12 +312,6 @@ def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
     return rest[0]
 
 
-def _fitted(value: Expr, target: Type) -> Expr:
-    """A number as the type of its place, by a check where it may not fit."""
-    rules = rules_between(value.type, target)
-    return Convert(value, target, rules[0], value.span) if rules and convert(value, target) is None else value
-
-
 def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     """The value as the type of the place, reported where that takes a word or cannot be."""
     target = place.type
@@ -295,7 +319,13 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return _fit_choice(value, place, scope)
     if isinstance(value, Choice):
         value = _adapted(value, target)
+    if isinstance(value, Listed):
+        value = adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
+        return value
+    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None
@@ -306,12 +336,16 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
 
 def _adapted(value: Choice, target: Type) -> Choice:
     """A choice whose values all fit without a word, as that type."""
-    cases = [(condition, convert(chosen, target)) for condition, chosen in value.cases]
-    otherwise = None if value.otherwise is None else convert(value.otherwise, target)
+    cases = [(condition, _adapted_to(chosen, target)) for condition, chosen in value.cases]
+    otherwise = None if value.otherwise is None else _adapted_to(value.otherwise, target)
     known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
     if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
         return value
     return replace(value, cases=known, otherwise=otherwise, type=target)
+
+
+def _adapted_to(value: Expr, target: Type) -> Expr | None:
+    return convert(_adapted(value, target) if isinstance(value, Choice) else value, target)
 
 
 def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:

@@ -7,20 +7,24 @@ lays out the message (`supplies`), and the rules then fill the elements into the
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue.pipeline import endless_copy
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
+from rosetta_jit.lowering.text_values import checked, text_of
+from rosetta_jit.lowering.views import placed
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -42,7 +46,7 @@ class Runner:
             here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here)
+                    self.assign(place, value, here, rule.change)
                 case typed.SetLength(place, value):
                     self.take(place, self.count(here.of(value)), here)
                 case typed.For():
@@ -62,7 +66,7 @@ class Runner:
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
         """Rules that run or not; what is looked up within them is forgotten behind them."""
         with self.forgetting(), self.writer.nested() as body:
-            self.run(rules, values.inside())
+            self.run(rules, values)
         return block(body)
 
     @contextmanager
@@ -103,19 +107,23 @@ class Runner:
         number = Local("i64", self.writer.fresh(rule.variable.name))
         with self.forgetting(), self.writer.nested() as body:
             variable = number if start == index(0) else self.writer.let(rule.variable.name, add(number, start))
-            self.run(rule.body, replace(values.inside(), variables={**values.variables, rule.variable.name: variable}))
+            self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
         self.writer.emit(For(number.name, count, block(body)))
 
-    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
+            case ((String() | Bytes()), typed.Listed()):
+                self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case ((String() | Bytes() | Array()), (typed.TextCall() | typed.ImageCall())):
+                self.assign_computed(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
-                self.copy(place, origin, values)
+                self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
-                self.assign_array(place, origin, values)
+                self.assign_array(place, origin, values, change)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
@@ -126,11 +134,22 @@ class Runner:
         for number, byte in enumerate(text):
             self.target.set_byte(place, number, byte, values)
 
+    def assign_listed(self, place: typed.Place, listed: typed.Listed, values: Values) -> None:
+        """One of several texts; what is looked up for one of them is forgotten behind it."""
+
+        def use(item: typed.Expr) -> None:
+            with self.forgetting():
+                self.assign(place, item, values)
+
+        values.switch(listed, use)
+
     def assign_bytes(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
         """A string or bytes as a whole. To the wire, the walk may have copied it."""
         if isinstance(self.target, WireSide) and not self.target.is_open(place):
             return
         size, source = self.source.count(origin, values), self.source.address(origin, values)
+        if isinstance(source, Wire):
+            self.writer.require(size, values.where, at=source.at)  # it is there: said again where the proof may have lost it
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             self.writer.expect(IsText(source, size), "text", values.where, "not valid UTF-8", line=values.line)
         if isinstance(source, Wire) and isinstance(place.type, Bytes) and isinstance(self.target, HolderSide) and self.target.borrows:
@@ -142,7 +161,18 @@ class Runner:
             self.writer.require(size, values.where, at=address.at)
         self.writer.emit(Copy(address, source, size))
 
-    def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_computed(self, place: typed.Place, value: typed.TextCall | typed.ImageCall, values: Values) -> None:
+        """A text that is made of others, an image, or its pixels. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError
+        view = placed(self.writer, text_of(value, values))
+        if isinstance(place.type, String) and place.type.encoding == "utf-8":
+            view = checked(view, values)
+        size = self.count(view.size)
+        self.take(place, size, values)
+        self.writer.emit(Copy(self.target.address(place, values), view.address, size))
+
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
@@ -153,20 +183,14 @@ class Runner:
         if isinstance(place.type, Array | Map):
             self.bound(place, self.source.count(origin, values), values)
         with self.writer.nested() as there:
-            copy(source, path, target, target_path)
+            copy(source, path, target, target_path, change)
         present = presence(source, path, outer=True)
         self.writer.emit(*there if present is None else (If(present, block(there)),))
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""
-        element = place.type.element if isinstance(place.type, Array) else place.type
         count = self.source.count(origin, values)
         self.take(place, count, values)
-        variable = typed.Local("element")
-        step = typed.IndexStep(variable)
-        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
-        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if isinstance(element, Bool | Int | Float | Enum) and origin_type != element:
-            read = typed.Convert(read, element, "widen")
-        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        rule = element_rule(place, origin, variable, change)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
 from rosetta_jit.model.expr import Each, Index, Member, Pick, Slice
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Expr as Untyped
@@ -52,6 +54,7 @@ class Scope:
     locals: tuple[str, ...]
     problems: list[Diagnostic]
     named_enums: set[str]
+    functions: Mapping[str, Signature]
     others: Others
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
@@ -121,6 +124,10 @@ def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Sid
     if not isinstance(type_, Struct | Union):
         scope.problems.append(words.not_a_struct(step.span, step.name, describe(type_)))
         return Broken(())
+    # Most names are a field's own; all that can be named is gathered for the others alone.
+    own = next((field for field in (type_.fields if isinstance(type_, Struct) else type_.cases) if field.name == step.name), None)
+    if own is not None:
+        return [FieldStep(own)], own.type
     members = members_of(type_, message.schema)
     if step.name in members:
         fields = members[step.name]

@@ -5,9 +5,10 @@ A side can be read (`values.Source`) and be written; which one is which depends 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
-"""A place by names and the kernel's expressions of its indices."""
+"""A place by names and the expressions of its indices."""
 
 
 def inside(number: Expr, count: Expr) -> Expr:
@@ -103,7 +104,7 @@ class HolderSide:
 
     def array(self, place: typed.Place, values: Values) -> tuple[HolderElements, Expr]:
         """The elements of an array, and how many there are."""
-        key = self.key(place, values)
+        key = _key(place)
         if key not in self.arrays:
             fields, path, _ = self.descend(place, values)
             stored = fields.stored(path)
@@ -119,9 +120,6 @@ class HolderSide:
         known = Binary("and", Compare("ge", count, index(0)), Compare("le", count, size))  # true anyway; said for the proof
         self.writer.expect(known, "length", fields.where.members(path), "the holder is damaged")
         return count
-
-    def key(self, place: typed.Place, values: Values) -> Key:
-        return tuple(step.field.name if isinstance(step, FieldStep) else values.of(step.index) for step in place.steps)
 
     def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
         """The fields of the innermost element, the path from there, and the last field of it."""
@@ -164,7 +162,7 @@ class HolderSide:
         where = fields.where.members(path)
         self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
         elements = fields.open(path, count)
-        self.arrays[self.key(place, values)] = elements, count
+        self.arrays[_key(place)] = elements, count
         lane = self.root.layout.lanes[elements.lane]
         if not isinstance(lane.element, Number):
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
@@ -295,6 +293,10 @@ def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr |
                 continue
         found = there if found is None else Binary("and", found, there)
     return found
+
+
+def _key(place: typed.Place) -> Key:
+    return tuple(step.field.name if isinstance(step, FieldStep) else step.index for step in place.steps)
 
 
 def _prefix(place: typed.Place, steps: int) -> typed.Place:

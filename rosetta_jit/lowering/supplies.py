@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.sides import HolderSide, wire_key
+from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.values import constant, scalar_type
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
@@ -78,8 +80,12 @@ class Supplies:
                 return index(len(text.encode()))
             case typed.Assign(_, typed.Access(origin)):
                 return self.source.count(origin, here)
+            case typed.Assign(_, typed.Listed(items) as listed):
+                return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
             case typed.Default():
                 return index(0)
+            case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
+                raise NotInPlaceError
             case _:
                 raise AssertionError(rule)
 
@@ -93,7 +99,7 @@ class Supplies:
                 return None
 
     def here(self, rule: typed.Rule) -> Values:
-        return replace(self.values.inside(), where=Where(shown(rule))).at_rule(rule.span)
+        return replace(self.values, where=Where(shown(rule))).at_rule(rule.span)
 
 
 def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
@@ -111,14 +117,21 @@ def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
     return None
 
 
+def _size(text: typed.Expr) -> typed.Const:
+    """How many bytes a text of a list has."""
+    assert isinstance(text, typed.Const)
+    return typed.Const(len(str(text.value).encode()), typed.INT64)
+
+
 def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
     """A number of the type of a field that rules set."""
     rule = _rule_for(path, rules)
     match rule:
-        case typed.Assign(place):
+        case typed.Assign(place) | typed.Default(place) if isinstance(place.type, Int | Float | Bool | Enum):
             return constant(0, scalar_type(place.type))
         case typed.When(_, then, otherwise):
-            return _zero(path, (*then, *otherwise))
+            blocks = [block for block in (then, otherwise) if _rule_for(path, block) is not None]
+            return next((zero for block in blocks if (zero := _zero(path, block)) != index(0)), index(0))
         case _:
             return index(0)
 
@@ -159,6 +172,8 @@ def _array_places(node: object) -> list[typed.Place]:
             return [place]
         case typed.Choice(cases, otherwise):
             return _array_places((*cases, otherwise))
+        case typed.Listed(items, at):
+            return _array_places((*items, at))
         case typed.LenOf(place):
             return [place]
         case typed.Access(place):
@@ -167,8 +182,14 @@ def _array_places(node: object) -> list[typed.Place]:
             return _array_places(operand)
         case typed.Binary(_, left, right):
             return _array_places((left, right))
-        case typed.Call(_, arguments, _):
+        case typed.ImageCall(_, image, _, _, numbers):
+            looked_at = [image.place] if isinstance(image, typed.Access) else []
+            return looked_at + _array_places((image, *numbers))
+        case typed.Call(_, arguments, _) | typed.HostCall(_, arguments, _):
             return _array_places(arguments)
+        case typed.TextCall(_, arguments):
+            texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
+            return texts + _array_places(arguments)
         case _:
             return []
 

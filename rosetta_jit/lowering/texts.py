@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Get, If, Load, Place, add, index
+from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Get, If, Load, Place, Wire, add, index
 from rosetta_jit.lowering.writer import block
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ def is_text(values: Values, place: typed.Place, text: bytes) -> Expr:
         return Compare("eq", count, index(0))
     found = writer.var("is_text", Const("bool", value=False))
     with writer.nested() as inside:
+        if isinstance(address, Wire):  # a field that several forms of a message have is not known to be where each of them has it
+            writer.require(len(text), values.where, at=address.at)
         writer.assign(found, Const("bool", value=True))
         for offset, piece in _pieces(text, isinstance(address, Place)):
             same = Compare("eq", _word(address, offset, piece), piece)

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Switch, Unary, index, type_of
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided
-from rosetta_jit.lowering.fields import scalar_name
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
+from rosetta_jit.lowering.asked import asked
+from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.rebuild import rebuilt
+from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
+    from rosetta_jit.kernel.ir import Block, Stmt
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -52,19 +57,17 @@ class Values:
     variables: Mapping[str, Expr]
     where: Where = MESSAGE
     line: str = ""
-    decided: dict[typed.Expr, Expr] = field(default_factory=dict["typed.Expr", "Expr"])
-
-    def inside(self) -> Values:
-        """The same, in a block that may not run, or run again: what is decided there is not known behind it."""
-        return replace(self, decided=dict(self.decided))
+    decided: dict[typed.Expr, tuple[list[Stmt], Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[Stmt], Expr]"])
 
     def of(self, value: typed.Expr) -> Expr:
-        """The kernel expression of a number. What takes statements to decide is decided once: nothing that rules read changes."""
-        if not isinstance(value, typed.IsText | typed.Choice):
+        """The kernel expression of a number. A choice is made once, where what it has decided is known: nothing that rules read changes."""
+        if not isinstance(value, typed.IsText | typed.Choice) or asks_others(value):
             return self.computed(value)
-        if value not in self.decided:
-            self.decided[value] = self.computed(value)
-        return self.decided[value]
+        block, found = self.decided.get(value, (None, None))
+        if block is None or found is None or not self.writer.is_around(block):
+            block, found = self.writer.block, self.computed(value)
+            self.decided[value] = block, found
+        return found
 
     def computed(self, value: typed.Expr) -> Expr:
         match value:
@@ -72,8 +75,9 @@ class Values:
                 return constant(number, scalar_type(type_))
             case typed.Local(name):
                 return self.variables[name]
-            case typed.Access(place):
-                return self.source.number(place, self)
+            case typed.Access(place, type_):
+                number = self.source.number(place, self)
+                return converted(number, "bool") if isinstance(type_, Bool) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
@@ -90,10 +94,14 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
+            case typed.TextCall():
+                return number_of(value, self)
             case typed.Has(place):
                 return self.source.present(place, self)
-            case typed.Choice():
-                return self.choice(value)
+            case typed.Choice() | typed.Listed() | typed.Given():
+                return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
+            case typed.Told() | typed.HostCall() | typed.ImageCall():
+                return asked(value, self)
             case _:
                 assert_never(value)
 
@@ -103,21 +111,40 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with writer.nested() as step:
-                here = self.inside()
-                holds = here.of(condition)
+            with forgetting(self.source), writer.nested() as step:
+                holds = self.of(condition)
                 with writer.nested() as then:
-                    writer.assign(found, here.inside().of(chosen))
+                    writer.assign(found, self.of(chosen))
                     writer.assign(undecided, Const("bool", value=False))
                 writer.emit(If(holds, block(then)))
             writer.emit(If(undecided, block(step)))
         if choice.otherwise is None:
             self.reject(choice.reason, when=undecided)
             return found
-        with writer.nested() as other:
-            writer.assign(found, self.inside().of(choice.otherwise))
+        with forgetting(self.source), writer.nested() as other:
+            writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
+
+    def listed(self, listed: typed.Listed | typed.Given) -> Expr:
+        """Only the item that is chosen is computed."""
+        assert isinstance(listed, typed.Listed), "parameters are given before a mapping is lowered"
+        found = self.writer.var("item", constant(0, scalar_type(listed.type)))
+        self.switch(listed, lambda item: self.writer.assign(found, self.of(item)))
+        return found
+
+    def switch(self, listed: typed.Listed, use: Callable[[typed.Expr], None]) -> None:
+        """Do something with the item of a list that an index chooses."""
+        writer = self.writer
+        number = writer.let("number", self.of(listed.index))
+        there = Binary("and", Compare("ge", number, index(0)), Compare("lt", number, index(len(listed.items))))
+        writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
+        cases: list[tuple[int, Block]] = []
+        for case, item in enumerate(listed.items):
+            with forgetting(self.source), writer.nested() as body:
+                use(item)
+            cases.append((case, block(body)))
+        writer.emit(Switch(number, tuple(cases), ()))
 
     def reject(self, reason: str, *, when: Expr | None = None) -> None:
         """Refuse the message, always or where something holds."""
@@ -158,6 +185,8 @@ class Values:
                 return result
             case "divide":
                 return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case "floor_divide" | "modulo":
+                return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:
@@ -185,6 +214,8 @@ class Values:
     def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
+        if target in ("f32", "f64"):
+            return self.exact_float(local, target)
         if source in ("f32", "f64"):
             whole = self.writer.let("whole", Unary("rint" if rule == "round" else "trunc", local))
             if rule == "exact":
@@ -192,6 +223,18 @@ class Values:
             local = whole
         self.in_range(local, target)
         return Convert(target, local)
+
+    def exact_float(self, value: Local, target: Scalar) -> Expr:
+        """A float that is the same number; NaN stays one."""
+        source = type_of(value)
+        made = self.writer.let("float", Convert(target, value))
+        same: Expr = Compare("eq", Convert(source, made), value)
+        if source in ("f32", "f64"):
+            same = Binary("or", same, Compare("ne", value, value))
+        elif RANGES[source][1] >= 1 << 62:  # what is rounded up beyond the integers comes back as the last of them
+            same = Binary("and", same, Compare("lt", made, Const(target, float(RANGES[source][1]))))
+        self.expect(same, target)
+        return made
 
     def in_range(self, value: Local, target: Scalar) -> None:
         source = type_of(value)
@@ -210,8 +253,10 @@ class Values:
 
     def saturated(self, value: Expr, target: Scalar) -> Expr:
         source = type_of(value)
-        if source in ("f32", "f64") or target in ("f32", "f64"):
-            return Convert(target, value)
+        if source in ("f32", "f64"):
+            number = self.writer.let("number", value)
+            self.expect(Compare("eq", number, number), target)  # NaN is none
+            return Convert(target, Unary("rint", number))
         low, high = RANGES[target]
         least, most = RANGES[source]
         if low > least:
@@ -236,7 +281,7 @@ RANGES: dict[str, tuple[int, int]] = {
 }
 """Least value and first one too large."""
 
-NAMES = {"i8": "int8", "u8": "uint8", "i16": "int16", "u16": "uint16", "i32": "int32", "u32": "uint32", "i64": "int64", "u64": "uint64"}
+NAMES = {scalar: f"{'u' if scalar[0] == 'u' else ''}int{scalar[1:]}" for scalar in RANGES} | {"f32": "float32", "f64": "float64"}
 
 
 def scalar_type(type_: Type) -> Scalar:
@@ -262,3 +307,12 @@ def _folded(value: Const, target: Scalar) -> Const | None:
         low, high = RANGES[target]
         return Const(target, int(value.value)) if low <= value.value < high else None
     return None
+
+
+def asks_others(value: typed.Expr) -> bool:
+    """Whether a value takes a call out of the kernel, or a text that is made: such are computed where they stand."""
+    if isinstance(value, typed.Told | typed.HostCall | typed.ImageCall | typed.TextCall | typed.Given):
+        return True
+    found: list[bool] = []
+    rebuilt(value, lambda part: found.append(asks_others(part)) or part)
+    return any(found)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import state
 from rosetta_jit.kernel.ir import (
     BEGIN,
@@ -23,12 +24,14 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Failure,
     Fits,
+    Get,
     Let,
     Load,
     Local,
     Require,
     Routine,
     Scalar,
+    Select,
     Site,
     Stmt,
     Store,
@@ -37,6 +40,7 @@ from rosetta_jit.kernel.ir import (
     index,
     type_of,
 )
+from rosetta_jit.kernel.shape import subexpressions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -95,6 +99,7 @@ class Writer:
     strides: list[int] = field(default_factory=list[int])
     hidden: dict[str, int] = field(default_factory=dict[str, int])
     block: list[Stmt] = field(default_factory=list[Stmt])
+    around: list[list[Stmt]] = field(default_factory=list["list[Stmt]"])
     position: Expr = BEGIN
     origin: Expr = BEGIN
     sites: dict[Site, int] = field(default_factory=lambda: {Site("grow", "", "a lane is too small"): 0})
@@ -156,10 +161,16 @@ class Writer:
         """A block of its own; the position within it starts where it is now and is put back afterwards."""
         outer, position = self.block, self.position
         self.block = inner = []
+        self.around.append(outer)
         try:
             yield inner
         finally:
             self.block, self.position = outer, position
+            self.around.pop()
+
+    def is_around(self, block: list[Stmt]) -> bool:
+        """Whether a block is the one that is being written, or around it: what it has computed is known."""
+        return any(each is block for each in (self.block, *self.around))
 
     # --- failing -----------------------------------------------------------------------------------------------------
 
@@ -254,14 +265,27 @@ class Writer:
             self.emit(Store(self.position, value, ">" if order == ">" else "<"))
         self.advance(width)
 
+    def once(self, value: Expr) -> Expr:
+        """A value that is used more than once."""
+        return self.let("value", value) if is_new_each_time(value) else value
+
     def checked(self, op: str, left: Expr, right: Expr, where: Where, *, line: str = "") -> Expr:
         """An i64 operation that must not wrap."""
         match op:
             case "add" | "sub" | "mul":
+                left, right = self.once(left), self.once(right)
                 self.expect(Fits(op, left, right), "range", where, "a number grows beyond 64 bits", line=line)
                 return self.let("sum" if op != "mul" else "product", Binary(op, left, right))
             case _:
                 raise AssertionError(op)
+
+
+def is_new_each_time(expr: Expr) -> bool:
+    """Whether the proof takes an expression for another number wherever it stands: it looks at memory, or rests on a float or a bool."""
+    return any(
+        isinstance(part, Load | Get | Select) or (isinstance(part, Convert) and type_of(part.operand) in ("bool", "f32", "f64"))
+        for part, _ in subexpressions(expr)
+    )
 
 
 def integer(value: Expr) -> Expr:

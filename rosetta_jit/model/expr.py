@@ -1,6 +1,6 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
-    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held
     Path = Root, Step*         Step = Member(name) | Index(Expr) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
@@ -9,11 +9,14 @@ constant) the side is always ``wire``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.dataclass import dataclass
+
 if TYPE_CHECKING:
+    from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
 Side = OneOf["holder", "wire"]
@@ -35,7 +38,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A loop variable (``i``), an enum constant by qualified name, or a constant of the language (``pi``)."""
+    """A loop variable (``i``), an enum constant by qualified name, a parameter, or a constant of the language (``pi``)."""
 
     name: str
     span: Span | None = field(default=None, compare=False, repr=False)
@@ -151,4 +154,32 @@ class List:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List
+@dataclass(frozen=True, slots=True)
+class Item:
+    """``names[index]``, ``[a, b, c][index]``: an item of a list of the text, or of a parameter."""
+
+    items: Expr
+    index: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A parameter whose value is not known yet, an item or the length of one. What reads mappings before they are used has them."""
+
+    name: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A value as a place holds it: in its unit, of its type. No text has one; rules for both directions are made of them."""
+
+    place: Path
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held

@@ -1,6 +1,6 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
-    Mapping = Import*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
+    Mapping = Import*, Function*, Parameter*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr, via) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
             | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
             | Ignore(Path) | Default(Path) | SameNames(Path*) | Arranged(place, flag, {constant: Expr})
@@ -11,8 +11,10 @@ both directions alone, with the place on the holder's side.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr, Len, Path
@@ -28,11 +30,40 @@ class Import:
 
 
 @dataclass(frozen=True, slots=True)
+class Parameter:
+    """``parameter name: type = default``: said when a program is made. ``type`` is the name of a scalar; of each item, of a list."""
+
+    name: str
+    type: str
+    is_list: bool
+    default: Expr | None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Via:
     """``via "path" to depth 4``: the mapping by which a value becomes another, and how often it may be within itself."""
 
     mapping: str
     depth: int | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """``function name(type, …): type``: a function of numbers that whoever makes a decoder or encoder gives."""
+
+    name: str
+    parameters: tuple[TypeName, ...]
+    result: TypeName
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TypeName:
+    """The name of a scalar type."""
+
+    name: str
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -152,3 +183,5 @@ class Mapping:
     pack_rules: tuple[Rule, ...] | None
     holder_span: Span | None = field(default=None, compare=False, repr=False)
     wire_span: Span | None = field(default=None, compare=False, repr=False)
+    functions: tuple[Function, ...] = ()
+    parameters: tuple[Parameter, ...] = ()

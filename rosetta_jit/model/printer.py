@@ -66,11 +66,20 @@ def show_expr(value: expr.Expr) -> str:
             return f"({show_expr(left)} {operator} {show_expr(right)})"
         case expr.Call(function, arguments):
             return f"{function}({', '.join(map(show_expr, arguments))})"
+        case expr.Choice() if (subject := _subject(value)) is not None:
+            entries = [f"{show_expr(key.right)} = {show_expr(each)}" for key, each in value.cases if isinstance(key, expr.Binary)]
+            return f"table({show_expr(subject)}) {{ {', '.join([*entries, _last(value)])} }}"
         case expr.Choice(cases, otherwise, reason):
             last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
         case expr.List(items):
             return f"[{', '.join(map(show_expr, items))}]"
+        case expr.Item(items, at):
+            return f"{show_expr(items)}[{show_expr(at)}]"
+        case expr.Given(name, arguments):
+            return name + "".join(f"[{show_expr(argument)}]" for argument in arguments)
+        case expr.Held(_, held):
+            return show_expr(held)
         case _:
             assert_never(value)
 
@@ -90,6 +99,22 @@ def _step(step: expr.Step) -> str:
             return "[]"
         case _:
             assert_never(step)
+
+
+def _subject(choice: expr.Choice) -> expr.Expr | None:
+    """What a table looks up, if a choice is one: all of its conditions compare the same."""
+    subjects = {key.left if isinstance(key, expr.Binary) and key.operator == "==" else None for key, _ in choice.cases}
+    return subjects.pop() if len(subjects) == 1 else None
+
+
+def _last(choice: expr.Choice) -> str:
+    """How a table ends."""
+    return f"otherwise {f'reject {choice.reason!r}' if choice.otherwise is None else show_expr(choice.otherwise)}"
+
+
+def show_way(path: tuple[str | int | None, ...]) -> str:
+    """The way to a part of a value, as a path: ``[2].x``."""
+    return "".join(f".{step}" if isinstance(step, str) else "[]" if step is None else f"[{step}]" for step in path)
 
 
 def _bounds(length: int | expr.Expr | None, maximum: int | None) -> str:
@@ -125,6 +150,7 @@ def _field(field: Field) -> str:
     parts += [f"number {field.number}"] if field.number is not None else []
     parts += ["required"] if field.required else []
     parts += [f"in {field.unit}"] if field.unit is not None else []
+    parts += [f"{show_way(path)} in {unit}" for path, unit in field.part_units]
     parts += [f"always {show_expr(field.constant)}"] if field.constant is not None else []
     parts += [f"length {show_expr(field.length)}"] if field.length is not None else []
     parts += [f"default {field.default!r}"] if field.default is not None else []

@@ -32,9 +32,10 @@ class StubHolder:
 
 
 class StubDecoder:
-    def __init__(self, mapping, *, encoding=None):
+    def __init__(self, mapping, *, encoding=None, parameters=None):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
+        self.parameters = parameters
         self.encoding = encoding or "own"
 
     def __call__(self, message):

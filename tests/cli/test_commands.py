@@ -13,6 +13,7 @@ import pytest
 from rosetta_jit.cli import main
 from rosetta_jit.recording import Message, read_messages, write_recording
 
+JSON_FIELDS = ["file", "line", "column", "end_line", "end_column", "severity", "code", "message", "label", "help", "notes"]
 MESSAGES = [b"\x01", b"\x03abc"]
 
 
@@ -37,8 +38,9 @@ def test_check_as_json(capsys):
     assert main(["check", "--json", "good.mapping", "wrong.mapping"]) == 1
     captured = capsys.readouterr()
     good, wrong = map(json.loads, captured.out.splitlines())
-    assert good == {"mapping": "good.mapping", "diagnostics": []}
+    assert good == {"mapping": "good.mapping", "diagnostics": [], "more": 0}
     assert wrong["diagnostics"][0]["code"] == "unknown-field"
+    assert list(wrong["diagnostics"][0]) == JSON_FIELDS
     assert captured.err == ""
 
 

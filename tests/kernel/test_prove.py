@@ -208,7 +208,7 @@ def test_masks(data):
 
 def scope_with(*values):
     """A scope whose locals x0, x1, … are any i64 between two bounds."""
-    scope = entry(kernel(()))
+    scope = entry(kernel(()).strides)
     for number, (low, high) in enumerate(values):
         scope.locals[f"x{number}"] = "i64", scope.facts.fresh(low, high)
     return scope
@@ -268,3 +268,13 @@ def test_loads_are_never_the_same_value():
     load = Load("i32", Local("i64", "begin"))
     (_, first), (_, second) = evaluate(scope, load), evaluate(scope, load)
     assert not scope.facts.proves(minus(first, second))
+
+
+def test_choices_of_which_nothing_is_known_are_not_one():
+    """Two conditions that say nothing may differ, though they look the same."""
+    scope = scope_with()
+    scope.locals |= dict.fromkeys(("one", "other"), ("bool", None))
+    _, first = evaluate(scope, Select(Local("bool", "one"), index(0), index(1)))
+    _, second = evaluate(scope, Select(Local("bool", "other"), index(0), index(1)))
+    assert not scope.facts.proves_thoroughly(minus(first, second))
+    assert scope.facts.proves(first)

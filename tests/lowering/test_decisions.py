@@ -121,7 +121,6 @@ def problems(tmp_path, *blocks):
         (".loud = .count", "lossy-conversion"),
         (".loud = .count and true", "condition"),
         (".loud = not .level", "condition"),
-        ('.loud = .encoding < "a"', "not-comparable"),
         ('.loud = .count == "a"', "not-comparable"),
         (f'.loud = .encoding == "{"a" * 65}"', "long-text"),
         (".count = 1 if .loud else 2", "unknown-field"),
@@ -145,7 +144,7 @@ def test_each_way_sets_everything(tmp_path):
         rj.Decoder(folder(tmp_path, without))
     (problem,) = error.value.diagnostics
     assert problem.code == "never-set"
-    assert problem.notes[-1] == "in one way through the `when` blocks, not in all"
+    assert problem.notes[-1].startswith("in one way through the `when` blocks, not in all")
 
 
 def test_ways_are_bounded(tmp_path):

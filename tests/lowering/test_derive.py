@@ -106,23 +106,25 @@ def test_holders_that_nothing_unpacks_to(tmp_path, backend, change, kind, text):
     assert error.value.kind == kind
 
 
-def test_a_derived_direction_is_what_one_would_write(tmp_path):
-    written = """unpack-rules:
+@pytest.mark.parametrize(("schema", "place"), [("state", ""), ("command", ".angles")])
+def test_a_derived_direction_is_what_one_would_write(tmp_path, schema, place):
+    """The paper's use case, and its data."""
+    written = f"""unpack-rules:
   len(.angles) = 3
-  .angles[0] = float32(radians(.yaw))
-  .angles[1] = float32(radians(.roll))
-  .angles[2] = float32(radians(.pitch))
+  .angles[0] = float32(radians({place}.yaw))
+  .angles[1] = float32(radians({place}.roll))
+  .angles[2] = float32(radians({place}.pitch))
 pack-rules:
   reject "`len(.angles)` is not `3`, as the mapping says" when len(.angles) != 3
-  .yaw = degrees(.angles[0])
-  .roll = degrees(.angles[1])
-  .pitch = degrees(.angles[2])
+  {place}.yaw = degrees(.angles[0])
+  {place}.roll = degrees(.angles[1])
+  {place}.pitch = degrees(.angles[2])
 """
     derived = re.sub(r"pack-rules:.*", "", written[written.index("len") - 2 :], flags=re.DOTALL).replace(" = ", " <-> ")
-    head = """import "rst/kinematics/JointAngles.proto"
-import "yarp/icub/torso_state.bottle-schema"
+    head = f"""import "rst/kinematics/JointAngles.proto"
+import "yarp/icub/torso_{schema}.bottle-schema"
 data-holder: rst.kinematics.JointAngles
-wire-schema: yarp.icub.torso.state
+wire-schema: yarp.icub.torso.{schema}
 """
     (tmp_path / "written.mapping").write_text(head + written)
     (tmp_path / "derived.mapping").write_text(f"{head}rules:\n{derived}")
@@ -170,7 +172,7 @@ def test_pack_undoes_unpack(tmp_path_factory, expression, values):
         (".count <-> .count % 7", "no-inverse"),
         (".count <-> .count + .count", "no-inverse"),
         (".count <-> .count & 7", "no-inverse"),
-        (".kelvin <-> .celsius if true else 1.0", "no-inverse"),
+        (".kelvin <-> .celsius if .yaw > 1 else 1.0", "alike-blocks"),
         ("for i from 0 to .count .points[i].y <-> .points[i].y end", "unknown-bound"),
         ("for i from 0 to 2 .points[.count].y <-> .points[i].y end", "index-reads"),
     ],

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Used, add, index, mul
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Nearest, Used, add, index, mul
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
 from rosetta_jit.kernel.shape import bound_names, operands, statements, subexpressions
@@ -68,7 +68,7 @@ class Rounds:
 
     def _of_fixed(self, expr: Expr) -> Affine | None:
         """Any other operation, where its operands are the same in every round."""
-        if isinstance(expr, Load | Get | Used | IsText):
+        if isinstance(expr, Load | Get | Used | IsText | Nearest):
             return None
         values = {operand: self._affine(operand) for operand in operands(expr)}
         bases = {operand: value.base for operand, value in values.items() if value is not None and value.step == index(0)}

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,
@@ -17,11 +18,13 @@ from rosetta_jit.kernel.ir import (
     Expect,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
     Load,
     Local,
+    Nearest,
     Switch,
     Used,
     Var,
@@ -109,6 +112,9 @@ def _statement(stmt: Stmt, names: _Names) -> Block:
         case Call():
             names.fixed.update(result.name for result in stmt.results)
             return (stmt,)
+        case HostCall():
+            names.fixed.add(stmt.result.name)
+            return (stmt,)
         case _:
             return _nested(stmt, names)
 
@@ -151,7 +157,7 @@ def _is_settled(expr: Expr, names: _Names) -> bool:
     """Whether an expression keeps its value, and another that is equal as text has the same: 0.0 and -0.0 are equal, not the same."""
     for part, _ in subexpressions(expr):
         match part:
-            case Load() | Get() | Used() | IsText():
+            case Load() | Get() | Used() | IsText() | Nearest():
                 return False
             case Local(_, name) if name not in names.fixed:
                 return False

@@ -15,6 +15,7 @@ from rosetta_jit.model.expr import Binary, Call, Literal, Member
 from rosetta_jit.model.expr import Path as Place
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Map, Ref, String, Struct
 from rosetta_jit.source import Source
+from tests.golden import check_golden
 
 ROOT = Path(__file__).parents[3]
 GOLDEN = ROOT / "tests" / "golden" / "bottle_schema"
@@ -138,7 +139,7 @@ def test_imports_each_file_once_and_in_any_circle():
 def test_says_what_is_wrong(path):
     with pytest.raises(SchemaError) as caught:
         parse(Source(path.name, path.read_text()), nothing)
-    assert f"{caught.value}\n" == path.with_suffix(".err").read_text()
+    check_golden(path.with_suffix(".err"), f"{caught.value}\n")
 
 
 def test_every_mistake_has_a_golden_file():

@@ -1,0 +1,91 @@
+"""What can be wrong with the parameters of a mapping, and with what is given for them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error, shorten, warning
+from rosetta_jit.catalogue.resolve import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+
+
+def missing(span: Span | None, name: str) -> Diagnostic:
+    """A parameter without a default that is not given."""
+    help_ = f'`parameters={{"{shorten(name)}": ...}}`, or `--parameter {shorten(name)}=...` on the command line'
+    return error("missing-parameter", f"the parameter `{shorten(name)}` is not given", span, "declared without a default", help_=help_)
+
+
+def unknown(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
+    """A value for a parameter that the mapping does not declare."""
+    found = nearest(name, known)
+    listed = ", ".join(f"`{shorten(each)}`" for each in sorted(known)[:20]) or "none"
+    help_ = f"did you mean `{found}`?" if found else ""
+    return error("unknown-parameter", f"the mapping has no parameter `{shorten(name)}`", span, notes=(f"declared: {listed}",), help_=help_)
+
+
+def unfit(span: Span | None, name: str, why: str) -> Diagnostic:
+    """A value that is not what the parameter was declared to be."""
+    return error("parameter", f"`{shorten(name)}` cannot be this: {why}", span, "declared here")
+
+
+def repeated(span: Span | None, name: str) -> Diagnostic:
+    """A second declaration."""
+    return error(
+        "repeated-parameter", f"the parameter `{shorten(name)}` is declared already", span, "again here", help_="remove one of the two"
+    )
+
+
+def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
+    """A type that parameters cannot have."""
+    found = nearest(name, known)
+    notes = (f"types: {', '.join(known)}, and `list of` these",)
+    help_ = f"did you mean `{found}`?" if found else ""
+    return error("parameter-type", f"a parameter cannot be `{shorten(name)}`", span, notes=notes, help_=help_)
+
+
+def shadowed(span: Span | None, name: str) -> Diagnostic:
+    """A loop variable that is a parameter, too."""
+    return error("shadowed", f"a parameter is called `{shorten(name)}` already", span, help_="choose another variable")
+
+
+def unused(span: Span | None, name: str) -> Diagnostic:
+    """A parameter that no rule names."""
+    return warning("parameter-unused", f"no rule uses the parameter `{shorten(name)}`", span, help_="remove it")
+
+
+def no_such_item(span: Span | None, number: int, count: int) -> Diagnostic:
+    """An item that a list does not have."""
+    return error("index-range", f"there is no item {number}", span, f"there are {count} items, counted from 0")
+
+
+def not_a_list(span: Span | None) -> Diagnostic:
+    """An index behind a name that is no list."""
+    help_ = "a field begins with a dot: `.name[i]`; lists are parameters and `[a, b, c]`"
+    return error("not-indexable", "this is no list", span, "has no items", help_=help_)
+
+
+def list_alone(span: Span | None) -> Diagnostic:
+    """A list where a single value is meant."""
+    help_ = "take an item, `names[i]`, or assign the list to an array: `.names = names`"
+    return error("list-needed", "a list is not a value by itself", span, "this is a list", help_=help_)
+
+
+def mixed_list(span: Span | None, kinds: Collection[str]) -> Diagnostic:
+    """A list of values of several types, from which one is chosen."""
+    listed = ", ".join(kinds)
+    return error("mixed-choice", "the items of this list have no type in common", span, help_=f"convert them to one of: {listed}")
+
+
+def long_list(span: Span | None, most: int) -> Diagnostic:
+    """A longer list than is compiled."""
+    return error("many-cases", f"a list has at most {most} items", span)
+
+
+def needless(name: str) -> Diagnostic:
+    """Parameters for a type without a mapping."""
+    return error("unknown-parameter", f"there is no mapping that could have a parameter `{shorten(name)}`", None)

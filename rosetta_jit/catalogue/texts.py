@@ -1,0 +1,89 @@
+"""What can be wrong with the texts that a mapping computes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error, shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+
+KINDS = {
+    "text": "a text",
+    "characters": "characters in quotes",
+    "pattern": "a text in quotes",
+    "quoted": "a text in quotes",
+    "integer": "an integer",
+    "size": "a number of bytes",
+    "encoding": "an encoding in quotes",
+}
+
+
+def listed(kinds: Sequence[str], optional: int) -> str:
+    """What a function takes, in words."""
+    needed, extra = kinds[: len(kinds) - optional], kinds[len(kinds) - optional :]
+    return ", ".join(KINDS[kind] for kind in needed) + "".join(f" [, {KINDS[kind]}]" for kind in extra)
+
+
+def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
+    """A number where a text is meant."""
+    is_number = found.startswith(("int", "uint", "float", "bool"))
+    hint = "`text(...)` writes a number, `integer(...)` and `number(...)` read one" if is_number else ""
+    return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
+
+
+def wide_text(span: Span | None) -> Diagnostic:
+    """Text in code units of 16 bits."""
+    return error("wide-text", "text of 16-bit units cannot be computed with", span, "here", help_="assign it as a whole")
+
+
+def text_and_bytes(span: Span | None) -> Diagnostic:
+    """Text and bytes in one."""
+    hint = 'say which: `text(..., "utf-8")` or `bytes(..., "utf-8")`'
+    return error("text-and-bytes", "text and bytes cannot be joined", span, "neither text nor bytes", help_=hint)
+
+
+def quoted_needed(span: Span | None, function: str) -> Diagnostic:
+    """A field where only a text that is known will do."""
+    return error("quoted-text", f"`{function}` takes a text in quotes here", span, "not known before messages come")
+
+
+def empty_pattern(span: Span | None, function: str) -> Diagnostic:
+    """A search for nothing."""
+    return error("empty-text", f"`{function}` cannot look for an empty text", span, "empty")
+
+
+def long_quoted(span: Span | None, most: int) -> Diagnostic:
+    """A text in quotes that is too long."""
+    return error("long-text", f"a text in quotes has at most {most} bytes here", span)
+
+
+def not_ascii(span: Span | None, function: str) -> Diagnostic:
+    """Characters of several bytes where bytes are looked at."""
+    return error("not-ascii", f"`{function}` takes off ASCII characters only", span)
+
+
+def written_size(span: Span | None, function: str, most: int) -> Diagnostic:
+    """A size that is not known, or too large."""
+    return error("written-size", f"`{function}` takes a size that is written down, at most {most}", span)
+
+
+def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
+    """No encoding, or none that is known."""
+    message = "an encoding is written in quotes" if found is None else f"there is no encoding `{shorten(found)}`"
+    return error("unknown-encoding", message, span, notes=(f"encodings: {', '.join(known)}",))
+
+
+def not_written(span: Span | None, found: Sequence[str], most: int) -> Diagnostic:
+    """`text` of what it cannot write."""
+    hint = f"`text(number)`, `text(float, decimals)` with at most {most}, or `text(bytes, encoding)`"
+    return error("not-writable", f"`text` does not take {', '.join(map(shorten, found))}", span, help_=hint)
+
+
+def text_length(span: Span | None) -> Diagnostic:
+    """A target that no computed text can be assigned to."""
+    return error("wide-text", "a computed text cannot be assigned to text of 16-bit units", span, "here")

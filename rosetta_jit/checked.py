@@ -1,0 +1,39 @@
+"""What is known of a mapping that has no errors: its warnings, and what it guarantees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from rosetta_jit.lowering.laws import Laws, laws_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.check import Checked
+
+
+@dataclass(frozen=True)
+class CheckedMapping:
+    """A mapping without errors. Iterating over it gives its warnings."""
+
+    checked: Checked
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What is suspect, and not wrong."""
+        return self.checked.warnings
+
+    @cached_property
+    def laws(self) -> Laws | None:
+        """What comes back when a message is unpacked and packed, and a holder packed and unpacked; None of a one-way mapping."""
+        unpack, pack = self.checked.unpack, self.checked.pack
+        return laws_of(unpack, pack, self.checked.holder, self.checked.wire) if unpack and pack else None
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self.warnings)
+
+    def __len__(self) -> int:
+        return len(self.warnings)

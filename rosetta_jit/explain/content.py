@@ -1,0 +1,171 @@
+"""All that is told about a mapping, as data: `text`, `page` and JSON show the same.
+
+Explanation = Side of the wire, Side of the holder, Direction*        what a person asks about a mapping
+Side        = type, framework, Row*
+Direction   = Line*, Loss*, Refusal*, cost                            unpack: wire to holder; pack: holder to wire
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.errors import ReportError
+from rosetta_jit.explain.cost import Cost, cost_of
+from rosetta_jit.explain.lines import Line, Lines
+from rosetta_jit.explain.nodes import names_of, nodes
+from rosetta_jit.explain.rows import Row, rows
+from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.frontend.search import SearchPath
+from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.check import Checked, check
+from rosetta_jit.lowering.reads import unread, unset
+from rosetta_jit.pipeline import Build
+from rosetta_jit.request import Request
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.scope import Message
+    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.model.expr import Side as SideName
+    from rosetta_jit.model.mapping import Mapping
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of the two types."""
+
+    side: SideName
+    type: str
+    framework: str
+    rows: tuple[Row, ...]
+    more: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """Something that a direction does not carry, and whether the mapping says that it is meant."""
+
+    what: str
+    why: str
+    meant: bool
+
+
+@dataclass(frozen=True, slots=True)
+class KernelCost:
+    """What the kernel of a direction costs, for messages of one encoding, and how many other forms of a message it tries after that."""
+
+    encoding: str
+    cost: Cost
+    attempts: int
+
+
+@dataclass(frozen=True, slots=True)
+class Direction:
+    """One direction. ``refusals`` are the texts of its rejections; the cost is a reason where there is no kernel."""
+
+    name: Literal["unpack", "pack"]
+    lines: tuple[Line, ...]
+    losses: tuple[Loss, ...]
+    refusals: tuple[str, ...]
+    cost: KernelCost | str
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A mapping, explained; a direction that it does not have is missing."""
+
+    mapping: str
+    wire: Side
+    holder: Side
+    directions: tuple[Direction, ...]
+    warnings: tuple[Diagnostic, ...]
+
+
+def explanation(mapping: str, *, encoding: str | None = None, folders: Iterable[str] = ()) -> Explanation:
+    """Explain a mapping.
+
+    Raises
+    ------
+    MappingError
+        It is wrong; all that is wrong with it.
+    """
+    folders = tuple(folders)
+    search, readers = SearchPath.of(folders), Readers(installed(), None, encoding)
+    written = parse(search.open(mapping))
+    checked = check(written, readers, search)
+    request = Request("decode", mapping, encoding=encoding, folders=folders)
+    found = (_direction("unpack", written, checked, request), _direction("pack", written, checked, request))
+    return Explanation(
+        written.source.name,
+        _side("wire", checked.wire, readers),
+        _side("holder", checked.holder, readers),
+        tuple(each for each in found if each is not None),
+        checked.warnings,
+    )
+
+
+def _side(name: SideName, message: Message, readers: Readers) -> Side:
+    found, more = rows(message)
+    owner = readers.owner(message.root.span.source.name) if message.root.span is not None else None
+    return Side(name, message.root.name, owner.name if owner is not None else "", found, more)
+
+
+def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Checked, request: Request) -> Direction | None:
+    rules, derived = (checked.unpack, checked.mapping.unpack_rules) if name == "unpack" else (checked.pack, checked.mapping.pack_rules)
+    if not rules or not derived:
+        return None
+    source, target = (checked.wire, checked.holder) if name == "unpack" else (checked.holder, checked.wire)
+    lines = tuple(Lines.of(written, name, rules).lines(derived))
+    refusals = [node.text for node in nodes(rules) if isinstance(node, typed.Reject)]
+    refusals += [node.reason for node in nodes(rules) if isinstance(node, typed.Choice) and node.otherwise is None]
+    losses = tuple(_losses(rules, lines, source, target))
+    return Direction(name, lines, losses, tuple(dict.fromkeys(refusals)), _cost(name, request, _field_names(checked)))
+
+
+def _losses(rules: tuple[Rule, ...], lines: tuple[Line, ...], source: Message, target: Message) -> list[Loss]:
+    ignored = [_path(names_of(node.place)) for node in nodes(rules) if isinstance(node, typed.Ignore)]
+    left = [_path(names_of(node.place)) for node in nodes(rules) if isinstance(node, typed.Default)]
+    changed: dict[str, list[str]] = defaultdict(list)
+    for line in lines:
+        for note in (note for note in line.notes if note.lossy):
+            changed[note.text].append(_path(line.sets[0]) if line.sets else f"line {line.line}")
+    return [
+        *(Loss(path, "is not read", meant=True) for path in dict.fromkeys(ignored)),
+        *(Loss(_path(names), "is never read", meant=False) for names in unread(rules, source)),
+        *(Loss(path, "is left at its default", meant=True) for path in dict.fromkeys(left)),
+        *(Loss(_path(names), "is never set", meant=False) for names in unset(rules, target)),
+        *(Loss(", ".join(dict.fromkeys(paths)), text, meant=True) for text, paths in changed.items()),
+    ]
+
+
+def _path(names: tuple[str, ...]) -> str:
+    return "".join(f".{name}" for name in names)
+
+
+def _field_names(checked: Checked) -> dict[str, str]:
+    """Paths by what a kernel calls the values of their fields."""
+    every = [row for message in (checked.holder, checked.wire) for row in rows(message)[0]]
+    return {"_".join(row.names): row.path for row in every}
+
+
+def _cost(name: str, request: Request, names: dict[str, str]) -> KernelCost | str:
+    """The cost of the kernel; where it must be said which dialect is written, of the first that can be."""
+    request = replace(request, direction="decode" if name == "unpack" else "encode", backend="python")
+    framework = Build(request).wire_framework
+    others = tuple(framework.encodings)[1:] if request.encoding is None else ()
+    reason = ""
+    for encoding in (request.encoding, *others):
+        build = Build(replace(request, encoding=encoding))
+        try:
+            kernel = build.kernels[0]
+        except ReportError as error:
+            reason = reason or error.diagnostics[0].message
+        else:
+            return KernelCost(build.encoding.name, cost_of(kernel, names), len(kernel.bodies))
+    return reason

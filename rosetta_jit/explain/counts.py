@@ -1,0 +1,94 @@
+"""How often a loop of a kernel runs, in words: ``len(.position)``, ``.height * .width * 3``.
+
+A kernel calls its locals after the fields whose values they hold. What it calls a count or a sum is followed to what it was made of; a
+number that a message or a holder said of an array is named by the field that the check of it is about.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel import ir
+from rosetta_jit.kernel.printer import SYMBOL
+from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.kernel.shape import statements
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+MAX_DEPTH = 12
+"""Definitions that are followed."""
+
+MAX_TEXT = 120
+
+ROUNDS = "rounds"
+"""How often a loop runs of which no more is known."""
+
+TIGHT = frozenset(("mul", "div", "rem"))
+
+
+def named_counts(block: ir.Block, sites: Sequence[ir.Site]) -> dict[str, str]:
+    """For each local that is checked to be no negative length, or to leave room for so many bytes, the field that it is the length of."""
+    names: dict[str, str] = {}
+    for stmt, _ in statements(block):
+        match stmt:
+            case ir.Expect(ir.Compare("ge", ir.Local(_, name), ir.Const(_, 0)), failure) if sites[failure.site].kind in {"length", "count"}:
+                site = sites[failure.site]
+            case ir.Expect(condition, failure) if sites[failure.site].detail == "the holder is damaged":
+                site = sites[failure.site]
+                found = sorted(each for each in locals_in(condition) if each.startswith("count"))
+                name = found[0] if found else ""
+            case ir.Require(_, size, failure):
+                site = sites[failure.site]
+                found = sorted(locals_in(size))
+                name = found[0] if len(found) == 1 else ""
+            case _:
+                continue
+        if name and site.path:
+            names.setdefault(name, f"len({_path(site.path)})")
+    return names
+
+
+def count_text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str]) -> str:
+    """A count as text, at most `MAX_TEXT` long."""
+    text = _text(expr, values, names, 0)
+    return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT - 1]}…"
+
+
+def _text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str], depth: int) -> str:
+    match expr:
+        case ir.Const(_, value):
+            return str(value)
+        case ir.Local(_, name) if name in names:
+            return names[name]
+        case ir.Local(_, name) if name in values and depth < MAX_DEPTH and _is_made(values[name]):
+            return _text(values[name], values, names, depth + 1)
+        case ir.Local(_, name):
+            stem = re.sub(r"_[0-9]+$", "", name)
+            return names.get(stem, stem)
+        case ir.Convert(_, operand):
+            return _text(operand, values, names, depth)
+        case ir.Binary(op, left, right) if op in {"min", "max"}:
+            return f"{op}({_text(left, values, names, depth)}, {_text(right, values, names, depth)})"
+        case ir.Binary(op, left, right):
+            before, behind = (_operand(each, op, values, names, depth) for each in (left, right))
+            rest = before.removeprefix(f"{behind} + ") if op == "sub" else before
+            return rest if rest != before else f"{before} {SYMBOL[op]} {behind}"
+        case _:
+            return ROUNDS
+
+
+def _operand(expr: ir.Expr, op: str, values: Mapping[str, ir.Expr], names: Mapping[str, str], depth: int) -> str:
+    """In brackets where a sum stands in a product."""
+    text = _text(expr, values, names, depth)
+    return f"({text})" if op in TIGHT and re.search(r" [-+] ", text) else text
+
+
+def _is_made(value: ir.Expr) -> bool:
+    """Whether a local only stands for arithmetic of other locals."""
+    return isinstance(value, ir.Binary | ir.Local) or (isinstance(value, ir.Convert) and isinstance(value.operand, ir.Local))
+
+
+def _path(path: str) -> str:
+    return path.replace("{{", "{").replace("}}", "}").replace("{}", "")

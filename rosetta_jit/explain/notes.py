@@ -1,0 +1,105 @@
+"""What a typed rule does to values besides moving them: conversions, units, and what may be lost of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.explain.nodes import nodes, places
+from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.conversions import describe
+from rosetta_jit.lowering.unit_places import unit_at
+from rosetta_jit.lowering.units import TAKES, shown, unit_of
+from rosetta_jit.model.types import Int
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.lowering.typed import Change, ConversionRule, Rule
+    from rosetta_jit.lowering.unit_places import Unit
+
+HOW: dict[ConversionRule, str] = {
+    "widen": "without loss",
+    "exact": "refused where it does not fit",
+    "saturate": "the nearest that fits",
+    "wrap": "without its high bits",
+    "round": "rounded",
+    "truncate": "without its fraction",
+    "nearest": "rounded to the nearest",
+}
+
+LOSSY: frozenset[str] = frozenset(("saturate", "wrap", "round", "truncate", "nearest"))
+
+MAKES_WHOLE: frozenset[str] = frozenset(("floor", "ceil", "round"))
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """One thing that is done to a value, and whether a value may be changed by it."""
+
+    text: str
+    lossy: bool = False
+
+
+def notes(rules: list[Rule]) -> tuple[Note, ...]:
+    """What is done by the rules that one text became; blocks within them speak for themselves."""
+    found = [note for rule in rules for note in _notes(rule)]
+    return tuple(dict.fromkeys(found))
+
+
+def _notes(rule: Rule) -> Iterator[Note]:
+    match rule:
+        case typed.Assign(place, value, change=change):
+            yield from _units(rule) if change is None else _changes(change)
+            yield from _conversions((place, value))
+        case typed.SetLength(place, value):
+            yield from _conversions((place, value))
+        case typed.For(_, start, stop):
+            yield from _conversions((start, stop))
+        case typed.When(condition):
+            yield from _conversions(condition)
+        case _:
+            return
+
+
+def _conversions(root: object) -> Iterator[Note]:
+    for node in nodes(root):
+        match node:
+            case typed.Convert(operand, target, rule) if rule != "widen":
+                yield Note(f"{describe(operand.type)} → {describe(target)}, {HOW[rule]}", rule in LOSSY)
+            case typed.Binary("/", _, _, Int()):
+                yield Note("a quotient of integers, without its fraction", lossy=True)
+            case typed.Binary("%" | ">>" | "&" | "|" as operator):
+                yield Note(f"`{operator}` keeps a part of a value", lossy=True)
+            case typed.Call(function) if function in MAKES_WHOLE:
+                yield Note(f"`{function}` drops what is below one", lossy=True)
+            case _:
+                pass
+
+
+def _changes(change: Change) -> Iterator[Note]:
+    """The units of the numbers within a whole value."""
+    yield from (Note(f"{node.source} → {node.target}") for node in nodes(change) if isinstance(node, typed.Rescale))
+
+
+def _units(rule: typed.Assign) -> Iterator[Note]:
+    """From which unit to which; one that only one side declares is said to be so."""
+    wanted = _told(unit_at(rule.place) or unit_of(rule.value))
+    read = dict.fromkeys(_told(unit_at(place)) for place in places(rule.value, "wire" if rule.place.side == "holder" else "holder"))
+    known = [unit for unit in read if unit is not None] or _taken(rule.value)
+    for unit in known:
+        if wanted is None:
+            yield Note(f"in {unit}, no unit declared for its place")
+        else:
+            yield Note(f"in {unit}" if unit == wanted else f"{unit} → {wanted}")
+    if wanted is not None and not known:
+        yield Note(f"in {wanted}, no unit declared for the value")
+
+
+def _told(unit: Unit) -> str | None:
+    return None if unit is None else shown(unit)
+
+
+def _taken(value: typed.Expr) -> list[str]:
+    """The units that functions within a value take."""
+    return [TAKES[node.function] for node in nodes(value) if isinstance(node, typed.Call) and node.function in TAKES]

@@ -1,0 +1,95 @@
+"""Turn functions of texts round.
+
+| expression           | its field                                              |
+|----------------------|--------------------------------------------------------|
+| `text(n)`            | the number that is written, as the field holds it      |
+| `integer(s)` `number(s)` | `text(value)`                                      |
+| `text(b, "utf-8")`   | `bytes(value, "utf-8")`, and the reverse               |
+| `until_nul(b)`       | the text, NUL behind it where the field has one size   |
+| `padded(s, n)`       | `until_nul(value)`                                     |
+| `"a" + s`, `s + "a"` | `behind(value, "a")`, `before(value, "a")`, and the reverse |
+| `iso8601(ns)`        | `nanoseconds(value)`, and the reverse                  |
+| `seconds(s)`         | `iso8601(value, 0)`                                    |
+
+Two of these depend on the type of the field, which only `rosetta_jit.lowering.resolve` knows: it finds a call of `WRITTEN` or `FILLED`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.model.expr import Binary, Call, Literal, Unary
+from rosetta_jit.model.types import Array, Bytes, Float
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.types import Type
+
+WRITTEN, FILLED = "(written)", "(filled)"
+"""The number that a text spells; a text as large as its field. No mapping can write such names."""
+
+
+def opposite(call: Call, value: Expr) -> tuple[Expr, Expr] | None:
+    """What a call of a function of texts is applied to, and what that must be; None where several texts give the same."""
+    span = call.span
+    match call.function, call.arguments:
+        case "text", (inner, Literal(str()) as encoding):
+            return inner, Call("bytes", (value, encoding), span)
+        case "text", (inner, *_):
+            return inner, Call(WRITTEN, (value,), span)
+        case (("integer" | "number"), (inner,)):
+            return inner, Call("text", (value,), span)
+        case "bytes", (inner, encoding):
+            return inner, Call("text", (value, encoding), span)
+        case "until_nul", (inner,):
+            return inner, Call(FILLED, (value,), span)
+        case "padded", (inner, _):
+            return inner, Call("until_nul", (value,), span)
+        case "behind", (inner, start):
+            return inner, Binary("+", start, value, span)
+        case "before", (inner, end):
+            return inner, Binary("+", value, end, span)
+        case "iso8601", (inner,):
+            return inner, Call("nanoseconds", (value,), span)
+        case "nanoseconds", (inner,):
+            return inner, Call("iso8601", (value,), span)
+        case "seconds", (inner,):
+            return inner, Call("iso8601", (value, Literal(0, span)), span)
+        case _:
+            return None
+
+
+def without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:
+    """The field of a sum of texts of which one is written down."""
+    match sum_:
+        case Binary("+", Literal(str()) as start, inner, span):
+            return inner, Call("behind", (value, start), span)
+        case Binary("+", inner, Literal(str()) as end, span):
+            return inner, Call("before", (value, end), span)
+        case _:
+            return None
+
+
+def for_comparison(call: Call) -> Call:
+    """A call that was turned round where no field asks for a type: what it is compared with may be any number."""
+    return Call("number", call.arguments, call.span) if call.function == WRITTEN else call
+
+
+def for_type(expr: Expr, type_: Type) -> Expr:
+    """An expression that was turned round, for a field of a type."""
+    match expr:
+        case Unary(_, operand):
+            return replace(expr, operand=for_type(operand, type_))
+        case Binary(_, left, right):
+            return replace(expr, left=for_type(left, type_), right=for_type(right, type_))
+        case Call(name, arguments, span):
+            inner = tuple(for_type(argument, type_) for argument in arguments)
+            if name == WRITTEN:
+                return Call("number" if isinstance(type_, Float) else "integer", inner, span)
+            if name != FILLED:
+                return Call(name, inner, span)
+            size = type_.length if isinstance(type_, Array | Bytes) else None
+            return Call("padded", (*inner, Literal(size, span)), span) if isinstance(size, int) else inner[0]
+        case _:
+            return expr

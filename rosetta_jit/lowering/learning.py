@@ -1,0 +1,97 @@
+"""What the relations of a block say of the wire's fields: each is solved for the field that it leaves unknown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
+from rosetta_jit.lowering.knowledge import Knowledge, Loop, Loops, key_of
+from rosetta_jit.lowering.related import equal_lengths
+from rosetta_jit.model.expr import Choice, Len, Path
+from rosetta_jit.model.mapping import Arranged, For, Relation
+from rosetta_jit.model.walk import Field, fields_of, rebuilt
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Rule
+
+
+def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops) -> None:
+    """Relations of one field first, then those that have one left when the others are known."""
+    later = [each for each in _relations(rules, loops) if not _solve(known, *each)]
+    for _ in range(2):
+        later = [each for each in later if not _solve_rest(known, *each)]
+
+
+def _relations(rules: tuple[Rule, ...], loops: Loops) -> list[tuple[Relation, Loops]]:
+    """All relations that hold whatever conditions say, with the loops around them."""
+    found: list[tuple[Relation, Loops]] = []
+    for rule in rules:
+        if isinstance(rule, Relation):
+            found.append((rule, loops))
+        elif isinstance(rule, Arranged):
+            found.append((Relation(rule.place, rule.cases[0][1], rule.span), loops))
+        elif isinstance(rule, For):
+            found += _relations(rule.body, (*loops, Loop(rule.variable, rule.start, rule.stop)))
+    return found
+
+
+def _solve(known: Knowledge, rule: Relation, loops: Loops) -> bool:
+    """A relation of one field, whatever else is known."""
+    if len(fields_of(rule.value, "wire")) != 1 or fields_of(rule.place, "wire") or condition_in(rule.value):
+        return False
+    return _set_by(known, rule, rule.value, rule.place, loops)
+
+
+def _solve_rest(known: Knowledge, rule: Relation, loops: Loops) -> bool:
+    """A relation of several fields of which one is not known."""
+    place = known.replaced(rule.place, loops)
+    unknown = [each for each in fields_in(rule.value) if known.value(each, loops) is None]
+    if fields_of(place, "wire") or len(unknown) != 1:
+        return False
+    conditional = condition_in(rule.value)
+    if conditional is not None:
+        return _solve_choice(known, rule, conditional, place, loops)
+    return _set_by(known, rule, _without_known(rule.value, unknown[0], known, loops), place, loops)
+
+
+def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Expr], place: Expr, loops: Loops) -> bool:
+    """`a if condition else b`, of one field in both and with a condition that is known."""
+    condition = known.replaced(parts[0], loops)
+    if fields_of(condition, "wire") or any(condition_in(part) for part in parts[1:]):
+        return False
+    try:
+        found = [solve(part, place) for part in parts[1:] if len(fields_in(part)) == 1]
+    except NoInverseError:
+        return False
+    if len(found) != 2 or found[0].place != found[1].place:
+        return False
+    _say(known, rule, found[0].place, Choice(((condition, found[0].value),), found[1].value, span=rule.span), loops)
+    return True
+
+
+def _set_by(known: Knowledge, rule: Relation, expr: Expr, place: Expr, loops: Loops) -> bool:
+    try:
+        solution = solve(expr, place)
+    except NoInverseError:
+        return False
+    _say(known, rule, solution.place, solution.value, loops)
+    return True
+
+
+def _say(known: Knowledge, rule: Relation, place: Field, value: Expr, loops: Loops) -> None:
+    known.setters.setdefault(key_of(place, loops)[0], (rule, value))
+    known.learn(place, value, loops)
+    if isinstance(rule.place, Path) and isinstance(place, Path) and value == rule.place:
+        known.learn(Len(place), Len(rule.place, rule.span), loops)  # arrays that are equal have equal lengths
+    if (lengths := equal_lengths(rule.place, rule.value)) is not None:
+        known.learn(*lengths, loops)
+
+
+def _without_known(value: Expr, unknown: Field, known: Knowledge, loops: Loops) -> Expr:
+    """An expression with all fields but one replaced."""
+    if value == unknown:
+        return value
+    if isinstance(value, Path | Len):
+        return known.replaced(value, loops)
+    return rebuilt(value, lambda part: _without_known(part, unknown, known, loops))

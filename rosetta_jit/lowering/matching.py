@@ -1,0 +1,70 @@
+"""Whether typed expressions are the same, or one is what a rule in loops says in some round."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.lowering.polynomial import TooComplexError, polynomial_of
+from rosetta_jit.lowering.rebuild import rebuilt
+from rosetta_jit.lowering.typed import Access, Binary, Convert, Has, IndexStep, LenOf, Local
+from rosetta_jit.model.types import Int
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.typed import Expr, Step
+    from rosetta_jit.model.expr import Side
+
+Ranges = tuple[tuple["Expr", "Expr"], ...]
+"""Starts and stops of the loops around a rule."""
+
+
+def unify(pattern: tuple[Step, ...], steps: tuple[Step, ...], bound: dict[str, Expr]) -> bool:
+    """Whether a place is one that a rule in loops sets, and in which round."""
+    if len(pattern) != len(steps):
+        return False
+    for wanted, step in zip(pattern, steps, strict=True):
+        match wanted, step:
+            case IndexStep(left), IndexStep(right):
+                if not _matches(left, right, bound):
+                    return False
+            case _ if wanted != step:
+                return False
+            case _:
+                pass
+    return True
+
+
+def _matches(pattern: Expr, expr: Expr, bound: dict[str, Expr]) -> bool:
+    match pattern, expr:
+        case Local(name), _:
+            return bound.setdefault(name, expr) == expr
+        case Binary(operator, left, right), Binary(other, a, b):
+            return operator == other and _matches(left, a, bound) and _matches(right, b, bound)
+        case Convert(operand, type_), Convert(inner, other_type):
+            return type_ == other_type and _matches(operand, inner, bound)
+        case _:
+            return pattern == expr
+
+
+def reads_other(value: Expr, side: Side) -> bool:
+    """Whether an expression reads what lies between the two directions: nothing is known of that."""
+    if isinstance(value, Access | LenOf | Has) and value.place.side != side:
+        return True
+    found: list[bool] = []
+    rebuilt(value, lambda part: found.append(reads_other(part, side)) or part)
+    return any(found)
+
+
+def same_number(value: Expr, goal: Expr) -> bool:
+    """Whether two integers are the same in normal form."""
+    if not isinstance(value.type, Int) or not isinstance(goal.type, Int):
+        return False
+    try:
+        return polynomial_of(value) == polynomial_of(goal)
+    except TooComplexError:
+        return False
+
+
+def same_ranges(left: Ranges, right: Ranges) -> bool:
+    """Whether loops run over the same numbers."""
+    pairs = [(a, b) for one, other in zip(left, right, strict=False) for a, b in zip(one, other, strict=True)]
+    return len(left) == len(right) and all(same_number(a, b) for a, b in pairs)

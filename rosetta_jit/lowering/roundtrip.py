@@ -1,0 +1,329 @@
+"""One direction after the other: what each rule of the second gives, as expressions of what the first one read.
+
+The first direction is followed along each of its ways. Its rules say what the places between have; what it rejects, and the conditions of
+the way, are known. The second direction then decides its own conditions, as far as they follow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.chain import come_back
+from rosetta_jit.lowering.conversions import adapt, same
+from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify
+from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
+from rosetta_jit.lowering.resolve import field_names
+from rosetta_jit.lowering.typed import (
+    BOOL,
+    Access,
+    Assign,
+    Binary,
+    Choice,
+    Const,
+    Convert,
+    Default,
+    FieldStep,
+    For,
+    Given,
+    IndexStep,
+    LenOf,
+    Local,
+    Reject,
+    SetLength,
+    Unary,
+    When,
+)
+from rosetta_jit.model.expr import Literal
+from rosetta_jit.model.types import Float
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.lowering.matching import Ranges
+    from rosetta_jit.lowering.typed import Expr, Place, Rule
+    from rosetta_jit.model.expr import Side
+    from rosetta_jit.source import Span
+
+MAX_WAYS = 64
+"""Ways through the first direction that are followed."""
+
+MAX_LOOKED = 300
+"""Rules for one field that are looked at."""
+
+Known = tuple[tuple["Expr", bool], ...]
+
+
+class UnfollowedError(Exception):
+    """More ways than `MAX_WAYS`; never leaves the laws."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way through a direction: what is known on it, and the rules that run."""
+
+    known: Known
+    rules: tuple[Rule, ...]
+
+
+def ways(rules: tuple[Rule, ...]) -> list[Way]:
+    """Every way through a direction that is not rejected.
+
+    Raises
+    ------
+    UnfollowedError
+    """
+    found = [Way((), ())]
+    for rule in rules:
+        parts = _ways_of(rule)
+        if len(found) * len(parts) > MAX_WAYS:
+            raise UnfollowedError
+        found = [Way((*before.known, *part.known), (*before.rules, *part.rules)) for before in found for part in parts]
+    return found
+
+
+def _ways_of(rule: Rule) -> list[Way]:
+    match rule:
+        case When(condition, then, otherwise):
+            blocks = [(condition, True, then), (condition, False, otherwise)]
+            return [Way(((known, holds), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
+        case For(body=body):
+            return [Way(way.known, (replace(rule, body=way.rules),)) for way in ways(body)]
+        case Reject():
+            return []
+        case _:
+            return [Way((), (rule,))]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a place has when both directions are done; None where that does not follow."""
+
+    place: Place
+    is_length: bool
+    value: Expr | None
+    span: Span | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Write:
+    """What a rule sets, in loops over these ranges."""
+
+    is_length: bool
+    place: Place
+    value: Expr
+    ranges: Ranges
+
+
+class Trip:
+    """The second direction, run on what one way through the first one leaves."""
+
+    def __init__(self, way: Way) -> None:
+        self.writes: dict[tuple[str, ...], list[_Write]] = {}
+        for write in _writes(way.rules, ()):
+            self.writes.setdefault(field_names(write.place), []).append(write)
+        self.ranges: Ranges = ()
+        self.truths: dict[Expr, bool] = {}
+        self.equal: dict[Expr, list[Expr]] = {}
+        for condition, holds in way.known:
+            self.know(condition, holds=holds)
+        self.refused = False
+
+    def know(self, condition: Expr, *, holds: bool) -> None:
+        """What follows from a condition."""
+        match condition:
+            case Unary("not", operand):
+                self.know(operand, holds=not holds)
+            case Binary("and" | "or" as operator, left, right) if (operator == "and") == holds:
+                self.know(left, holds=holds)
+                self.know(right, holds=holds)
+            case Binary("==" | "!=" as operator, left, right) if (operator == "==") == holds:
+                self.equal.setdefault(left, []).append(right)
+                self.equal.setdefault(right, []).append(left)
+                self.truths[replace(condition, operator="==", span=None)] = True
+                self.truths[replace(condition, operator="!=", span=None)] = False
+            case Binary("==" | "!="):
+                self.truths[replace(condition, operator="==", span=None)] = False
+                self.truths[replace(condition, operator="!=", span=None)] = True
+            case _:
+                self.truths[condition] = holds
+
+    def equal_to(self, expr: Expr) -> list[Expr]:
+        """What an expression is known to be equal to."""
+        return self.equal.get(expr, [])
+
+    def run(self, rules: tuple[Rule, ...]) -> Iterator[Result]:
+        for rule in rules:
+            match rule:
+                case Assign(place, value) | SetLength(place, value):
+                    where = placed(place, self.of)
+                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span)
+                case Default(place):
+                    yield Result(place, is_length=False, value=None, span=rule.span)
+                case For(_, start, stop, body):
+                    around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
+                    yield from self.run(body)
+                    self.ranges = around
+                case When(condition, then, otherwise):
+                    yield from self.when(self.of(condition), then, otherwise)
+                case Reject():
+                    self.refused = True
+                case _:
+                    pass
+
+    def when(self, condition: Expr, then: tuple[Rule, ...], otherwise: tuple[Rule, ...]) -> Iterator[Result]:
+        match condition:
+            case Const(bool(holds)):
+                yield from self.run(then if holds else otherwise)
+            case _ if all(isinstance(rule, Reject) for rule in then):
+                self.know(condition, holds=False)
+                yield from self.run(otherwise)
+            case _ if otherwise and all(isinstance(rule, Reject) for rule in otherwise):
+                self.know(condition, holds=True)
+                yield from self.run(then)
+            case _:
+                for write in _writes((*then, *otherwise), ()):
+                    yield Result(write.place, is_length=False, value=Local("?"), span=None)
+
+    # --- expressions ---------------------------------------------------------------------------------------------------
+
+    def of(self, expr: Expr) -> Expr:
+        """An expression of the places between, as one of what the first direction read."""
+        match expr:
+            case Access(place):
+                return self.read(replace(expr, place=placed(place, self.of)), length=False)
+            case LenOf(place):
+                return self.read(replace(expr, place=placed(place, self.of)), length=True)
+            case _:
+                return self.simple(rebuilt(expr, self.of))
+
+    def read(self, expr: Access | LenOf, *, length: bool) -> Expr:
+        """What the first direction gave a place."""
+        place = expr.place
+        last = place.steps[-1] if place.steps else None
+        if isinstance(last, FieldStep) and isinstance(last.field.constant, Literal):
+            return Const(last.field.constant.value, place.type)
+        names = field_names(place)
+        found = list(self.matching(names, place, length=length))
+        if len(found) == 1:
+            return self.simple(found[0])
+        for count in range(len(names) if not found else 0, 0, -1):
+            around = [self.around(place, write) for write in self.writes.get(names[:count], []) if not write.is_length]
+            inner = [each for each in around if each is not None]
+            if len(inner) == 1:
+                return LenOf(inner[0]) if length else Access(inner[0], place.type)
+        return expr
+
+    def matching(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
+        alike: list[tuple[_Write, Expr]] = []
+        for write in self.writes.get(names, [])[:MAX_LOOKED]:
+            bound: dict[str, Expr] = {}
+            if write.is_length == length and (unify(write.place.steps, place.steps, bound) or self.alike(write.place, place, bound)):
+                alike.append((write, renamed(write.value, bound)))
+        # Where several loops set such an element, it is the one over the same numbers that sets this.
+        mine = [each for each in alike if same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
+        yield from (value for _, value in mine)
+
+    @staticmethod
+    def alike(write: Place, place: Place, bound: dict[str, Expr]) -> bool:
+        """Whether a place is the one that a rule sets in the round of the same number, whatever their indices look like."""
+        side: Side = "wire" if write.side == "holder" else "holder"
+        pairs = [
+            (a.index, b.index)
+            for a, b in zip(write.steps, place.steps, strict=False)
+            if isinstance(a, IndexStep) and isinstance(b, IndexStep)
+        ]
+        bound.clear()
+        return len(write.steps) == len(place.steps) and all(same_number(a, b) and not reads_other(b, side) for a, b in pairs)
+
+    def around(self, place: Place, write: _Write) -> Place | None:
+        """A place within one that was assigned as a whole, where it came from."""
+        bound: dict[str, Expr] = {}
+        size = len(write.place.steps)
+        if not isinstance(write.value, Access) or size > len(place.steps) or not unify(write.place.steps, place.steps[:size], bound):
+            return None
+        source = renamed(write.value, bound)
+        assert isinstance(source, Access)
+        return replace(source.place, steps=(*source.place.steps, *place.steps[size:]), type=place.type)
+
+    def simple(self, expr: Expr) -> Expr:
+        """An expression in place of which something simpler can stand."""
+        known = self.truths.get(replace(expr, span=None)) if isinstance(expr, Binary) else self.truths.get(expr)
+        if known is not None:
+            return Const(known, BOOL)
+        match expr:
+            case Convert(Const() as constant, type_, rule) if rule in {"widen", "exact", "nearest"}:
+                return adapt(constant, type_) or expr
+            case Unary("not", Const(bool(value))):
+                return Const(not value, BOOL)
+            case Binary("==" | "!=" as operator, left, right) if left == right and not isinstance(left.type, Float):
+                return Const(operator == "==", BOOL)
+            case Binary("==" | "!=" as operator, Const(a), Const(b)):
+                return Const((a == b) == (operator == "=="), BOOL)
+            case Binary("and" | "or" as operator, left, right):
+                return _logic(operator == "and", left, right, expr)
+            case Choice(cases, otherwise):
+                return _decided(cases, otherwise, expr)
+            case Convert() | Unary() | Binary():
+                return _itself(expr) or expr
+            case _:
+                return expr
+
+
+def _changed(rule: Assign | SetLength, value: Expr) -> Expr:
+    """The value of a rule; one within which units change is not followed."""
+    return value if isinstance(rule, SetLength) or rule.change is None else Given("in other units", (), value.type)
+
+
+def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:
+    """What rules set."""
+    for rule in rules:
+        match rule:
+            case Assign(place, value) | SetLength(place, value):
+                yield _Write(isinstance(rule, SetLength), place, _changed(rule, value), ranges)
+            case For(_, start, stop, body):
+                yield from _writes(body, (*ranges, (start, stop)))
+            case When(_, then, otherwise):
+                yield from _writes((*then, *otherwise), ranges)
+            case _:
+                pass
+
+
+def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:
+    match left, right:
+        case (Const(bool(value)), other) | (other, Const(bool(value))):
+            return other if value == is_and else Const(value, BOOL)
+        case _:
+            return expr
+
+
+def _decided(cases: tuple[tuple[Expr, Expr], ...], otherwise: Expr | None, choice: Choice) -> Expr:
+    """A choice without the cases that cannot be."""
+    left: list[tuple[Expr, Expr]] = []
+    for condition, value in cases:
+        match condition:
+            case Const(bool(holds)):
+                if holds:
+                    return replace(choice, cases=tuple(left), otherwise=value) if left else value
+            case _:
+                left.append((condition, value))
+    if not left and otherwise is not None:
+        return otherwise
+    return replace(choice, cases=tuple(left), otherwise=otherwise)
+
+
+def _itself(expr: Expr) -> Expr | None:
+    """The field that an expression is, when all that is done to it is undone."""
+    leaf: Expr | None = expr
+    while leaf is not None and not isinstance(leaf, Access | LenOf):
+        leaf = _operand(leaf)
+    return leaf if leaf is not None and same(leaf.type, expr.type) and come_back(expr, leaf) is None else None
+
+
+def _operand(expr: Expr) -> Expr | None:
+    match expr:
+        case Convert(operand) | Unary(_, operand) | Binary(_, operand, Const()) | Binary(_, Const(), operand):
+            return operand
+        case _:
+            return None

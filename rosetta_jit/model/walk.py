@@ -1,0 +1,129 @@
+"""What expressions and rules are made of, and the same ones of other parts: what every walk over them has in common.
+
+The depth of an expression is bounded by the parser, so that walks may be recursive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.model import mapping
+from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Index, Item, Len, List, Literal, Member, Name, Path, Slice, Unary
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from rosetta_jit.model.expr import Expr, Side, Step
+    from rosetta_jit.model.mapping import Rule
+
+Field = Path | Len
+"""A field or its length."""
+
+
+def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """The expression with each of its parts changed; a path's parts are the indices in it."""
+    match expr:
+        case Literal() | Name():
+            return expr
+        case Path():
+            return with_indices(expr, change)
+        case Len(path):
+            return replace(expr, path=with_indices(path, change))
+        case Unary(operand=operand):
+            return replace(expr, operand=change(operand))
+        case Binary(left=left, right=right):
+            return replace(expr, left=change(left), right=change(right))
+        case Call(arguments=arguments):
+            return replace(expr, arguments=tuple(map(change, arguments)))
+        case Choice(cases, otherwise):
+            pairs = tuple((change(condition), change(value)) for condition, value in cases)
+            return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise))
+        case List(items):
+            return replace(expr, items=tuple(map(change, items)))
+        case Item(items=items, index=index):
+            return replace(expr, items=change(items), index=change(index))
+        case Given(arguments=arguments):
+            return replace(expr, arguments=tuple(map(change, arguments)))
+        case Held(place, value):
+            return replace(expr, place=with_indices(place, change), value=change(value))
+        case _:
+            assert_never(expr)
+
+
+def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
+    """A rule with the expressions changed that it has itself; the rules within it are as they were."""
+    match rule:
+        case mapping.Assign(place, value) | mapping.SetLength(place, value):
+            return replace(rule, place=with_indices(place, change), value=change(value))
+        case mapping.Relation(place, value):
+            return replace(rule, place=_with_indices(place, change), value=change(value))
+        case mapping.For(start=start, stop=stop):
+            return replace(rule, start=change(start), stop=change(stop))
+        case mapping.When(condition=condition):
+            return replace(rule, condition=change(condition))
+        case mapping.Ignore(place) | mapping.Default(place):
+            return replace(rule, place=with_indices(place, change))
+        case mapping.Arranged(place, flag, cases):
+            pairs = tuple((change(constant), change(value)) for constant, value in cases)
+            return replace(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
+        case mapping.Reject() | mapping.SameNames():
+            return rule
+        case _:
+            assert_never(rule)
+
+
+def _with_indices(place: Field, change: Callable[[Expr], Expr]) -> Field:
+    return replace(place, path=with_indices(place.path, change)) if isinstance(place, Len) else with_indices(place, change)
+
+
+def with_indices(path: Path, change: Callable[[Expr], Expr]) -> Path:
+    """A path with its indices changed."""
+    return replace(path, steps=tuple(_with_indices_in(step, change) for step in path.steps))
+
+
+def _with_indices_in(step: Step, change: Callable[[Expr], Expr]) -> Step:
+    match step:
+        case Index(index):
+            return replace(step, index=change(index))
+        case Slice(start, stop, by):
+            return replace(step, start=change(start), stop=None if stop is None else change(stop), step=change(by))
+        case _:
+            return step
+
+
+def parts(expr: Expr) -> Iterator[Expr]:
+    """Every part of an expression, itself first, those within indices included."""
+    yield expr
+    below: list[Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        yield from parts(part)
+
+
+def fields_of(expr: Expr, side: Side) -> list[Field]:
+    """The fields of one side that an expression reads, each once, those within indices included."""
+    found = (part for part in parts(expr) if isinstance(part, Path | Len) and side_of(part) == side)
+    return list(dict.fromkeys(found))
+
+
+def side_of(field: Field) -> Side:
+    """The side that a field is on."""
+    return path_of(field).side
+
+
+def path_of(field: Field) -> Path:
+    """The field that a length is of; the field itself otherwise."""
+    return field.path if isinstance(field, Len) else field
+
+
+def names_of(path: Path) -> tuple[str, ...]:
+    """The fields on the way, without indices."""
+    return tuple(step.name for step in path.steps if isinstance(step, Member))
+
+
+def renamed(expr: Expr, names: Mapping[str, Expr]) -> Expr:
+    """The expression with expressions in place of names."""
+    if isinstance(expr, Name):
+        return names.get(expr.name, expr)
+    return rebuilt(expr, lambda part: renamed(part, names)) if names else expr

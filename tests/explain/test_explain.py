@@ -1,0 +1,150 @@
+"""What is told about a mapping: the same as text, as a page and as JSON, and nothing of it harms."""
+
+from __future__ import annotations
+
+import json
+from html.parser import HTMLParser
+
+import pytest
+
+from rosetta_jit.cli import main
+from rosetta_jit.explain.content import explanation
+from rosetta_jit.explain.page import as_page
+from rosetta_jit.explain.text import as_text
+from tests.golden import GOLDEN, check_golden
+
+EVIL = "</title><script>alert(1)</script>\x1b[2J\u202e\"'&"
+FILES = {
+    "a.bottle-schema": '"a" (("yaw" :double (:unit :degree)) ("n" :int) ("list" (:list :double)) ("spare" :int))',
+    "h.proto": """syntax = "proto2"; package h;
+message Inner { required uint32 wide = 1; optional string note = 2; }
+message H { required float angle = 1; repeated float list = 2; required Inner inner = 3; optional H next = 4; }""",
+}
+HEAD = 'import "a.bottle-schema"\nimport "h.proto"\ndata-holder: h.H\nwire-schema: a\n'
+RULES = f"""{HEAD}rules:
+  .angle <-> float32(radians(.yaw))
+  len(.list) <-> len(.list)
+  for i from 0 to len(.list)
+    .list[i] <-> float32(.list[i])
+  end
+unpack-rules:
+  reject "negative" when .n < 0
+  .inner.wide = uint32(.n)
+  ignore .spare
+pack-rules:
+  .n = int32(.inner.wide, saturate)
+  .spare = 0
+"""
+
+
+@pytest.fixture
+def mapping(tmp_path, monkeypatch):
+    def write(text=RULES, name="m.mapping"):
+        for each, content in {**FILES, name: text}.items():
+            (tmp_path / each).write_text(content)
+        monkeypatch.chdir(tmp_path)
+        return name
+
+    return write
+
+
+def test_as_text(mapping):
+    check_golden(GOLDEN / "explain" / "both.txt", as_text(explanation(mapping(), encoding="yarp4"), width=100) + "\n")
+
+
+def test_as_narrow_text(mapping):
+    told = as_text(explanation(mapping(), encoding="yarp4"), width=60)
+    assert max(map(len, told.split("warning")[0].splitlines())) <= 60
+
+
+def test_as_page(mapping):
+    check_golden(GOLDEN / "explain" / "both.html", as_page(explanation(mapping(), encoding="yarp4")))
+
+
+def test_what_it_says(mapping):
+    found = explanation(mapping(), encoding="yarp4")
+    unpack, pack = found.directions
+    assert [line.block for line in unpack.lines] == ["rules"] * 4 + ["unpack-rules"] * 3
+    assert [line.text for line in pack.lines[:4]] == [
+        ".yaw = degrees(.angle)",
+        "len(.list) = len(.list)",
+        "for i from 0 to len(.list)",
+        ".list[i] = .list[i]",
+    ]
+    assert unpack.lines[0].reads == (("yaw",),)
+    assert unpack.lines[0].sets == (("angle",),)
+    assert [note.text for note in unpack.lines[0].notes] == ["degree → radian", "float64 → float32, rounded to the nearest"]
+    assert {(each.what, each.meant) for each in unpack.losses} == {
+        (".spare", True),
+        (".inner.note", False),
+        (".next", False),
+        (".angle, .list", True),
+    }
+    assert ("int32", True) in {(note.text.split(" → ")[1].split(",")[0], note.lossy) for line in pack.lines for note in line.notes[:1]}
+    assert unpack.refusals == ("negative",)
+    assert unpack.cost.cost.repeated[0].count == "len(.list)"
+
+
+def test_one_way(mapping):
+    text = HEAD + "unpack-rules:\n  .angle = 1.0\n  .inner.wide = 2\n  len(.list) = 0\n"
+    told = as_text(explanation(mapping(text)))
+    assert "one-way: there are no rules to pack" in told
+    assert "warning[never-read]" in told
+
+
+def test_as_json(mapping, capsys):
+    assert main(["explain", mapping(), "--json", "--encoding", "yarp4"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["wire"]["type"] == "a"
+    assert found["directions"][0]["lines"][0]["text"] == ".angle = float32(radians(.yaw))"
+    assert found["warnings"][0]["severity"] == "warning"
+
+
+def test_a_wrong_mapping_is_reported(mapping, capsys):
+    assert main(["explain", mapping(HEAD + "unpack-rules:\n  .x = .y\n")]) == 1
+    assert "error[unknown-field]" in capsys.readouterr().err
+
+
+class Tags(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.tags = []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+
+def test_hostile_texts_are_escaped(mapping, tmp_path):
+    quoted = EVIL.replace('"', '\\"')
+    text = f'{HEAD}unpack-rules:\n  reject "{quoted}" when .n < 0\n  .angle = 1.0\n  .inner.wide = 2\n  len(.list) = 0\n'
+    name = mapping(text, name="<b onclick=alert(1)>.mapping")
+    assert main(["explain", name, "--html", "page.html"]) == 0
+    page = (tmp_path / "page.html").read_text()
+    tags = Tags()
+    tags.feed(page)
+    assert {tag for tag, _ in tags.tags}.isdisjoint({"script", "img", "b", "link", "iframe", "a", "object"})
+    assert not any(name.startswith("on") or name in {"href", "src"} for _, attributes in tags.tags for name in attributes)
+    assert "alert(1)" in page
+    assert "\x1b" not in page
+    assert "\u202e" not in page
+    assert all(line.isprintable() for line in as_text(explanation(name)).splitlines())
+
+
+def test_a_type_within_itself_and_a_huge_one_are_bounded(mapping, tmp_path):
+    levels = " ".join(f"message L{n} {{ {' '.join(f'optional L{n + 1} f{k} = {k + 1};' for k in range(9))} }}" for n in range(12))
+    name = mapping(HEAD.replace("h.H", "h.L0") + "unpack-rules:\n  default .f0\n")
+    (tmp_path / "h.proto").write_text(f'syntax = "proto2"; package h; {levels} message L12 {{ optional L0 again = 1; }}')
+    found = explanation(name)
+    assert found.holder.more
+    assert "and more fields" in as_text(found)
+    assert "and more fields" in as_page(found)
+
+
+@pytest.mark.parametrize(
+    "mapping_", ["ros1/image.mapping", "ros1/joint_state.mapping", "ros1/time_reference.mapping", "yarp/icub/camera_image.mapping"]
+)
+def test_shipped_mappings(mapping_):
+    found = explanation(mapping_)
+    assert [each.name for each in found.directions] == ["unpack", "pack"]
+    assert all(not isinstance(each.cost, str) for each in found.directions)
+    assert found.warnings == ()

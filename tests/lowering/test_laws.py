@@ -1,0 +1,327 @@
+"""What mappings in both directions guarantee, and that they do, over random types, rules and values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rosetta_jit as rj
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.lowering.chain import Rounding
+    from rosetta_jit.lowering.laws import Laws
+
+HEAD = 'import "wire.bottle-schema"\nimport "holder.proto"\ndata-holder: h.Holder\nwire-schema: wire\n'
+COLOURS = {"mono8": "GRAY", "rgb8": "RGB", "bgr8": "BGR", "8UC1": "GRAY"}
+
+
+def files(wire: str, holder: str, rules: str) -> dict[str, str]:
+    proto = f'syntax = "proto2"; package h; enum Mode {{ GRAY = 0; RGB = 1; BGR = 2; }} message Holder {{ {holder} }}'
+    return {"wire.bottle-schema": f'"wire" ({wire})', "holder.proto": proto, "m.mapping": HEAD + rules}
+
+
+def laws(wire: str, holder: str, rules: str) -> Laws:
+    made = rj.Decoder("m.mapping", schema=files(wire, holder, rules), encoding="yarp3", backend="interpreter").mapping
+    assert made is not None
+    assert made.laws is not None
+    return made.laws
+
+
+def test_the_torso():
+    made = rj.check("yarp/icub/torso_state.mapping").laws
+    assert made is not None
+    assert (made.messages.kind, made.holders.kind) == ("rounded", "exact")
+    rounding = dict(made.messages.rounded)[".yaw"]
+    assert (rounding.ulp, rounding.bits) == (2, 32)
+    assert str(made.holders) == "exact inverse"
+    assert ".yaw: 2 ulp of float32" in str(made)
+
+
+ONE = (
+    '("x" :int) ("y" :double) ("s" :string) ("n" :int64)',
+    "required int32 x = 1; required double y = 2; required Mode s = 3; required int64 n = 4;",
+)
+REST = {
+    "x": ".x <-> .x",
+    "y": ".y <-> .y",
+    "s": '.s <-> table(.s) { "mono8" = h.Mode.GRAY, "rgb8" = h.Mode.RGB, "bgr8" = h.Mode.BGR }',
+    "n": ".n <-> .n",
+}
+
+
+@pytest.mark.parametrize(
+    ("field", "rule", "messages", "holders"),
+    [
+        ("x", ".x <-> .x", "", ""),
+        ("x", ".x <-> int32(7 - .x)", "", ""),
+        ("x", ".x <-> int32(.x ^ 5)", "", ""),
+        ("x", ".x <-> int32(.n, saturate)", ".n: values that do not fit are saturated", ""),
+        ("x", ".x <-> int32(.x / 4)", ".x: `/` drops remainders", ""),
+        ("y", ".y <-> .y * 4.0 - 1.5", "rounded .y", "rounded .y"),
+        ("y", ".y <-> float64(.n)", ".n: large integers are rounded to a float", ""),
+        ("x", ".x <-> int32(.y, round)", ".y: it is rounded to a whole number", ""),
+        ("x", ".x <-> int32(.y)", "", ""),
+        ("s", '.s <-> table(.s) { "a" = h.Mode.GRAY, "b" = h.Mode.GRAY }', '.s: "b" comes back as "a"', ""),
+        (
+            "s",
+            '.s <-> table(.s) { "a" = h.Mode.RGB, otherwise h.Mode.GRAY }',
+            ".s: all values without an entry of the table become 0",
+            "",
+        ),
+        ("x", "default .x ignore .x", ".x: it is left out: 0, empty or absent", ".x: it is left out: 0, empty or absent"),
+    ],
+)
+def test_what_comes_back(field, rule, messages, holders):
+    """Every relation packs as a check or as an inverse, so that nothing else is lost on the way."""
+    used = {name for name in REST if f".{name} " in f"{rule} ".split("<->")[-1].replace(")", " ").replace(",", " ")}
+    wire_fields = used or {field}
+    others = [text for name, text in REST.items() if name != field and name not in wire_fields]
+    missing = [f"default .{name}" for name in REST if name != field and name in wire_fields]
+    ignored = [f"ignore .{name}" for name in ("x", "y", "s", "n") if name == field and name not in wire_fields]
+    made = laws(*ONE, "rules:\n  " + "\n  ".join([rule, *others, *missing, *ignored]) + "\n")
+    found = [f"{loss.place}: {loss.why}" for loss in made.messages.losses if loss.place == f".{next(iter(wire_fields))}"]
+    assert (found or [f"rounded {place}" for place, _ in made.messages.rounded] or [""])[0] == messages
+    back = [f"{loss.place}: {loss.why}" for loss in made.holders.losses if loss.place == f".{field}"]
+    assert (back or [f"rounded {place}" for place, _ in made.holders.rounded] or [""])[0] == holders
+
+
+def test_blocks_follow_their_conditions():
+    rules = """rules:
+  when .s == "mono8" .s <-> h.Mode.GRAY .y <-> .y else when .s == "rgb8" .s <-> h.Mode.RGB .y <-> -.y else reject "no" end end
+  .n <-> .n
+  when .n > 5 .x <-> .x else .x <-> int32(-.x) end
+"""
+    made = laws(*ONE, rules)
+    assert (made.messages.kind, made.holders.kind) == ("exact", "exact")
+
+
+def test_a_condition_on_what_is_rounded_may_take_the_other_block():
+    """The wire's value is not the holder's: near the limit, another block may be packed than was unpacked."""
+    rules = REST["s"] + "\n  .n <-> .n\n  .y <-> .y * 0.1\n  when .y > 0.5 .x <-> .x else .x <-> int32(-.x) end\n"
+    made = laws(*ONE, f"rules:\n  {rules}")
+    assert any("which block" in loss.why for loss in made.messages.losses)
+
+
+def test_loops_permutations_and_checks():
+    made = laws(
+        '("values" (:list :double)) ("a" :double) ("b" :double) ("points" (:list (:bottle ("u" :int) ("v" :double))))',
+        "message P { required int32 u = 1; required double v = 2; } repeated double values = 1; repeated double pair = 2;"
+        "repeated P points = 3; required double copy = 4;",
+        """rules:
+  .values <-> .values
+  .pair <-> [.b, .a]
+  len(.points) <-> len(.points)
+  for i from 0 to len(.points)
+    .points[i].u <-> .points[i].u
+    .points[i].v <-> -.points[i].v
+  end
+  .copy <-> .b
+""",
+    )
+    assert str(made) == "messages: exact inverse\nholders: exact inverse"
+
+
+def test_two_blocks_by_hand_have_laws_too():
+    made = laws(
+        '("a" :double) ("k" :int)',
+        "required double a = 1; required int32 k = 2;",
+        "unpack-rules:\n  .a = .a + 1.0\n  .k = .k\npack-rules:\n  .a = .a + 1.0\n  .k = .k\n",
+    )
+    assert [loss.why for loss in made.messages.losses] == ["it comes back as another value"]
+
+
+def test_one_way_mappings_have_none():
+    texts = files('("a" :double)', "required double a = 1;", "unpack-rules:\n  .a = .a\n")
+    mapping = rj.Decoder("m.mapping", schema=texts, encoding="yarp3", backend="interpreter").mapping
+    assert mapping is not None
+    assert mapping.laws is None
+    assert rj.Decoder.of("wire", schema=texts, imports=["wire.bottle-schema"], backend="interpreter").mapping is None
+
+
+# --- random types, rules and values --------------------------------------------------------------------------------------
+
+
+@dataclass
+class Part:
+    """A field of each side, the relation between them, and what it means in numpy."""
+
+    wire: str
+    holder: str
+    rule: str
+    unpack: Callable[[Any], Any]
+    wires: st.SearchStrategy[Any]
+    holders: st.SearchStrategy[Any]
+
+
+DOUBLES = st.floats(-1e6, 1e6) | st.sampled_from([0.0, -0.0, 1e-9, 273.15, 1e30, -1e30])
+SINGLES = DOUBLES.map(lambda value: float(np.float32(value)))
+CONSTANTS = st.sampled_from([0.1, 3.0, 273.15, -2.5, 1000.0, 1e-3])
+STEPS: list[tuple[str, Callable[[Any, float], Any]]] = [
+    ("({0} + {1})", lambda x, c: x + c),
+    ("({0} - {1})", lambda x, c: x - c),
+    ("({1} - {0})", lambda x, c: c - x),
+    ("({0} * {1})", lambda x, c: x * c),
+    ("({0} / {1})", lambda x, c: x / c),
+    ("radians({0})", lambda x, _: np.float64(x) * (np.pi / 180)),
+    ("degrees({0})", lambda x, _: np.float64(x) * (180 / np.pi)),
+    ("(-{0})", lambda x, _: -x),
+    ("divide({0}, {1})", lambda x, c: x / c),
+]
+
+
+def is_measured(steps: list[Any]) -> bool:
+    """Angles are converted once: what is in radians is no argument of `radians`."""
+    return sum(template.endswith("s({0})") for template, _ in steps) < 2
+
+
+@st.composite
+def floats(draw: st.DrawFn) -> Part:
+    wire_single, holder_single = draw(st.booleans()), draw(st.booleans())
+    text, functions = ".NAME", []
+    for template, function in draw(st.lists(st.sampled_from(STEPS), max_size=3).filter(is_measured)):
+        constant = draw(CONSTANTS)
+        text = template.format(text, repr(constant))
+        functions.append((function, constant))
+
+    def unpack(value: Any) -> Any:
+        number: Any = np.float32(value) if wire_single else np.float64(value)
+        with np.errstate(all="ignore"):
+            for function, constant in functions:
+                number = function(number, type(number)(constant))
+            return float(np.float32(number)) if holder_single else float(number)
+
+    rule = f".NAME <-> float32({text})" if holder_single else f".NAME <-> {text}"
+    kinds = ":float32" if wire_single else ":double", "float" if holder_single else "double"
+    return Part(kinds[0], f"required {kinds[1]}", rule, unpack, SINGLES if wire_single else DOUBLES, SINGLES if holder_single else DOUBLES)
+
+
+@st.composite
+def integers(draw: st.DrawFn) -> Part:
+    number = draw(st.integers(-1000, 1000).filter(bool))
+    shown = str(number) if number > 0 else f"({number})"
+    rules: list[tuple[str, Callable[[int], int]]] = [
+        (".NAME", lambda x: x),
+        (f".NAME + {shown}", lambda x: x + number),
+        (f"{shown} - .NAME", lambda x: number - x),
+        (f".NAME * {shown}", lambda x: x * number),
+        (f"(.NAME ^ {shown}) + 1", lambda x: (x ^ number) + 1),
+        (f"-(.NAME * {shown}) - 3", lambda x: -(x * number) - 3),
+    ]
+    text, unpack = draw(st.sampled_from(rules))
+    values = st.integers(-(2**31), 2**31 - 1)
+    return Part(":int", "required int64", f".NAME <-> {text}", unpack, values, values)
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> Part:
+    keys = draw(st.lists(st.sampled_from(sorted(COLOURS)), min_size=1, unique=True))
+    rest = draw(st.booleans())
+    entries = [f'"{key}" = h.Mode.{COLOURS[key]}' for key in keys] + (["otherwise h.Mode.GRAY"] if rest else [])
+    names = sorted({COLOURS[key] for key in keys})
+    wires = st.sampled_from([*keys, "jpeg"] if rest else keys)
+    rule = f".NAME <-> table(.NAME) {{ {', '.join(entries)} }}"
+    return Part(
+        ":string", "required h.Mode", rule, lambda key: COLOURS.get(key, "GRAY") if key in keys else "GRAY", wires, st.sampled_from(names)
+    )
+
+
+@st.composite
+def permutations(draw: st.DrawFn) -> Part:
+    order = draw(st.permutations(range(draw(st.integers(1, 5)))))
+    size = len(order)
+    rules = [f"len(.NAME) <-> {size}", *(f".NAME[{to}] <-> .NAME[{origin}]" for to, origin in enumerate(order))]
+    values = st.lists(DOUBLES, min_size=size, max_size=size)
+    kind = f"(:list :double (:length {size}))"
+    return Part(kind, "repeated double", "\n  ".join(rules), lambda value: [value[origin] for origin in order], values, values)
+
+
+UNITS = {("mm", "m"): 0.001, ("degree", "radian"): np.pi / 180, ("km", "m"): 1000.0}
+
+
+def is_near(back: float, value: float, rounding: Rounding) -> bool:
+    """What a law promises of one number."""
+    if abs(value) > rounding.limit:
+        return True
+    kind = np.float32 if rounding.bits == 32 else np.float64
+    spacing = float(np.spacing(kind(max(abs(value), rounding.floor))))
+    return abs(back - value) <= rounding.ulp * spacing
+
+
+def assert_law(law: Any, values: dict[str, Any], back: dict[str, Any]) -> None:
+    lost = {loss.place.split("[")[0] for loss in law.losses}
+    rounded = dict(law.rounded)
+    for name, value in values.items():
+        place = f".{name}"
+        if place in lost or "" in lost:
+            continue
+        if place in rounded:
+            assert is_near(back[name], value, rounded[place]), (name, value, back[name], rounded[place])
+        else:
+            assert back[name] == value, (name, value, back[name])
+
+
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_laws_hold(data):
+    made = data.draw(st.lists(st.one_of(floats(), floats(), integers(), tables(), permutations()), min_size=1, max_size=5))
+    parts = {f"f{number}": part for number, part in enumerate(made)}
+    texts = files(
+        " ".join(f'("{name}" {part.wire})' for name, part in parts.items()),
+        " ".join(f"{part.holder} {name} = {number + 1};" for number, (name, part) in enumerate(parts.items())),
+        "rules:\n" + "".join(f"  {part.rule.replace('NAME', name)}\n" for name, part in parts.items()),
+    )
+    options: dict[str, Any] = {"schema": texts, "encoding": "yarp3", "backend": "python"}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    own: dict[str, Any] = {**options, "imports": ["wire.bottle-schema"]}
+    read, write = rj.Decoder.of("wire", **own), rj.Encoder.of("wire", **own)
+    found = decode.mapping.laws
+
+    for _ in range(5):
+        values = {name: data.draw(part.wires) for name, part in parts.items()}
+        message = write(write.holder_type.from_dict(values))
+        held = decode(message).to_dict()
+        assert held == {
+            name: pytest.approx(part.unpack(values[name]), rel=0, abs=0) if "table" not in part.rule else part.unpack(values[name])
+            for name, part in parts.items()
+        }
+        try:
+            back = read(encode(encode.holder_type.from_dict(held))).to_dict()
+        except rj.EncodeError:
+            continue
+        assert_law(found.messages, values, back)
+    for _ in range(5):
+        held = {name: data.draw(part.holders) for name, part in parts.items()}
+        try:
+            message = encode(encode.holder_type.from_dict(held))
+            back = decode(message).to_dict()
+        except (rj.EncodeError, rj.DecodeError):
+            continue
+        assert_law(found.holders, held, back)
+
+
+@pytest.mark.parametrize("units", UNITS)
+@settings(max_examples=10, deadline=None)
+@given(values=st.lists(DOUBLES, min_size=1, max_size=10))
+def test_units_come_back_as_their_law_says(units, values):
+    texts = {
+        "w.bottle-schema": f'"w" (("x" :double (:unit :{units[0]})))',
+        "h.bottle-schema": f'"h" (("x" :double (:unit :{units[1]})))',
+        "m.mapping": 'import "w.bottle-schema"\nimport "h.bottle-schema"\ndata-holder: h\nwire-schema: w\nrules:\n  .x <-> .x\n',
+    }
+    options: dict[str, Any] = {"schema": texts, "encoding": "yarp3", "backend": "python"}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    read = rj.Decoder.of("w", **{**options, "imports": ["w.bottle-schema"]})
+    write = rj.Encoder.of("w", **{**options, "imports": ["w.bottle-schema"]})
+    found = decode.mapping.laws
+    assert (found.messages.kind, found.holders.kind) == ("rounded", "rounded")
+    for value in values:
+        held = decode(write(write.holder_type.from_dict({"x": value}))).x
+        assert held == pytest.approx(value * UNITS[units], rel=1e-15)
+        assert_law(found.messages, {"x": value}, read(encode(encode.holder_type.from_dict({"x": held}))).to_dict())
