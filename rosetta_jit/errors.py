@@ -33,6 +33,7 @@ Kind = Literal[
     "range",  # a value that its target cannot hold
     "index",  # a mapping reads or writes an element that is not there
     "missing",  # a required field did not come
+    "image",  # a compressed image that is none, or pixels that cannot be compressed
     "rejected",  # the mapping refuses the message
 ]
 

@@ -6,7 +6,7 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, get_args
@@ -16,7 +16,10 @@ from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
 from rosetta_jit.frontend.search import Reading, SearchPath
+from rosetta_jit.frontend.unit_file import SUFFIX
+from rosetta_jit.given import called_functions, check_compiled, check_given
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import Mapped, lower
@@ -26,10 +29,12 @@ from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.request import Backend, Request
     from rosetta_jit.wire.codec import Encoding
@@ -46,6 +51,7 @@ class Types:
     wire: Struct
     schema: Schema
     rules: tuple[Rule, ...] | None
+    functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
 
 
 @dataclass
@@ -61,7 +67,9 @@ class Build:
 
     @cached_property
     def types(self) -> Types:
-        return _mapped_types(self) if self.request.mapping is not None else _own_types(self)
+        types = _mapped_types(self) if self.request.mapping is not None else _own_types(self)
+        check_given(self.request, types.functions)
+        return types
 
     @cached_property
     def encoding(self) -> Encoding:
@@ -134,10 +142,18 @@ class Build:
         return self.request.backend or ("numba" if find_spec("numba") is not None else "llvm")
 
     @cached_property
+    def functions(self) -> tuple[UserFunction, ...]:
+        """The functions of the user's that the kernels call."""
+        return called_functions(self.request, self.types.functions, self.kernels)
+
+    @cached_property
     def text(self) -> str:
         """All that the code and its `header` depend on besides this process."""
         kernels = [to_text(kernel) for kernel in self.kernels]
-        return "\n".join([self.backend, self.entry, self.manners, json.dumps(self.header["type"], sort_keys=True), *kernels])
+        called = {function.name for function in self.functions}
+        digests = [f"{given.name} {given.digest}" for given in self.request.functions if given.name in called]
+        holder = json.dumps(self.header["type"], sort_keys=True)
+        return "\n".join([self.backend, self.entry, self.manners, holder, *kernels, *digests])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:
@@ -153,13 +169,16 @@ class Build:
             "manners": self.manners,
             "entry": self.entry,
             "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
+            "told": is_told(self.kernels),
+            "host": our_functions(self.kernels),
         }
 
     def image(self) -> bytes:
         """The object code."""
         from rosetta_jit.backends.link import compile_program
 
-        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba")
+        check_compiled(self.functions, self.types.functions)
+        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""
@@ -181,11 +200,11 @@ class Build:
             case "llvm":
                 from rosetta_jit.backends.link import llvm_text
 
-                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba")
+                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
             case "asm":
                 from rosetta_jit.backends.link import assembly
 
-                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba")
+                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
             case _:
                 raise ValueError(f"no stage `{stage}`; there are {', '.join(STAGES)}")
 
@@ -217,7 +236,7 @@ def _mapped_types(build: Build) -> Types:
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
-    return Types(checked.holder.root, checked.wire.root, _both(checked), rules)
+    return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions)
 
 
 def _both(checked: Checked) -> Schema:
@@ -264,7 +283,8 @@ def _imported(build: Build) -> Schema:
     """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
     request, readers = build.request, _readers(build.request)
     asked = request.type or ""
-    names = request.imports or tuple(build.files_given) or tuple(readers.guesses(asked))
+    given = tuple(name for name in build.files_given if not name.endswith(SUFFIX))
+    names = request.imports or given or tuple(readers.guesses(asked))
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}

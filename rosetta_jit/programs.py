@@ -10,16 +10,19 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
-from rosetta_jit.request import Request
+from rosetta_jit.request import GivenFunction, Request
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
 from rosetta_jit.runtime.callable import callable_class
+from rosetta_jit.runtime.function_digest import digest_of
 from rosetta_jit.runtime.holder import holder_class_of
+from rosetta_jit.runtime.host_table import fill
+from rosetta_jit.runtime.images import image_functions
 from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from rosetta_jit.pipeline import Build, Stage
     from rosetta_jit.request import Backend, ByteOrder, Direction
@@ -45,7 +48,8 @@ class _Made:
     def kernel(self) -> Any:
         """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
 
-        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.data_pointer`, and a holder's ``lanes_.state``.
+        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.data_pointer`, and a holder's ``lanes_.state``. What
+        `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping calls functions, or compresses images.
         """
         from rosetta_jit.backends.numba import typed
 
@@ -79,6 +83,8 @@ class Options(TypedDict, total=False):
         What to forgive, by name: ``rosetta-jit frameworks`` lists what each encoding can be asked for.
     borrow : bool
         Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
+    functions : mapping of str to callable
+        The functions that the mapping declares, by name: Python functions of numbers, or numba's. They are compiled into the kernel.
     backend : {"numba", "llvm", "python", "interpreter"}
         What runs the kernel; numba where it is installed, else LLVM.
     """
@@ -91,6 +97,7 @@ class Options(TypedDict, total=False):
     byte_order: ByteOrder | None
     lenient: Iterable[str]
     borrow: bool
+    functions: Mapping[str, Callable[..., Any]]
     backend: Backend | None
 
 
@@ -172,6 +179,7 @@ def _request(direction: Direction, options: Options, *, mapping: str | None = No
         borrow=options.get("borrow", False),
         byte_order=options.get("byte_order"),
         lenient=tuple(sorted(options.get("lenient", ()))),
+        functions=tuple(GivenFunction(name, digest_of(each), each) for name, each in sorted(options.get("functions", {}).items())),
         backend=options.get("backend"),
     )
 
@@ -252,7 +260,7 @@ def _shared(name: str, cache: Cache) -> Loaded:
 def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
     """A program from its object code."""
     holder_type = _holder_type(header)
-    library = native.load(image, SYMBOLS[header["entry"]])
+    library = _library(image, SYMBOLS[header["entry"]], header["host"])
     size = run.native_run(library["size"]) if header["entry"] == "encode" else None
     return Loaded(
         holder_type=holder_type,
@@ -262,7 +270,16 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         size_sites=_sites(header, 1),
         library=library,
         borrow=header["entry"] == "borrow",
+        told=header["told"],
     )
+
+
+def _library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> native.Library:
+    """The code, with the functions of ours that it calls."""
+    if not called:
+        return native.load(image, symbols)
+    functions = image_functions()
+    return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
 
 
 def _interpreted(build: Build) -> Loaded:
@@ -275,21 +292,27 @@ def _interpreted(build: Build) -> Loaded:
         size=kernels[1] if len(kernels) > 1 else None,
         size_sites=_sites(build.header, 1),
         borrow=build.request.borrow,
+        told=build.header["told"],
     )
 
 
 def _python_kernel(build: Build, number: int) -> run.Run:
+    from rosetta_jit.kernel.host import in_python
+
     kernel = build.kernels[number]
+    functions = {each.name: in_python(each) for each in build.functions}
+    if build.header["host"]:
+        functions |= image_functions()
     if build.request.backend == "python":
         from rosetta_jit.backends.python import compile_python
 
         with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
-            return run.python_run(compile_python(kernel))
+            return run.python_run(compile_python(kernel, functions))
     from functools import partial
 
     from rosetta_jit.kernel.interpret import run as interpret
 
-    return run.python_run(partial(interpret, kernel))
+    return run.python_run(partial(interpret, kernel, functions=functions))
 
 
 def _holder_type(header: Mapping[str, Any]) -> type[Holder]:

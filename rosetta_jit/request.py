@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import os
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
 Direction = Literal["decode", "encode"]
 ByteOrder = Literal["little", "big"]
 Backend = Literal["numba", "llvm", "python", "interpreter"]
+
+
+@dataclass(frozen=True, slots=True)
+class GivenFunction:
+    """A function of the user's own. The digest changes with whatever it computes."""
+
+    name: str
+    digest: str
+    function: Callable[..., Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +51,8 @@ class Request:
         None for the usual one, or for either, where messages say which it is.
     lenient
         What the encoding is asked to forgive, by name.
+    functions
+        Functions of the user's own that the mapping calls.
     backend
         What runs the kernels; None for numba where it is installed, else LLVM.
     """
@@ -58,8 +69,11 @@ class Request:
     borrow: bool = False
     byte_order: ByteOrder | None = None
     lenient: tuple[str, ...] = ()
+    functions: tuple[GivenFunction, ...] = ()
     backend: Backend | None = None
 
     def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
         """The request as plain data, with the surroundings that relative names depend on."""
-        return {**asdict(self), "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more
+        functions = [[each.name, each.digest] for each in self.functions]
+        plain = asdict(replace(self, functions=()))
+        return {**plain, "functions": functions, "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more

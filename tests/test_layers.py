@@ -16,7 +16,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 REPORTS = {"source", "errors", "diagnostics", "catalogue"}
 RUNTIME = {"model.types", "model.layout", "model.births", "model.serial", "kernel.state"}
 MIDDLE = REPORTS | {"model", "frontend", "wire", "kernel", "lowering"}
-ANYTHING = MIDDLE | {"backends", "frameworks", "runtime", "request", "pipeline", "programs", "recording", "cli", "demo", ""}
+ANYTHING = MIDDLE | {"backends", "frameworks", "runtime", "request", "given", "pipeline", "programs", "recording", "cli", "demo", ""}
 
 MAY_IMPORT = {
     "source": set(),
@@ -33,6 +33,7 @@ MAY_IMPORT = {
     "runtime": REPORTS | RUNTIME,
     "recording": REPORTS,
     "request": set(),
+    "given": MIDDLE | {"backends", "runtime.native", "request"},
     "pipeline": ANYTHING - {"programs", "cli", "demo", ""},
     "programs": ANYTHING - {"cli", "demo", ""},
     "demo": ANYTHING - {"cli"},

@@ -37,6 +37,7 @@ decode:
   %source = phi ptr [ %message.object, %bytes ], [ %memory, %viewed ]
   %start = phi ptr [ %data, %bytes ], [ %view.data, %viewed ]
   %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
+  call void @tell(ptr %context, ptr %state)
   %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
   %good = icmp sge i64 %result, 0
   %valid = zext i1 %good to i64
@@ -48,6 +49,7 @@ release:
 judge:
   br i1 %good, label %return, label %failed, !prof !0
 return:
+  call void @made(ptr %context)
   %cell.at = getelementptr ptr, ptr %context, i64 3
   %cell = load ptr, ptr %cell.at
   %holder.at = getelementptr ptr, ptr %context, i64 1

@@ -41,6 +41,7 @@ viewed:
 decode:
   %start = phi ptr [ %data, %bytes ], [ %view.data, %viewed ]
   %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
+  call void @tell(ptr %context, ptr %state)
   %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
   %good = icmp sge i64 %result, 0
   %valid = zext i1 %good to i64
@@ -52,6 +53,7 @@ release:
 judge:
   br i1 %good, label %return, label %failed, !prof !0
 return:
+  call void @made(ptr %context)
   call void @Py_IncRef(ptr %holder)
   ret ptr %holder
 failed:

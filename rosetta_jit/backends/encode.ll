@@ -19,6 +19,7 @@ check:
   br i1 %valid, label %choose, label %slow, !prof !0
 choose:
   ; also where the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
+  call void @tell(ptr %context, ptr %state)
   %size = call i64 @prepare(ptr %state, i64 0)
   %measured = icmp sge i64 %size, 0
   br i1 %measured, label %measure, label %failed, !prof !0
@@ -34,6 +35,7 @@ write:
   %exact = icmp eq i64 %written, %size
   br i1 %exact, label %return, label %drop, !prof !0
 return:
+  call void @made(ptr %context)
   ret ptr %bytes
 drop:
   call void @Py_DecRef(ptr %bytes)
@@ -68,6 +70,7 @@ fill:
   %filled = icmp sge i64 %end, 0
   br i1 %filled, label %position, label %failed, !prof !0
 position:
+  call void @made(ptr %context)
   %end.object = call ptr @PyLong_FromSsize_t(i64 %end)
   ret ptr %end.object
 beyond:

@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Literal
 from llvmlite import binding, ir
 
 from rosetta_jit.backends import llvm
-from rosetta_jit.kernel.shape import is_large
+from rosetta_jit.backends.host_table import TABLE, table_text
+from rosetta_jit.kernel.shape import calls_to_host, is_large, is_told, our_functions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel
 
 EntryName = Literal["decode", "borrow", "encode"]
@@ -39,7 +41,7 @@ FUNCTIONS = ("kernel", "size")
 """The names of a program's kernels: what decodes or encodes, and, to encode, what measures."""
 
 
-def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool) -> bytes:
+def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
     """Object code (position-independent, for this machine's CPU).
 
     Parameters
@@ -48,20 +50,22 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: 
         Verified kernels: one, or to encode the encoder and its size kernel.
     with_numba
         Whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more. The code does the same.
+    functions
+        Those of the user's that the kernels call; they need numba.
     """
     machine = target_machine()
-    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba))
+    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
 
 
-def llvm_text(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool) -> str:
+def llvm_text(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> str:
     """The optimised LLVM module as text."""
-    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba))
+    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba, functions=functions))
 
 
-def assembly(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool) -> str:
+def assembly(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> str:
     """The machine code as assembler text."""
     machine = target_machine()
-    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba))
+    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
 
 
 def target_machine() -> binding.TargetMachine:
@@ -73,14 +77,28 @@ def target_machine() -> binding.TargetMachine:
     return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=3, reloc="pic", codemodel="small")
 
 
-def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, *, with_numba: bool) -> binding.ModuleRef:
+def optimised(
+    kernels: Sequence[Kernel],
+    entry: EntryName,
+    machine: binding.TargetMachine,
+    *,
+    with_numba: bool,
+    functions: Sequence[UserFunction] = (),
+) -> binding.ModuleRef:
     """The program's module after one run of LLVM's O3."""
-    typed = with_numba and not is_large(kernels[0])
+    typed = with_numba and not is_large(kernels[0]) and not calls_to_host(kernels)
     module = _typed(kernels[0]) if typed else _emitted(kernels[0], FUNCTIONS[0])
     for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False):
         module.link_in(_emitted(kernel, name))
-    module.link_in(binding.parse_assembly("\n".join(map(_template, TEMPLATES[entry]))))
-    _make_private(module, SYMBOLS[entry])
+    for function in functions:
+        from rosetta_jit.backends.functions import compile_function
+
+        module.link_in(compile_function(function))
+    if our_functions(kernels):
+        module.link_in(binding.parse_assembly(table_text(kernels)))
+    templates = (*TEMPLATES[entry], "told.ll" if is_told(kernels) else "untold.ll")
+    module.link_in(binding.parse_assembly("\n".join(map(_template, templates))))
+    _make_private(module, (*SYMBOLS[entry], TABLE))
     options = binding.create_pipeline_tuning_options(speed_level=3)
     options.loop_vectorization, options.slp_vectorization = True, True
     passes = binding.create_pass_builder(machine, options)

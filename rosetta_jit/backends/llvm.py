@@ -17,7 +17,7 @@ from rosetta_jit.backends import llvm_stmt
 from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm_expr import expression
 from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
-from rosetta_jit.kernel.ir import GROW, Block, Call, Expect, Kernel, Require
+from rosetta_jit.kernel.ir import GROW, Block, Call, Expect, HostCall, Kernel, Require
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
     ERROR_OFFSET,
@@ -200,7 +200,7 @@ def _index_count(body: Block) -> int:
 
 def _indices(statement: Stmt) -> Sequence[Expr]:
     match statement:
-        case Require(_, _, failure) | Expect(_, failure):
+        case Require(_, _, failure) | Expect(_, failure) | HostCall(_, _, _, failure):
             return failure.indices
         case Call():
             return statement.indices

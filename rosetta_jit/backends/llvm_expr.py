@@ -36,6 +36,7 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -68,6 +69,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return frame.builder.load(frame.used_slot(lane), typ=I64)
         case Capacity(lane):
             return frame.capacity(lane)
+        case Told(what):
+            return frame.told(what)
         case Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
         case Binary(op, left, right):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, USED, lane_word
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, USED, lane_word
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -124,6 +124,12 @@ class Frame:
     def capacity(self, lane: int) -> ir.Value:
         """How many rows the lane has room for."""
         return self._word(lane, CAPACITY, I64, f"capacity{lane}")
+
+    def told(self, what: str) -> ir.Value:
+        """What the host tells of the message; messages of one call are numbered by their rows."""
+        word = NOW if what == "now" else NUMBER
+        value = self.builder.load(state_word(self.builder, self.parameters.state, word), typ=I64, align=8, name=what)
+        return value if what == "now" else self.builder.add(value, self.parameters.row)
 
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length; each body starts with what the state says, and decoding into row 0 with nothing."""

@@ -14,6 +14,7 @@ from rosetta_jit.backends.llvm_expr import (
     copy_memory,
     expression,
     fill_memory,
+    load,
     place_alignment,
     place_pointer,
     pointer,
@@ -21,6 +22,7 @@ from rosetta_jit.backends.llvm_expr import (
     wire_pointer,
 )
 from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, constant, state_word
+from rosetta_jit.backends.llvm_host import host_called
 from rosetta_jit.kernel.ir import (
     BEGIN,
     GROW,
@@ -36,6 +38,7 @@ from rosetta_jit.kernel.ir import (
     Failure,
     Fill,
     For,
+    HostCall,
     If,
     Let,
     Require,
@@ -97,6 +100,8 @@ def _statement(frame: Frame, statement: Stmt) -> None:
             frame.done.enter(frame.builder, [expression(frame, position)])
         case Call():
             _call(frame, statement)
+        case HostCall():
+            _host_call(frame, statement)
         case _:
             assert_never(statement)
 
@@ -162,6 +167,14 @@ def _call(frame: Frame, call: Call) -> None:
     builder.position_at_end(good)
     for position, result in enumerate(call.results, 1):
         frame.locals[result.name] = builder.extract_value(outcome, position)
+
+
+def _host_call(frame: Frame, call: HostCall) -> None:
+    status, result = host_called(frame, call)
+    good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
+    _fail(frame, constant(call.failure.site), expression(frame, call.failure.at), call.failure.indices)
+    frame.builder.position_at_end(good)
+    frame.locals[call.result.name] = load(frame, result, call.result.type, alignment=1)
 
 
 def _site(builder: ir.IRBuilder, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:

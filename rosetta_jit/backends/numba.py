@@ -29,6 +29,7 @@ from numba.extending import intrinsic
 
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.llvm_frame import POINTER
+from rosetta_jit.kernel.shape import calls_to_host
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +50,14 @@ def typed(kernel: Kernel) -> Dispatcher:
     """The kernel as ``int64(uint8*, intp begin, intp end, int64*, intp row)``.
 
     It is callable in compiled code only. The caller answers for the pointers: a buffer of at least ``end`` bytes, a holder's state.
+
+    Raises
+    ------
+    ValueError
+        The kernel calls functions of its host, with which only a program links it.
     """
+    if calls_to_host([kernel]):
+        raise ValueError("a kernel that calls functions, or compresses images, cannot be called from one's own compiled code")
     body = _body(kernel)
 
     def kernel_function(buffer: int, begin: int, end: int, state: int, row: int) -> int:

@@ -1,6 +1,7 @@
 ; What all entries share. The entries' own files follow this one in one module.
 ;
-; The context is an array of pointers: 0 state, 1 holder, 2 slow path, 3 source cell, 4 the holder's type (`runtime.callable.Context`).
+; The context is an array of pointers: 0 state, 1 holder, 2 slow path, 3 source cell, 4 the holder's type (`runtime.callable.Context`),
+; and 5 the number of messages made. What the host tells of a message is in `told.ll`, or `untold.ll` where no kernel asks.
 ; The slow path is a Python callable for whatever is not the common case. It gets the same arguments, finds the kernel's result in word 9 of
 ; the state (`kernel.state.RESULT`) if the kernel has failed, and raises, or makes room and runs the kernel again.
 ;

@@ -8,10 +8,11 @@ It takes and returns what `kernel.interpret.run` does. Each attempt is a functio
 from __future__ import annotations
 
 import keyword
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, assert_never
 
-from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
+from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, statements
 from rosetta_jit.backends.python_expr import FLOATS, FORMATS, Names, expression, location, part
+from rosetta_jit.kernel.host import NO_FUNCTIONS
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -26,6 +27,7 @@ from rosetta_jit.kernel.ir import (
     Failure,
     Fill,
     For,
+    HostCall,
     If,
     Kernel,
     Let,
@@ -45,11 +47,13 @@ from rosetta_jit.kernel.ir import (
     Wire,
     type_of,
 )
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.shape import expressions_of, extents_of, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+
+    from rosetta_jit.kernel.host import Functions
 
 IMPORTS = (
     "from struct import pack_into, unpack_from",
@@ -60,19 +64,22 @@ IMPORTS = (
     "from rosetta_jit.kernel.arithmetic import binary, convert, fits, from_bytes, to_bytes, unary, wrapped",
 )
 OF_DECIMALS = "from rosetta_jit.kernel.decimals import digits, nearest, scale"
-CALLED = frozenset(name.strip(",") for line in (*IMPORTS, OF_DECIMALS) for name in line.partition(" import ")[2].split())
+HOST_IMPORTS = ("from rosetta_jit.kernel.host import RefusedError",)
+"""Of a kernel that calls functions of its host."""
+
+CALLED = frozenset(name.strip(",") for line in (*IMPORTS, OF_DECIMALS, *HOST_IMPORTS) for name in line.partition(" import ")[2].split())
 PARAMETERS = "buffer, begin, end, state, lanes, row"
 
 
-def compile_python(kernel: Kernel) -> Callable[..., int]:
-    """The kernel as a Python function.
+def compile_python(kernel: Kernel, functions: Functions = NO_FUNCTIONS) -> Callable[..., int]:
+    """The kernel as a Python function, which calls those of the host.
 
     Raises
     ------
     SyntaxError
         If blocks nest deeper than Python allows: 20 loops, 100 levels of indentation.
     """
-    scope: dict[str, Callable[..., int]] = {}
+    scope: dict[str, Any] = {"host": functions}
     exec(compile(python_text(kernel), f"<kernel {kernel.name!a}>", "exec"), scope)  # noqa: S102 - our own text, of mangled names and numbers
     return scope["kernel"]
 
@@ -81,7 +88,8 @@ def python_text(kernel: Kernel) -> str:
     """The kernel as the source of a Python module, the same for the same kernel."""
     writer = Writer()
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
-    for line in (*IMPORTS, *([OF_DECIMALS] if _has_decimals(kernel) else [])):
+    calls_host = any(isinstance(stmt, HostCall) for body in kernel.bodies for stmt in statements(body))
+    for line in (*IMPORTS, *([OF_DECIMALS] if _has_decimals(kernel) else []), *(HOST_IMPORTS if calls_host else ())):
         writer.line(line)
     for routine in kernel.routines:
         writer.line()
@@ -104,7 +112,7 @@ def python_text(kernel: Kernel) -> str:
 def _has_decimals(kernel: Kernel) -> bool:
     """Whether a kernel reads or writes floats in decimal."""
     blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
-    expressions = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
+    expressions = (expr for block in blocks for stmt in statements(block) for expr in expressions_of(stmt))
     return any(isinstance(part, Nearest | Digits | Scale) for expr in expressions for part, _ in subexpressions(expr))
 
 
@@ -112,7 +120,7 @@ def _reserved(kernel: Kernel) -> frozenset[str]:
     lanes = range(len(kernel.strides))
     words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
     functions = {_function(routine.name) for routine in kernel.routines}
-    names = {"bool", "bytes", "indices", "int", "len", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
+    names = {"bool", "bytes", "host", "indices", "int", "len", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
     return frozenset(keyword.kwlist) | CALLED | words | functions | names
 
 
@@ -179,6 +187,8 @@ class _Attempt:
                 self._nested(statement)
             case Call():
                 self._call(statement)
+            case HostCall():
+                self._host_call(statement)
             case _:
                 assert_never(statement)
 
@@ -189,6 +199,15 @@ class _Attempt:
         sites = _items(map(self._site, call.sites))
         reported = f"({sites}), {self._indices(call.indices)}"
         self.writer.line(f"{bound} = {_function(call.routine)}(buffer, begin, end, state, lanes, {reported}{given})")
+
+    def _host_call(self, call: HostCall) -> None:
+        spans = (part(self.names, extent.address, self._text(extent.size)) for extent in extents_of(call))
+        given = ", ".join((*map(self._text, call.arguments), *spans))
+        bound = self.names.locals.identifier(call.result.name)
+        with self.writer.indented("try:"):
+            self.writer.line(f'{bound} = host["{call.function}"]({given})')
+        with self.writer.indented("except RefusedError:"):
+            self._fail(call.failure, " from None")
 
     def _nested(self, statement: For | While | If | Switch) -> None:
         match statement:
@@ -214,8 +233,11 @@ class _Attempt:
 
     def _fail_unless(self, condition: str, failure: Failure) -> None:
         with self.writer.indented(f"if not {condition}:"):
-            reported = f"{self._site(failure.site)}, {self._text(failure.at)}, {self._indices(failure.indices)}"
-            self.writer.line(f"raise Failed({reported})  # {ascii(self._about(failure.site))[1:-1]}")
+            self._fail(failure)
+
+    def _fail(self, failure: Failure, cause: str = "") -> None:
+        reported = f"{self._site(failure.site)}, {self._text(failure.at)}, {self._indices(failure.indices)}"
+        self.writer.line(f"raise Failed({reported}){cause}  # {ascii(self._about(failure.site))[1:-1]}")
 
     def _site(self, number: int) -> str:
         return str(number)

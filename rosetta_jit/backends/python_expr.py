@@ -30,11 +30,13 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Scale,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
     type_of,
 )
+from rosetta_jit.kernel.state import NOW, NUMBER
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.base import Namespace
@@ -44,6 +46,7 @@ FORMATS = {"bool": "?", "i8": "b", "u8": "B", "i16": "h", "u16": "H", "i32": "i"
 
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+TOLD = {"now": f"int(state[{NOW}])", "number": f"(int(state[{NUMBER}]) + row)"}
 FLOATS = frozenset({"f32", "f64"})
 
 
@@ -80,6 +83,8 @@ def expression(names: Names, expr: Expr) -> str:
             return names.used_name(lane)
         case Capacity(lane):
             return names.capacity_name(lane)
+        case Told(what):
+            return TOLD[what]
         case Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
         case Unary(function, operand):
@@ -95,16 +100,17 @@ def expression(names: Names, expr: Expr) -> str:
             return _convert(type_, type_of(operand), expression(names, operand))
         case Select(condition, then, otherwise):
             return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
-        case IsText(address, size):
-            return f"is_text({part(names, address, expression(names, size))})"
-        case Nearest() | Digits() | Scale():
-            return _decimal(names, expr)
+        case IsText() | Nearest() | Digits() | Scale():
+            return _text(names, expr)
         case _:
             assert_never(expr)
 
 
-def _decimal(names: Names, expr: Nearest | Digits | Scale) -> str:
+def _text(names: Names, expr: IsText | Nearest | Digits | Scale) -> str:
+    """What is asked of a text, or of the text of a number."""
     match expr:
+        case IsText(address, size):
+            return f"is_text({part(names, address, expression(names, size))})"
         case Nearest(address, size, exponent):
             return f"nearest({part(names, address, expression(names, size))}, {expression(names, exponent)})"
         case Digits(value, places):

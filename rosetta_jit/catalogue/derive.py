@@ -23,6 +23,12 @@ def no_inverse(span: Span | None, why: str, rule: Span | None) -> Diagnostic:
     return error("no-inverse", f"this cannot be turned round to pack: {why}", span or rule, "has no inverse", notes=notes, help_=help_)
 
 
+def changes(span: Span | None, function: str) -> Diagnostic:
+    """A relation to what is another value each time."""
+    message = f"`{function}()` is another one when the message is packed, so that no relation can hold"
+    return error("no-inverse", message, span, "changes", help_="write it in `unpack-rules:`, or in `pack-rules:`")
+
+
 def several_fields(span: Span | None) -> Diagnostic:
     """A relation among more fields of the wire than one, some of which nothing else sets."""
     help_ = "relate each field of the wire to the holder by a rule of its own"

@@ -66,7 +66,7 @@ def _hint(found: str, kind: str, expected: frozenset[str]) -> str:
     if kind == "$END" and "END" in expected:
         return "every `for` needs an `end`"
     if "IMPORT" in expected and "FOR" not in expected:
-        return "statements are `import`, `data-holder:`, `wire-schema:`, `rules:`, `unpack-rules:` and `pack-rules:`"
+        return "statements are `import`, `function`, `data-holder:`, `wire-schema:`, `rules:`, `unpack-rules:` and `pack-rules:`"
     return ""
 
 

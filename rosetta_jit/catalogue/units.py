@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
+ANGLES = ("degree", "degrees", "deg", "radian", "radians", "rad")
+
+
 def incompatible(span: Span | None, source: str, target: str) -> Diagnostic:
     """Metres where seconds are meant."""
     message = f"{shorten(source)} cannot become {shorten(target)}: they measure different things"
@@ -20,7 +23,36 @@ def incompatible(span: Span | None, source: str, target: str) -> Diagnostic:
 def wrong_way(span: Span | None, function: str, found: str, wanted: str) -> Diagnostic:
     """A conversion of what is no angle, or one already."""
     message = f"`{function}` takes {wanted}s, and this is in {shorten(found)}"
-    return error("unit", message, span, help_=f"write `{'degrees' if function == 'radians' else 'radians'}(...)`, or nothing at all")
+    other = "degrees" if function == "radians" else "radians"
+    return error("unit", message, span, help_=f"write `{other}(...)`, or nothing at all" if found in ANGLES else "")
+
+
+def disagree(span: Span | None, what: str, first: str, second: str, factors: tuple[float, float] | None) -> Diagnostic:
+    """A sum, a comparison or a choice of values in different units."""
+    message = f"{what} has one value in {shorten(first)} and one in {shorten(second)}"
+    help_ = "they measure different things"
+    if factors is not None:
+        factor, offset = factors
+        help_ = f"write `x * {factor!r}{f' + {offset!r}' if offset else ''}` to have the second in {shorten(first)}"
+    return error("unit", message, span, help_=help_)
+
+
+def offset(span: Span | None, source: str, target: str) -> Diagnostic:
+    """A difference of temperatures, which is not converted as a temperature is."""
+    message = f"the sum or difference of values in {shorten(source)} has no place on the scale of {shorten(target)}"
+    return error("unit", message, span, help_="assign what is meant in its own unit first, or multiply by the factor alone")
+
+
+def mixed(span: Span | None, source: str, target: str) -> Diagnostic:
+    """A rule for any of several elements whose units differ."""
+    message = f"the units of these elements differ: from {source} to {target}"
+    return error("unit", message, span, help_="write a rule for each element, with its number, or assign the whole array")
+
+
+def too_much_within(span: Span | None, found: str) -> Diagnostic:
+    """A whole value too large to look at all its parts."""
+    message = f"the units differ, and there is too much within {shorten(found)} to convert it as a whole"
+    return error("unit", message, span, help_="assign its fields one by one")
 
 
 def no_float(span: Span | None, found: str) -> Diagnostic:

@@ -6,7 +6,7 @@ Each framework offers one for every suffix of its IDL. It resolves imports throu
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from rosetta_jit.model.types import Schema
@@ -25,6 +25,10 @@ class FrontEnds(Protocol):
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Of all files that are read."""
+        ...
+
+    def guesses(self, type_: str) -> Iterable[str]:
+        """The files in which a type of that name is likely declared."""
         ...
 
     def find(self, file: str) -> FrontEnd | None:

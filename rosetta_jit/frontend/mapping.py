@@ -18,7 +18,7 @@ from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
-from rosetta_jit.model.mapping import Import, Mapping
+from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class _Tokens(PostLex):
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = ("IMPORT", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
 
@@ -125,6 +125,7 @@ class _Reader:
             self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
             holder_span,
             wire_span,
+            tuple(self._function(child) for child in statements if child.data == "function"),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
@@ -144,6 +145,11 @@ class _Reader:
     def _import(self, tree: Tree[Token]) -> Import:
         token = _token(tree)
         return Import(read_string(token, self.source, self.problems), self._token_span(token))
+
+    def _function(self, tree: Tree[Token]) -> Function:
+        name, *types = (child for child in tree.children if isinstance(child, Token) and child.type == "NAME")
+        *parameters, result = (TypeName(str(token), self._token_span(token)) for token in types)
+        return Function(str(name), tuple(parameters), result, self._span(tree))
 
     def _type_name(self, statements: list[Tree[Token]], rule: str, keyword: str) -> tuple[str, Span | None]:
         found = self._only(statements, rule, keyword)

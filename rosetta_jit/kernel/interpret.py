@@ -9,6 +9,7 @@ import numpy as np
 
 from rosetta_jit.kernel import arithmetic, decimals
 from rosetta_jit.kernel.arithmetic import demand
+from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,
@@ -29,6 +30,7 @@ from rosetta_jit.kernel.ir import (
     Fits,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
@@ -44,6 +46,7 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
+    Told,
     Unary,
     Used,
     Var,
@@ -51,12 +54,14 @@ from rosetta_jit.kernel.ir import (
     Wire,
     type_of,
 )
-from rosetta_jit.kernel.state import CAPACITY, ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, USED, lane_word
+from rosetta_jit.kernel.shape import extents_of
+from rosetta_jit.kernel.state import CAPACITY, ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, NOW, NUMBER, USED, lane_word
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rosetta_jit.kernel.arithmetic import Value
+    from rosetta_jit.kernel.host import Functions
     from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Routine, Stmt
 
     Memory = bytes | bytearray | memoryview
@@ -94,10 +99,22 @@ class _Machine:
     capacities: list[int]
     used: list[int]
     routines: Mapping[str, Routine]
+    told: Mapping[str, int]
+    functions: Functions
     locals: dict[str, Value]
 
 
-def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lanes: Sequence[Memory], row: int) -> int:
+def run(
+    kernel: Kernel,
+    buffer: Memory,
+    begin: int,
+    end: int,
+    state: State,
+    lanes: Sequence[Memory],
+    row: int,
+    *,
+    functions: Functions = NO_FUNCTIONS,
+) -> int:
     """Run a kernel.
 
     Parameters
@@ -114,6 +131,8 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
         The bytes of each lane (anything with a buffer; of an array its ``data``); of hidden ones as many as there are.
     row
         Row of lane 0 that stands for the message.
+    functions
+        Those of the host.
 
     Returns
     -------
@@ -133,10 +152,11 @@ def run(kernel: Kernel, buffer: Memory, begin: int, end: int, state: State, lane
     starts_empty = kernel.direction == "decode" and row == 0
     used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
     routines = {routine.name: routine for routine in kernel.routines}
+    told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
     worst: _Failed | None = None
     for body in kernel.bodies:
         parameters: dict[str, Value] = {"begin": begin, "end": end, "row": row}
-        machine = _Machine(kernel.strides, message, views, capacities, list(used), routines, parameters)
+        machine = _Machine(kernel.strides, message, views, capacities, list(used), routines, told, functions, parameters)
         with np.errstate(all="ignore"):
             outcome = _block(machine, body)
         match outcome:
@@ -202,6 +222,8 @@ def _statement(machine: _Machine, stmt: Stmt) -> _Outcome:
             return _nested(machine, stmt)
         case Call():
             return _call(machine, stmt)
+        case HostCall():
+            return _host_call(machine, stmt)
         case _:
             assert_never(stmt)
 
@@ -219,6 +241,18 @@ def _call(machine: _Machine, call: Call) -> _Outcome:
     for local, result in zip(call.results, routine.results, strict=True):
         machine.locals[local.name] = inner.locals[result.name]
     return outcome
+
+
+def _host_call(machine: _Machine, call: HostCall) -> _Failed | None:
+    given = [_value(machine, argument) for argument in call.arguments]
+    extents = [_bytes(machine, each.address, _integer(machine, each.size)) for each in extents_of(call)]
+    read = extents[: len(call.inputs)]
+    try:
+        found = machine.functions[call.function](*given, *(part.toreadonly() for part in read), *extents[len(call.inputs) :])
+    except RefusedError:
+        return _failed(machine, call.failure)
+    machine.locals[call.result.name] = found
+    return None
 
 
 def _effect(machine: _Machine, stmt: Store | SetField | Copy | Fill) -> None:
@@ -295,6 +329,8 @@ def _value(machine: _Machine, expr: Expr) -> Value:
             return machine.used[lane]
         case Capacity(lane):
             return machine.capacities[lane]
+        case Told(what):
+            return machine.told[what]
         case Unary(function, operand):
             return arithmetic.unary(type_of(operand), function, _value(machine, operand))
         case Binary(op, left, right):

@@ -8,9 +8,9 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
            | For(variable, count, Stmt*) | While(condition, Stmt*, invariant, measure)
            | If(condition, Stmt*, Stmt*)
            | Switch(value, {int: Stmt*}, Stmt*) | Return(position)
-           | Call(routine, arguments, results)
+           | Call(routine, arguments, results) | HostCall(function, arguments, inputs, target, result)
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
-    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane)
+    Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
            | Unary | Binary | Compare | Fits | Convert | Select
            | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value)
     Place  = lane, row, offset                            a typed field of a row of a lane
@@ -31,9 +31,15 @@ space.
 until the end of the block that binds it.
 
 **Routines** are statements that many places share. A routine sees `begin`, `end` and its parameters; its results are locals of its
-body, read at the end of it. It holds no Return, Reserve, Advance or Used, and calls only routines before it. Calling it demands what
-it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of the caller fails, at
-the site that the call names for the routine's own, and with the call's indices.
+body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used or Told, and calls only routines before it. Calling
+it demands what it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of the
+caller fails, at the site that the call names for the routine's own, and with the call's indices.
+
+**The host** is what the kernel runs in. It tells two things that are the same wherever they are asked for a message: `now`, the time
+in ns since 1970, and `number`, how many messages its program made before. And it has functions by name: a HostCall runs one on
+numbers and on bytes, which it only reads, lets it fill the bytes of ``target``, and binds what it gives, of which nothing is known. A
+function that refuses fails the statement. It may run again for the same message, or for one that fails. A dot in its name says that
+it is ours (`image.size`), no dot that it is the user's.
 
 **Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the
 width: these are obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an
@@ -52,11 +58,11 @@ stride multiples of the width. Copy, Fill and IsText may run on from a place int
 Advance take a count that is proven >= 0. A Failure is evaluated on the failing path only, under the same obligations.
 Expressions nest at most 100 deep, blocks 100.
 
-**Failing.** Require, Expect, Reserve and what a Call runs are the only statements that can fail. A failing Require or Expect ends the
-body: the next body starts afresh, with used lengths as they were at the start; after the last one the kernel returns `-(1 + site)` of that
-failure, among those of all bodies, whose offset is greatest (the earliest of equals), and leaves its offset and indices in the
-holder's state. A failing Reserve returns -1 at once, having left lane and missing rows there: the runtime grows the lane and
-calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
+**Failing.** Require, Expect, HostCall, Reserve and what a Call runs are the only statements that can fail. A failing Require, Expect or
+HostCall ends the body: the next body starts afresh, with used lengths as they were at the start; after the last one the kernel returns
+`-(1 + site)` of that failure, among those of all bodies, whose offset is greatest (the earliest of equals), and leaves its offset and
+indices in the holder's state. A failing Reserve returns -1 at once, having left lane and missing rows there: the runtime grows the lane
+and calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
 
 **Used lengths** at the start are those of the holder's state, but a decode into row 0 starts with every used length 0: the message
 replaces what the holder held. Later rows of a batch are added to the rows before.
@@ -146,6 +152,13 @@ class Capacity:
     """How many rows a lane has room for (i64)."""
 
     lane: int
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What the host tells of this message (i64)."""
+
+    what: Literal["now", "number"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +254,7 @@ class Scale:
 
 
 Decimal = Nearest | Digits | Scale
-Expr = Const | Local | Load | Get | Used | Capacity | Unary | Binary | Compare | Fits | Convert | Select | IsText | Decimal
+Expr = Const | Local | Load | Get | Used | Capacity | Told | Unary | Binary | Compare | Fits | Convert | Select | IsText | Decimal
 
 # --- statements --------------------------------------------------------------------------------------------------------
 
@@ -388,9 +401,29 @@ class Call:
     indices: tuple[Expr, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """``size >= 0`` bytes from an address."""
+
+    address: Address
+    size: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class HostCall:
+    """Run a function of the host and bind its result."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    result: Local
+    failure: Failure
+    inputs: tuple[Extent, ...] = ()
+    target: Extent | None = None
+
+
 Effect = Store | SetField | Copy | Fill
 Nest = For | While | If | Switch
-Stmt = Require | Expect | Let | Var | Assign | Effect | Reserve | Advance | Nest | Return | Call
+Stmt = Require | Expect | Let | Var | Assign | Effect | Reserve | Advance | Nest | Return | Call | HostCall
 Block = tuple[Stmt, ...]
 
 # --- the whole ---------------------------------------------------------------------------------------------------------
@@ -503,7 +536,7 @@ def type_of(expr: Expr) -> Scalar:
     match expr:
         case Const(type_, _) | Local(type_, _) | Load(type_, _, _) | Get(type_, _) | Convert(type_, _):
             return type_
-        case Used() | Capacity():
+        case Used() | Capacity() | Told():
             return "i64"
         case Unary(_, operand):
             return type_of(operand)

@@ -23,6 +23,7 @@ from rosetta_jit.kernel.ir import (
     Fits,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
@@ -38,6 +39,7 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
+    Told,
     Unary,
     Used,
     Var,
@@ -48,7 +50,7 @@ from rosetta_jit.kernel.ir import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Part, Routine, Site, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Failure, Kernel, Part, Routine, Site, Stmt
 
 SYMBOL = {
     "add": "+",
@@ -121,6 +123,8 @@ def expression_text(expr: Expr) -> str:
             return f"used({lane})"
         case Capacity(lane):
             return f"capacity({lane})"
+        case Told(what):
+            return what
         case Unary(function, operand):
             return f"{function}({expression_text(operand)})"
         case Binary(op, left, right) | Compare(op, left, right):
@@ -182,6 +186,10 @@ def _statement(stmt: Stmt, depth: int) -> Iterator[str]:
             given = ", ".join(map(expression_text, arguments))
             within = "".join(f"[{expression_text(i)}]" for i in indices)
             yield f"let {bound} = call {_name(routine)}({given}) else {list(sites)}{within}"
+        case HostCall(function, arguments, result, failure, inputs, target):
+            given = ", ".join((*map(expression_text, arguments), *map(_extent, inputs)))
+            filled = "" if target is None else f" into {_extent(target)}"
+            yield f"let {expression_text(result)} = host {_name(function)}({given}){filled}{_failure(failure)}"
         case For() | While() | If() | Switch():
             yield from _nested(stmt, depth)
         case _:
@@ -245,6 +253,10 @@ def _address(address: Address) -> str:
             return f"[{expression_text(at)}]"
         case _:
             assert_never(address)
+
+
+def _extent(extent: Extent) -> str:
+    return f"{_address(extent.address)} {expression_text(extent.size)}"
 
 
 def _site(number: int, site: Site) -> Iterator[str]:

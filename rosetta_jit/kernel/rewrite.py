@@ -18,11 +18,13 @@ from rosetta_jit.kernel.ir import (
     Copy,
     Digits,
     Expect,
+    Extent,
     Failure,
     Fill,
     Fits,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
@@ -38,6 +40,7 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
+    Told,
     Unary,
     Used,
     Var,
@@ -57,7 +60,7 @@ NO_NAMES: Mapping[str, str] = MappingProxyType({})
 def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
     """An expression with each of its operands changed."""
     match expr:
-        case Const() | Local() | Used() | Capacity():
+        case Const() | Local() | Used() | Capacity() | Told():
             return expr
         case Load(type_, at, order):
             return Load(type_, change(at), order)
@@ -118,6 +121,10 @@ def with_expressions(stmt: Stmt, change: Callable[[Expr], Expr]) -> Stmt:
             return Return(change(position))
         case Call():
             return replace(stmt, arguments=tuple(map(change, stmt.arguments)), indices=tuple(map(change, stmt.indices)))
+        case HostCall(function, arguments, result, failure, inputs, target):
+            read = tuple(_extent(extent, change) for extent in inputs)
+            written = None if target is None else _extent(target, change)
+            return HostCall(function, tuple(map(change, arguments)), result, _failure(failure, change), read, written)
         case _:
             assert_never(stmt)
 
@@ -182,6 +189,10 @@ def may_return(block: Block) -> bool:
 
 def _failure(failure: Failure, change: Callable[[Expr], Expr]) -> Failure:
     return Failure(failure.site, change(failure.at), tuple(map(change, failure.indices)))
+
+
+def _extent(extent: Extent, change: Callable[[Expr], Expr]) -> Extent:
+    return Extent(_address(extent.address, change), change(extent.size))
 
 
 def _place(place: Place, change: Callable[[Expr], Expr]) -> Place:

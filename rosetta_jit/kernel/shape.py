@@ -23,6 +23,7 @@ from rosetta_jit.kernel.ir import (
     Fits,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
@@ -38,6 +39,7 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Switch,
+    Told,
     Unary,
     Used,
     Var,
@@ -49,7 +51,7 @@ from rosetta_jit.kernel.state import MAX_INDICES
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Routine, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Kernel, Routine, Stmt
 
 MAX_BLOCKS = 100
 MAX_EXPRESSION = 100
@@ -115,6 +117,9 @@ def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
             return (position,)
         case Call(_, arguments, _, _, indices):
             return (*arguments, *indices)
+        case HostCall(_, arguments, _, failure):
+            spans = (part for extent in extents_of(stmt) for part in (_start(extent.address), extent.size))
+            return (*arguments, *spans, failure.at, *failure.indices)
         case _:
             assert_never(stmt)
 
@@ -122,7 +127,7 @@ def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
 def operands(expr: Expr) -> tuple[Expr, ...]:
     """The expressions that stand in an expression itself."""
     match expr:
-        case Const() | Local() | Used() | Capacity():
+        case Const() | Local() | Used() | Capacity() | Told():
             return ()
         case Load(_, at, _):
             return (at,)
@@ -144,6 +149,27 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
             assert_never(expr)
 
 
+def calls_to_host(kernels: Iterable[Kernel]) -> list[HostCall]:
+    """What kernels ask functions of the host."""
+    return [stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, HostCall)]
+
+
+def our_functions(kernels: Iterable[Kernel]) -> list[str]:
+    """The names of the functions that kernels ask and that are not the user's, in order."""
+    return sorted({call.function for call in calls_to_host(kernels) if "." in call.function})
+
+
+def is_told(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels ask for what the host tells of a message."""
+    stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
+    return any(isinstance(part, Told) for stmt in stmts for expr in expressions_of(stmt) for part, _ in subexpressions(expr))
+
+
+def extents_of(call: HostCall) -> tuple[Extent, ...]:
+    """The bytes that a function of the host reads, and those that it fills."""
+    return call.inputs if call.target is None else (*call.inputs, call.target)
+
+
 def subexpressions(expr: Expr) -> Iterator[tuple[Expr, int]]:
     """An expression and all inside it, each with its depth."""
     stack = [(expr, 1)]
@@ -160,6 +186,8 @@ def bound_names(stmt: Stmt) -> tuple[str, ...]:
             return (name,)
         case Call(_, _, results, _, _):
             return tuple(result.name for result in results)
+        case HostCall():
+            return (stmt.result.name,)
         case _:
             return ()
 
@@ -182,7 +210,7 @@ def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
     if any(result.type not in ("i64", "u64") for result in routine.results):
         return "a result that is no integer of 64 bits"
     inside = list(statements(routine.body))
-    if any(isinstance(stmt, Return | Reserve | Advance) or any(map(_counts, expressions_of(stmt))) for stmt, _ in inside):
+    if any(isinstance(stmt, Return | Reserve | Advance | HostCall) or any(map(_of_a_body, expressions_of(stmt))) for stmt, _ in inside):
         return "something that only a body can do"
     names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
     if len(set(names)) < len(names):
@@ -190,9 +218,9 @@ def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
     return _statements_error(inside, names, len(routine.sites), before)
 
 
-def _counts(expr: Expr) -> bool:
-    """Whether an expression asks for a used length."""
-    return any(isinstance(part, Used) for part, _ in subexpressions(expr))
+def _of_a_body(expr: Expr) -> bool:
+    """Whether an expression asks for a used length, or what the host tells."""
+    return any(isinstance(part, Used | Told) for part, _ in subexpressions(expr))
 
 
 def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[Routine, ...]) -> str | None:
@@ -215,7 +243,7 @@ def _statement_error(stmt: Stmt, depth: int, sites: int, routines: Mapping[str, 
     if any(_too_deep(expr) for expr in expressions_of(stmt)):
         return "an expression is nested too deep"
     match stmt:
-        case Require(_, _, failure) | Expect(_, failure):
+        case Require(_, _, failure) | Expect(_, failure) | HostCall(_, _, _, failure):
             return _failing_error((failure.site,), failure.indices, sites)
         case Call(name, arguments, results, named, indices):
             routine = routines.get(name)

@@ -2,14 +2,14 @@
 
     0 valid    1 error offset    2 error site    3 lane to grow    4 missing rows    5 … 8 indices of the error's path    9 result
     10 address of the hidden lanes' words    11 how many hidden lanes there are
+    12 now, in ns since 1970    13 number of the message in row 0
     16 + 4 k   address, capacity, used length, stride of lane k
 
 The words of hidden lane k, 4 k words behind their address, are its address and its capacity in bytes: each kernel divides them into rows of
 its own. Of a hidden lane that must grow, word 4 has the missing bytes.
 
 Addresses and lengths are written by the runtime; a kernel writes words 0 to 8 and the used lengths. Word 9 is what a failed kernel
-returned,
-for who called it through an entry (`backends/*.ll`).
+returned, for who called it through an entry (`backends/*.ll`); words 12 and 13 are told to kernels that ask (`kernel.ir.Told`).
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from __future__ import annotations
 VALID, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, ERROR_INDICES = 0, 1, 2, 3, 4, 5
 RESULT = 9
 HIDDEN, HIDDEN_COUNT = 10, 11
+NOW, NUMBER = 12, 13
 MAX_INDICES = 4
 LANES, LANE_WORDS = 16, 4
 ADDRESS, CAPACITY, USED, STRIDE = 0, 1, 2, 3

@@ -29,6 +29,7 @@ from rosetta_jit.kernel.ir import (
     Place,
     Scale,
     Select,
+    Told,
     Unary,
     Used,
     Wire,
@@ -218,6 +219,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Capacity(lane):
             check_lane(scope, lane)
             return "i64", scope.capacity[lane]
+        case Told(what):
+            return "i64", scope.facts.named(("told", what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
         case Fits(op, left, right):

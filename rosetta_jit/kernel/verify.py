@@ -20,6 +20,7 @@ from rosetta_jit.kernel.ir import (
     Expect,
     Fill,
     For,
+    HostCall,
     If,
     Let,
     Place,
@@ -53,6 +54,7 @@ from rosetta_jit.kernel.symbolic import (
     integer,
     linear,
     oblige,
+    unknown,
 )
 
 if TYPE_CHECKING:
@@ -202,6 +204,8 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             for position in indices:
                 integer(scope, position)
             contracts.bind(scope, walk.routines[routine], stmt)
+        case HostCall():
+            _host_call(scope, stmt)
         case _:
             assert_never(stmt)
     return False
@@ -273,6 +277,23 @@ def _copy(scope: Scope, target: Place | Wire, source: Place | Wire, size: Linear
     if isinstance(target, Place) and isinstance(source, Place) and target.lane == source.lane:
         apart = Any((minus(minus(out_of, into), size), minus(minus(into, out_of), size)))
         oblige(scope, apart, "a copy onto itself")
+
+
+def _host_call(scope: Scope, call: HostCall) -> None:
+    for argument in call.arguments:
+        evaluate(scope, argument)
+    _failure(scope, call.failure)
+    filled = None if call.target is None else check_extent(scope, call.target.address, integer(scope, call.target.size))
+    for extent in call.inputs:
+        begin, size = check_extent(scope, extent.address, integer(scope, extent.size)), integer(scope, extent.size)
+        if filled is not None and call.target is not None and _same_memory(extent.address, call.target.address):
+            apart = Any((minus(minus(filled, begin), size), minus(minus(begin, filled), integer(scope, call.target.size))))
+            oblige(scope, apart, "a function that fills what it reads")
+    scope.locals[call.result.name] = call.result.type, unknown(scope, call.result.type)
+
+
+def _same_memory(one: Place | Wire, other: Place | Wire) -> bool:
+    return isinstance(one, Wire) == isinstance(other, Wire) and getattr(one, "lane", None) == getattr(other, "lane", None)
 
 
 def _rows(scope: Scope, stmt: Reserve | Advance) -> None:

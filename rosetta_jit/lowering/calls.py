@@ -1,8 +1,9 @@
 """Calls: conversions, named by the type that they give, and the functions of the language.
 
+now ()   counter ()   and what the mapping declares
 int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
-int8 … uint64 (x [, round | truncate])     of a float
-float32 float64 (x)   bool (x)   enum.name (x)
+int8 … uint64 (x [, round | truncate | saturate])     of a float
+float32 float64 (x [, exact])   bool (x)   enum.name (x)
 radians degrees sqrt sin cos tan asin acos atan (x) atan2 (y, x) of float64
 floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide floor_divide modulo (x, y)
 """
@@ -11,19 +12,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import reduce
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, cast
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
+from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS, type_image_call
 from rosetta_jit.lowering.type_texts import NAMES, type_length, type_text_call
-from rosetta_jit.lowering.typed import INT64, Call, Const, Convert
-from rosetta_jit.lowering.units import check_argument
+from rosetta_jit.lowering.typed import INT64, Call, Const, Convert, Told
+from rosetta_jit.lowering.units import check_arguments
 from rosetta_jit.model.expr import Name
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.lowering.scope import Scope
     from rosetta_jit.lowering.typed import ConversionRule, Expr, Function
@@ -32,56 +35,50 @@ if TYPE_CHECKING:
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
+NO_ENUMS: Mapping[str, Enum] = MappingProxyType({})
 INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
 FLOATS = ("float32", "float64")
 ANGULAR = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
 DIVISIONS = ("divide", "floor_divide", "modulo")
-FUNCTIONS = (
-    "radians",
-    "degrees",
-    *ANGULAR,
-    "sqrt",
-    "floor",
-    "ceil",
-    "round",
-    "abs",
-    "min",
-    "max",
-    "align",
-    "divide",
-    "floor_divide",
-    "modulo",
-)
+TOLD: dict[str, Literal["now", "number"]] = {"now": "now", "counter": "number"}
+FUNCTIONS = (*TOLD, "radians", "degrees", *ANGULAR, "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", *DIVISIONS)
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """The typed form of a call; ``type_expr`` types its arguments."""
-    target = _named_type(expr.function, scope)
+    target = named_type(expr.function, scope.enums)
     if target is not None:
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
+    if expr.function in IMAGE_FUNCTIONS:
+        return type_image_call(expr, scope, type_expr)
     if expr.function == "len":
         return type_length(expr, scope, type_expr)
     if expr.function in NAMES:
         return type_text_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *NAMES, "bool", "has", "len", *scope.enums}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *IMAGE_FUNCTIONS, *NAMES, "bool", "has", "len", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
     typed = [argument for argument in arguments if argument is not None]
-    if len(typed) < len(arguments) or not _arity(expr, scope) or not check_argument(expr.function, typed[0], expr.span, scope):
+    if len(typed) < len(arguments) or not _arity(expr, scope):
+        return None
+    if expr.function in TOLD:
+        return Told(TOLD[expr.function], INT64, expr.span)
+    if not check_arguments(expr.function, typed, expr.span, scope):
         return None
     return _function(expr, typed, scope)
 
 
-def _named_type(name: str, scope: Scope) -> Type | None:
+def named_type(name: str, enums: Mapping[str, Enum] = NO_ENUMS) -> Type | None:
+    """The type that a conversion is named by."""
     if name in INTEGERS:
         bits = cast("Literal[8, 16, 32, 64]", int(name.lstrip("uint")))
         return Int(bits, signed=not name.startswith("u"))
     if name in FLOATS:
         return Float(32 if name == "float32" else 64)
-    return Bool() if name == "bool" else scope.enums.get(name)
+    return Bool() if name == "bool" else enums.get(name)
 
 
 def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -105,11 +102,11 @@ def rules_between(source: Type, target: Type) -> tuple[ConversionRule, ...]:
         case Int(), Int():
             return ("exact", "saturate", "wrap")
         case Float(), Int():
-            return ("exact", "round", "truncate")
+            return ("exact", "round", "truncate", "saturate")
         case ((Bool() | Enum()), Int()) | (Int(), (Bool() | Enum())):
             return ("exact",)
         case ((Int() | Float()), Float()):
-            return ("nearest",)
+            return ("nearest", "exact")
         case _:
             return ()
 
@@ -146,6 +143,8 @@ def _arity(expr: model.Call, scope: Scope) -> bool:
     match expr.function:
         case "min" | "max":
             fits, expected = found >= 2, "two or more values"
+        case "now" | "counter":
+            fits, expected = found == 0, "no values"
         case "align":
             fits, expected = found == 2, "a number and a quantum"
         case "divide" | "floor_divide" | "modulo" | "atan2":

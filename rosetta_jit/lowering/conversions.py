@@ -141,7 +141,7 @@ def word_for(source: Type, target: Type) -> str:
         case Int() | Bool() | Enum(), Int():
             return f"`{name}(...)` refuses what does not fit; `{name}(..., saturate)` and `{name}(..., wrap)` do not"
         case Float(), Int():
-            return f"`{name}(...)` refuses fractions; `{name}(..., round)` and `{name}(..., truncate)` do not"
+            return f"`{name}(...)` refuses fractions; `{name}(..., round)`, `{name}(..., truncate)` and `{name}(..., saturate)` do not"
         case Int() | Float(), Float():
             return f"`{name}(...)` rounds to the nearest"
         case Int(), Enum(name=enum):

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Copy, For, Get, If, Local, Place, Switch, index, mul
 from rosetta_jit.lowering.fields import presence_bit
+from rosetta_jit.lowering.rescaling import by_number, change_of_member, rescaled
 from rosetta_jit.lowering.writer import MAX_SIZE, block
 from rosetta_jit.model.layout import Number, Row, Slot, Span, Variant
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.fields import HolderFields
+    from rosetta_jit.lowering.typed import Change
     from rosetta_jit.model.layout import Layout, Member
     from rosetta_jit.wire.codec import Path
 
@@ -29,55 +31,61 @@ def is_endless(layout: Layout, slot: Slot) -> bool:
             assert_never(slot)
 
 
-def copy(source: HolderFields, origin: Path, target: HolderFields, path: Path) -> None:
-    """Copy the value at a path of one message to a path of another, which holds nothing there yet. It must not be endless."""
+def copy(source: HolderFields, origin: Path, target: HolderFields, path: Path, change: Change | None = None) -> None:
+    """Copy the value at a path of one message to a path of another, which holds nothing there yet. It must not be endless.
+
+    ``change`` says which numbers have another unit there.
+    """
     slot = source.find(origin).slot
     match slot:
         case Number():
             value = source.get(origin)
             assert value is not None
-            target.put(path, value)
+            target.put(path, value if change is None else rescaled(value, change))
         case Span():
-            _elements(source, origin, target, path)
+            _elements(source, origin, target, path, change)
         case Row(members=members):
             target.mark(path)
             for member in members:
-                _member(slot, member, (source, (*origin, member.name)), (target, (*path, member.name)))
+                ends = (source, (*origin, member.name)), (target, (*path, member.name))
+                _member(slot, member, *ends, change_of_member(change, member.name))
         case Variant(offset, members):
             case = source.writer.let("case", Get("i64", source.find(origin).place(offset)))
-            cases = tuple((1 + number, _case(member, source, origin, target, path)) for number, member in enumerate(members))
+            changes = [change_of_member(change, member.name) for member in members]
+            ways = enumerate(zip(members, changes, strict=True))
+            cases = tuple((1 + number, _case(member, source, origin, target, path, within)) for number, (member, within) in ways)
             source.writer.emit(Switch(case, cases, ()))
         case _:
             assert_never(slot)
 
 
-def _member(row: Row, member: Member, origin: tuple[HolderFields, Path], target: tuple[HolderFields, Path]) -> None:
+def _member(row: Row, member: Member, origin: tuple[HolderFields, Path], target: tuple[HolderFields, Path], change: Change | None) -> None:
     if member.presence is None:
-        copy(*origin, *target)
+        copy(*origin, *target, change)
         return
     source, path = origin
     place, mask = presence_bit(source.find(path[:-1]), row, member.presence)
     with source.writer.nested() as there:
-        copy(*origin, *target)
+        copy(*origin, *target, change)
     source.writer.emit(If(Compare("ne", Binary("and", Get("u64", place), mask), Const("u64", 0)), block(there)))
 
 
-def _case(member: Member, source: HolderFields, origin: Path, target: HolderFields, path: Path) -> Block:
+def _case(member: Member, source: HolderFields, origin: Path, target: HolderFields, path: Path, change: Change | None) -> Block:
     with source.writer.nested() as body:
-        copy(source, (*origin, member.name), target, (*path, member.name))
+        copy(source, (*origin, member.name), target, (*path, member.name), change)
     return block(body)
 
 
-def _elements(source: HolderFields, origin: Path, target: HolderFields, path: Path) -> None:
+def _elements(source: HolderFields, origin: Path, target: HolderFields, path: Path, change: Change | None) -> None:
     writer, stored = source.writer, source.stored(origin)
     taken = source.elements(origin, stored)
     lane = source.layout.lanes[taken.lane]
     writer.expect(Compare("le", stored.size, index(MAX_SIZE // lane.stride)), "count", source.where.members(origin), "too many elements")
     made = target.open(path, stored.size)
-    if isinstance(lane.element, Number):
+    if isinstance(lane.element, Number) and change is None:
         writer.emit(Copy(Place(made.lane, made.start), Place(taken.lane, taken.start), mul(stored.size, lane.stride)))
         return
     number = Local("i64", writer.fresh("each"))
     with writer.nested() as body:
-        copy(taken.at(number), (), made.at(number), ())
+        by_number(writer, change, number, lambda within: copy(taken.at(number), (), made.at(number), (), within))
     writer.emit(For(number.name, stored.size, block(body)))

@@ -12,6 +12,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, same
 from rosetta_jit.lowering.type_texts import comparison
 from rosetta_jit.lowering.typed import BOOL, Access, Binary, Choice, Const, IsText, Unary
+from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def type_logic(expr: model.Binary, scope: Scope, type_expr: TypeExpr) -> Expr | 
 def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """``left == right`` and its like."""
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
-    if left is None or right is None:
+    if left is None or right is None or not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
         return None
     found = _comparison(expr, left, right)
     if found is None:
@@ -117,6 +118,8 @@ def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr |
     if fitting is None:
         kinds = sorted({describe(value.type) for value in known})
         scope.problems.append(words.mixed_choice(expr.span, kinds))
+        return None
+    if not check_agree("a choice", known, expr.span, scope):
         return None
     otherwise = None if expr.otherwise is None else fitting[-1]
     cases = tuple((condition, value) for condition, value in zip(conditions, fitting, strict=False) if condition is not None)

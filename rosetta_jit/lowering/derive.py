@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
-from rosetta_jit.lowering.inverse import NoInverseError, fields_in, reads_in_index, replaced, solve
+from rosetta_jit.lowering.calls import TOLD
+from rosetta_jit.lowering.inverse import NoInverseError, calls_in, fields_in, reads_in_index, replaced, solve
 from rosetta_jit.model.expr import Binary, Len, Path
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -105,6 +106,9 @@ class _Packing:
     def relation(self, rule: Relation) -> tuple[Rule, ...]:
         place = rule.place.path if isinstance(rule.place, Len) else rule.place
         fields = fields_in(rule.value)
+        if (told := next((call for call in calls_in(rule.value) if call.function in TOLD), None)) is not None:
+            self.problems.append(words.changes(told.span, told.function))
+            return ()
         for path in (place, *(each.path if isinstance(each, Len) else each for each in fields)):
             if (read := reads_in_index(path)) is not None:
                 self.problems.append(words.index_reads(read))

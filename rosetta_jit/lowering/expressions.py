@@ -13,10 +13,12 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
+from rosetta_jit.lowering.functions import type_host_call
 from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
 from rosetta_jit.lowering.scope import Broken, resolve_path
 from rosetta_jit.lowering.type_texts import concatenation, is_textual
 from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
+from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
 
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 CONSTANTS = {"pi": math.pi}
+SUMS = frozenset("+-%")
 
 
 def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
@@ -50,6 +53,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_logic(expr, scope, type_expr)
         case model.Binary():
             return _binary(expr, scope)
+        case model.Call(function) if function in scope.functions:
+            return type_host_call(expr, scope.functions[function], scope, type_expr)
         case model.Call("has", (model.Path() as path,)):
             return _presence(path, expr.span, scope)
         case model.Call():
@@ -152,6 +157,8 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
                 return _constant(_compute(expr.operator, x, y), expr.span, scope)
         case _:
             pass
+    if expr.operator in SUMS and not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
+        return None
     numbers = _computable(left, expr.operator, scope), _computable(right, expr.operator, scope)
     if numbers[0] is None or numbers[1] is None:
         return None

@@ -90,6 +90,25 @@ def _fields(expr: Expr) -> Iterator[Path | Len]:
             return
 
 
+def calls_in(expr: Expr) -> Iterator[Call]:
+    """The calls in an expression; those within an index are not among them."""
+    match expr:
+        case Unary(_, operand):
+            yield from calls_in(operand)
+        case Binary(_, left, right):
+            yield from calls_in(left)
+            yield from calls_in(right)
+        case Call(_, arguments):
+            yield expr
+            for argument in arguments:
+                yield from calls_in(argument)
+        case Choice(cases, otherwise):
+            for part in (*(part for case in cases for part in case), *([] if otherwise is None else [otherwise])):
+                yield from calls_in(part)
+        case _:
+            return
+
+
 def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
     """One operation taken from the expression, and its opposite done to the value."""
     match expr:

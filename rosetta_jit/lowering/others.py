@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Rule, Via
     from rosetta_jit.source import Source, Span
 
-SUFFIX = ".mapping"
+MAPPING_SUFFIX = ".mapping"
 """Of an import that is a mapping."""
 
 MAX_MAPPINGS = 64
@@ -46,6 +46,10 @@ class Others:
         """The mapping of a ``via``; None where it could not be read, which is reported."""
         return self.found.get((self.using[-1], via.mapping))
 
+    def mappings(self) -> list[model.Mapping]:
+        """Each mapping once."""
+        return list({each.source.name: each for each in self.found.values()}.values())
+
     def by_type(self) -> list[model.Mapping]:
         """The mappings that the file of the innermost one imports."""
         here = self.using[-1]
@@ -60,7 +64,7 @@ def read_others(mapping: model.Mapping, search: SearchPath, reading: Reading, pr
     pending = [mapping]
     while pending:
         user = pending.pop()
-        imported[user.source.name] = tuple(each.path for each in user.imports if each.path.endswith(SUFFIX))
+        imported[user.source.name] = tuple(each.path for each in user.imports if each.path.endswith(MAPPING_SUFFIX))
         for name, span in _named(user):
             if (user.source.name, name) in found:
                 continue
@@ -91,7 +95,7 @@ def _read(source: Source, problems: list[Diagnostic]) -> model.Mapping | None:
 
 def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
     """The names of the mappings that one uses, and where."""
-    yield from ((each.path, each.span) for each in mapping.imports if each.path.endswith(SUFFIX))
+    yield from ((each.path, each.span) for each in mapping.imports if each.path.endswith(MAPPING_SUFFIX))
     for rules in (mapping.unpack_rules, mapping.pack_rules):
         yield from ((via.mapping, via.span) for via in _vias(rules or ()))
 

@@ -13,12 +13,29 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.lowering.conversions import describe
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, FieldStep, Has, IsText, LenOf, Local, TextCall, Unary
+from rosetta_jit.lowering.typed import (
+    Access,
+    Binary,
+    Call,
+    Choice,
+    Const,
+    Convert,
+    FieldStep,
+    Has,
+    HostCall,
+    ImageCall,
+    IsText,
+    LenOf,
+    Local,
+    TextCall,
+    Told,
+    Unary,
+)
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.typed import Expr, Place
+    from rosetta_jit.lowering.typed import Asked, Expr, Place
 
 MAX_SIZE = 1000
 """Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
@@ -157,6 +174,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(function, *(polynomial_of(argument) for argument in arguments))
         case TextCall(function, arguments):
             return atom(function, *map(polynomial_of, arguments))
+        case Told() | HostCall() | ImageCall():
+            return _asked(expr)
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
@@ -168,6 +187,18 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(repr(value))
         case _:
             assert_never(expr)
+
+
+def _asked(asked: Asked) -> Polynomial:
+    match asked:
+        case Told(what):
+            return atom(f"{what}()")
+        case HostCall(function, arguments):
+            return atom(f"{function}()", *map(polynomial_of, arguments))
+        case ImageCall(function, image, _, _, numbers):
+            return atom(function, *map(polynomial_of, (image, *numbers)))
+        case _:
+            assert_never(asked)
 
 
 def _arithmetic(operator: str, left: Polynomial, right: Polynomial) -> Polynomial:

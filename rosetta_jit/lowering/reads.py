@@ -104,15 +104,18 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Binary(_, left, right):
             yield from _in(left)
             yield from _in(right)
-        case typed.Call(_, arguments) | typed.TextCall(_, arguments):
+        case typed.Call(_, arguments) | typed.TextCall(_, arguments) | typed.HostCall(_, arguments):
             for argument in arguments:
                 yield from _in(argument)
+        case typed.ImageCall(_, image, _, _, numbers):
+            for part in (image, *numbers):
+                yield from _in(part)
         case typed.Choice(cases, otherwise):
             for part in (part for case in cases for part in case):
                 yield from _in(part)
             if otherwise is not None:
                 yield from _in(otherwise)
-        case typed.Const() | typed.Local():
+        case typed.Const() | typed.Local() | typed.Told():
             pass
 
 

@@ -16,9 +16,11 @@ from rosetta_jit.lowering.conversions import convert, describe, other_way, same,
 from rosetta_jit.lowering.decisions import type_condition
 from rosetta_jit.lowering.defaults import default_rules, has_array
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
+from rosetta_jit.lowering.functions import signatures
 from rosetta_jit.lowering.inverse_texts import for_type
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.typed import (
     Access,
@@ -30,23 +32,27 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     For,
     Ignore,
+    ImageCall,
     Local,
     Reject,
     SetLength,
     TextCall,
     When,
 )
+from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
 
@@ -73,9 +79,10 @@ class Resolved:
     pack: TypedRules | None
     enums: frozenset[str]
     problems: tuple[Diagnostic, ...]
+    functions: Mapping[str, Signature]
 
 
-def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 
     ``others`` are the mappings that its rules may use.
@@ -88,10 +95,11 @@ def resolve(mapping: Mapping, holder: Schema, wire: Schema, others: Others) -> R
     enums = enums_of(holder, wire)
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, others)
+    functions = signatures((mapping, *others.mappings()), problems)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
     unpack = _block(mapping.unpack_rules, scope)
     pack = _block(mapping.pack_rules, replace(scope, target="wire"))
-    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems))
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
@@ -200,7 +208,9 @@ class _Block:
         if fitting is None:
             self.broken.append(field_names(place))
             return None
-        return _by_case(place, fitting, rule.span)
+        change = change_within(fitting, place, scope)
+        made = _by_case(place, fitting, rule.span)
+        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
 
     def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
         place = self.place(rule, scope)
@@ -298,6 +308,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
     if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
+        return value
+    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None

@@ -17,12 +17,14 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
+from rosetta_jit.lowering.images import bytes_of
+from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
 from rosetta_jit.lowering.text_values import checked, text_of
 from rosetta_jit.lowering.views import placed
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Ref, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -44,7 +46,7 @@ class Runner:
             here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here)
+                    self.assign(place, value, here, rule.change)
                 case typed.SetLength(place, value):
                     self.take(place, self.count(here.of(value)), here)
                 case typed.For():
@@ -108,7 +110,7 @@ class Runner:
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
         self.writer.emit(For(number.name, count, block(body)))
 
-    def assign(self, place: typed.Place, value: typed.Expr, values: Values) -> None:
+    def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
         match place.type, value:
             case ((String() | Bytes()), typed.Const(str(text))):
                 self.assign_text(place, text.encode(), values)
@@ -116,10 +118,12 @@ class Runner:
                 self.assign_bytes(place, origin, values)
             case ((String() | Bytes() | Array()), typed.TextCall()):
                 self.assign_computed(place, value, values)
+            case ((Bytes() | Array()), typed.ImageCall()):
+                self.assign_image(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
-                self.copy(place, origin, values)
+                self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
-                self.assign_array(place, origin, values)
+                self.assign_array(place, origin, values, change)
             case _ if isinstance(self.target, WireSide) and not wire_key(place)[1]:
                 pass  # the walk has asked for this number
             case _:
@@ -153,13 +157,18 @@ class Runner:
         if isinstance(place.type, String) and place.type.encoding == "utf-8":
             view = checked(view, values)
         size = self.count(view.size)
-        if isinstance(place.type, Array | Bytes) and isinstance(place.type.length, int):
-            fits = Compare("eq", size, index(place.type.length))
-            self.writer.expect(fits, "length", values.where, f"the text has not {place.type.length} bytes", line=values.line)
-        self.target.set_length(place, size, values)
+        self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
 
-    def copy(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_image(self, place: typed.Place, value: typed.ImageCall, values: Values) -> None:
+        """An image or its pixels. On the wire there is no place for it before it is made."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError(())
+        made = bytes_of(value, values)
+        self.take(place, made.size, values)
+        self.writer.emit(Copy(self.target.address(place, values), made.address, made.size))
+
+    def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
@@ -170,20 +179,14 @@ class Runner:
         if isinstance(place.type, Array | Map):
             self.bound(place, self.source.count(origin, values), values)
         with self.writer.nested() as there:
-            copy(source, path, target, target_path)
+            copy(source, path, target, target_path, change)
         present = presence(source, path, outer=True)
         self.writer.emit(*there if present is None else (If(present, block(there)),))
 
-    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values) -> None:
+    def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""
-        element = place.type.element if isinstance(place.type, Array) else place.type
         count = self.source.count(origin, values)
         self.take(place, count, values)
-        variable = typed.Local("element")
-        step = typed.IndexStep(variable)
-        origin_type = origin.type.element if isinstance(origin.type, Array) else origin.type
-        read: typed.Expr = typed.Access(replace(origin, steps=(*origin.steps, step), type=origin_type), origin_type)
-        if isinstance(element, Bool | Int | Float | Enum) and origin_type != element:
-            read = typed.Convert(read, element, "widen")
-        rule = typed.Assign(replace(place, steps=(*place.steps, step), type=element), read)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        rule = element_rule(place, origin, variable, change)
         self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.others import Others
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Expr as Untyped
@@ -51,6 +52,7 @@ class Scope:
     locals: tuple[str, ...]
     problems: list[Diagnostic]
     named_enums: set[str]
+    functions: Mapping[str, Signature]
     others: Others
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""

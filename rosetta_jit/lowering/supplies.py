@@ -81,8 +81,8 @@ class Supplies:
                 return self.source.count(origin, here)
             case typed.Default():
                 return index(0)
-            case typed.Assign(_, typed.TextCall()):
-                raise NotInPlaceError
+            case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
+                raise NotInPlaceError(())
             case _:
                 raise AssertionError(rule)
 
@@ -170,7 +170,10 @@ def _array_places(node: object) -> list[typed.Place]:
             return _array_places(operand)
         case typed.Binary(_, left, right):
             return _array_places((left, right))
-        case typed.Call(_, arguments, _):
+        case typed.ImageCall(_, image, _, _, numbers):
+            looked_at = [image.place] if isinstance(image, typed.Access) else []
+            return looked_at + _array_places((image, *numbers))
+        case typed.Call(_, arguments, _) | typed.HostCall(_, arguments, _):
             return _array_places(arguments)
         case typed.TextCall(_, arguments):
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]

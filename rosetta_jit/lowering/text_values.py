@@ -23,7 +23,7 @@ from rosetta_jit.model.types import Float, String
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
 
-    from rosetta_jit.kernel.ir import Expr, Local
+    from rosetta_jit.kernel.ir import Address, Expr, Local
     from rosetta_jit.lowering.values import Source, Values
 
 LARGEST = 18
@@ -43,14 +43,20 @@ def text_of(value: typed.Expr, values: Values) -> Text:
             return joined(values.writer, [text_of(piece, values) for piece in _pieces(value)])
         case typed.TextCall():
             return _called(value, values)
+        case typed.ImageCall():
+            made = values.bytes_of(value)
+            return _view(made.address, made.size, values)
         case _:
             raise AssertionError(value)
 
 
 def _field(place: typed.Place, values: Values) -> View:
+    size = values.writer.let("size", values.source.count(place, values))
+    return _view(values.source.address(place, values), size, values)
+
+
+def _view(address: Address, size: Expr, values: Values) -> View:
     writer = values.writer
-    size = writer.let("size", values.source.count(place, values))
-    address = values.source.address(place, values)
     if isinstance(address, Wire):
         writer.require(size, values.where, at=address.at)  # it is there: said again where the proof may have lost it
         return sound(writer, View(None, address.at, writer.let("after", Binary("add", address.at, size))))

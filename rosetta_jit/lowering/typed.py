@@ -1,11 +1,15 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked      each with `type`
+    Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
-    Rule = Assign(Place, Expr) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
+    Change = Rescale | EachElement | EachMember
+    Rule = Assign(Place, Expr, Change?) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
          | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
 
 Every change of a scalar type is a `Convert`; both operands of a `Binary` have one type, which is its own unless it compares.
+Numbers of different units are converted by a `Binary` of `*`, and of `+` where their scales have different origins; within a whole value,
+by the `change` of its `Assign`.
 Only an `Assign` of a whole array, struct, string or blob (`Access` as the value) may have two types: elements are then widened,
 text is checked, and a length that the target fixes is checked.
 """
@@ -193,6 +197,40 @@ class TextCall:
 
 
 @dataclass(frozen=True, slots=True)
+class Told:
+    """When this message came, in ns since 1970, or how many came before it; int64."""
+
+    what: OneOf["now", "number"]
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class HostCall:
+    """A function that the mapping declares and its user gives; the arguments have the types that it declares."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+ImageFunction = OneOf["decompress", "compress", "image_width", "image_height", "image_channels", "image_depth"]
+
+
+@dataclass(frozen=True, slots=True)
+class ImageCall:
+    """Bytes as an image, or as the pixels of one: ``numbers`` are their width, height, channels and quality, if it is compressed."""
+
+    function: ImageFunction
+    bytes: Expr
+    type: Type
+    format: str = ""
+    numbers: tuple[Expr, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Choice:
     """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
 
@@ -206,16 +244,48 @@ class Choice:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice
+Asked = Told | HostCall | ImageCall
+"""What the kernel's host answers."""
+
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked
+
+
+@dataclass(frozen=True, slots=True)
+class Rescale:
+    """A number in another unit: times the factor, plus the offset."""
+
+    source: str
+    target: str
+    factor: float
+    offset: float
+
+
+@dataclass(frozen=True, slots=True)
+class EachElement:
+    """What changes in the elements of an array or the values of a map; ``numbered`` are those that are not like the rest."""
+
+    rest: Change | None
+    numbered: tuple[tuple[int, Change | None], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class EachMember:
+    """What changes in the members of a struct or union, by name."""
+
+    members: tuple[tuple[str, Change], ...]
+
+
+Change = Rescale | EachElement | EachMember
 
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """``.place = value``"""
+    """``.place = value``; where that is a whole array, struct, union or map, ``change`` says which of its numbers have another unit."""
 
     place: Place
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
+    change: Change | None = None
 
 
 @dataclass(frozen=True, slots=True)

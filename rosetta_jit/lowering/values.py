@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
+from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
@@ -20,6 +22,7 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.kernel.ir import Extent
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -86,6 +89,8 @@ class Values:
                 return self.source.present(place, self)
             case typed.Choice():
                 return self.choice(value)
+            case typed.Told() | typed.HostCall() | typed.ImageCall():
+                return asked(value, self)
             case _:
                 assert_never(value)
 
@@ -109,6 +114,10 @@ class Values:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
+
+    def bytes_of(self, image: typed.ImageCall) -> Extent:
+        """An image or its pixels, where the host has put them."""
+        return bytes_of(image, self)
 
     def reject(self, reason: str, *, when: Expr | None = None) -> None:
         """Refuse the message, always or where something holds."""
@@ -178,6 +187,8 @@ class Values:
     def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
+        if target in ("f32", "f64"):
+            return self.exact_float(local, target)
         if source in ("f32", "f64"):
             whole = self.writer.let("whole", Unary("rint" if rule == "round" else "trunc", local))
             if rule == "exact":
@@ -185,6 +196,18 @@ class Values:
             local = whole
         self.in_range(local, target)
         return Convert(target, local)
+
+    def exact_float(self, value: Local, target: Scalar) -> Expr:
+        """A float that is the same number; NaN stays one."""
+        source = type_of(value)
+        made = self.writer.let("float", Convert(target, value))
+        same: Expr = Compare("eq", Convert(source, made), value)
+        if source in ("f32", "f64"):
+            same = Binary("or", same, Compare("ne", value, value))
+        elif RANGES[source][1] >= 1 << 62:  # what is rounded up beyond the integers comes back as the last of them
+            same = Binary("and", same, Compare("lt", made, Const(target, float(RANGES[source][1]))))
+        self.expect(same, target)
+        return made
 
     def in_range(self, value: Local, target: Scalar) -> None:
         source = type_of(value)
@@ -203,8 +226,10 @@ class Values:
 
     def saturated(self, value: Expr, target: Scalar) -> Expr:
         source = type_of(value)
-        if source in ("f32", "f64") or target in ("f32", "f64"):
-            return Convert(target, value)
+        if source in ("f32", "f64"):
+            number = self.writer.let("number", value)
+            self.expect(Compare("eq", number, number), target)  # NaN is none
+            return Convert(target, Unary("rint", number))
         low, high = RANGES[target]
         least, most = RANGES[source]
         if low > least:
@@ -229,7 +254,7 @@ RANGES: dict[str, tuple[int, int]] = {
 }
 """Least value and first one too large."""
 
-NAMES = {"i8": "int8", "u8": "uint8", "i16": "int16", "u16": "uint16", "i32": "int32", "u32": "uint32", "i64": "int64", "u64": "uint64"}
+NAMES = {scalar: f"{'u' if scalar[0] == 'u' else ''}int{scalar[1:]}" for scalar in RANGES} | {"f32": "float32", "f64": "float64"}
 
 
 def scalar_type(type_: Type) -> Scalar:

@@ -1,6 +1,6 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
-    Mapping = Import*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
+    Mapping = Import*, Function*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = Assign(place, Expr, via) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
             | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
             | Ignore(Path) | Default(Path) | SameNames(Path*)
@@ -33,6 +33,24 @@ class Via:
 
     mapping: str
     depth: int | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """``function name(type, …): type``: a function of numbers that whoever makes a decoder or encoder gives."""
+
+    name: str
+    parameters: tuple[TypeName, ...]
+    result: TypeName
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TypeName:
+    """The name of a scalar type."""
+
+    name: str
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -138,3 +156,4 @@ class Mapping:
     pack_rules: tuple[Rule, ...] | None
     holder_span: Span | None = field(default=None, compare=False, repr=False)
     wire_span: Span | None = field(default=None, compare=False, repr=False)
+    functions: tuple[Function, ...] = ()

@@ -73,6 +73,11 @@ def show_expr(value: expr.Expr) -> str:
             assert_never(value)
 
 
+def show_way(path: tuple[str | int | None, ...]) -> str:
+    """The way to a part of a value, as a path: ``[2].x``."""
+    return "".join(f".{step}" if isinstance(step, str) else "[]" if step is None else f"[{step}]" for step in path)
+
+
 def _bounds(length: int | expr.Expr | None, maximum: int | None) -> str:
     if length is not None:
         return f"; {length if isinstance(length, int) else show_expr(length)}"
@@ -106,6 +111,7 @@ def _field(field: Field) -> str:
     parts += [f"number {field.number}"] if field.number is not None else []
     parts += ["required"] if field.required else []
     parts += [f"in {field.unit}"] if field.unit is not None else []
+    parts += [f"{show_way(path)} in {unit}" for path, unit in field.part_units]
     parts += [f"always {show_expr(field.constant)}"] if field.constant is not None else []
     parts += [f"length {show_expr(field.length)}"] if field.length is not None else []
     parts += [f"default {field.default!r}"] if field.default is not None else []

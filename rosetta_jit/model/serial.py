@@ -2,7 +2,7 @@
 
     {"type": Type, "declared": {name: Type}}          only what the type reaches
     Type  = [word, ...]                               the word of the model in lower case, then its attributes in order
-    Field = [name, Type, number, unit, default, required, options, constant, length]
+    Field = [name, Type, number, unit, default, required, options, constant, length, part units]
     Expr  = [word, ...], as of a type
 
 Documentation and spans stay behind: only the compiler reads them.
@@ -119,7 +119,8 @@ class _Writing:
     def field(self, field: Field, depth: int) -> list[Any]:
         default, options = _plain_constant(field.default), _plain_options(field.options)
         computed = [_plain_expr(field.constant), _plain_expr(field.length)]
-        return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options, *computed]
+        parts = [[list(path), unit] for path, unit in field.part_units]
+        return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options, *computed, parts]
 
 
 def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
@@ -230,7 +231,7 @@ def _type(plain: list[Any], depth: int) -> Type:
 
 
 def _field(plain: list[Any], depth: int) -> Field:
-    name, type_, number, unit, default, required, options, constant, length = plain
+    name, type_, number, unit, default, required, options, constant, length, parts = plain
     return Field(
         name,
         _type(type_, depth),
@@ -241,6 +242,7 @@ def _field(plain: list[Any], depth: int) -> Field:
         default=_constant(default),
         required=required,
         options=_options(options),
+        part_units=tuple((tuple(path), unit) for path, unit in parts),
     )
 
 

@@ -1,7 +1,7 @@
 r"""The meta-model: what data of every framework looks like, without a word about bytes.
 
     Type   = Bool | Int | Float | String | Bytes | Enum | Array | Struct | Union | Optional | Map | Ref
-    Struct = name, Field*          Field = name, Type, number, unit, constant, default, ...
+    Struct = name, Field*          Field = name, Type, number, unit, part_units, constant, default, ...
     Union  = name, Field*          one of the fields is set, or none (a protobuf oneof)
 
 A union with a discriminator (OMG IDL) is a struct of two fields, ``_d`` and such a union, which knows the labels of its cases.
@@ -128,6 +128,10 @@ class Ref:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+PartUnit = tuple[tuple["str | int | None", ...], str]
+"""The unit of a part of a value, and the way to it: names of members, numbers of elements, None for each element."""
+
+
 @dataclass(frozen=True, slots=True)
 class Field:
     """A member of a struct or a case of a union.
@@ -137,7 +141,9 @@ class Field:
     number
         The tag by which the IDL knows the field on the wire, where it has one.
     unit
-        Unit of the values as the IDL names it (``degree``), where it says so.
+        Unit of the values as the IDL names it (``degree``), where it says so; of all numbers within, where nothing nearer says another.
+    part_units
+        Units of parts of the value, where they are not all the same.
     constant
         The one value that the field can have; the wire must carry it and packing writes it. An expression may read
         fields of the same message.
@@ -160,6 +166,7 @@ class Field:
     default: Constant | None = None
     required: bool = False
     options: tuple[tuple[str, Constant], ...] = ()
+    part_units: tuple[PartUnit, ...] = ()
     doc: str = field(default="", compare=False)
     span: Span | None = field(default=None, compare=False, repr=False)
 

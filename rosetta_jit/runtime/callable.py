@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
+MADE = 5
+"""The word of a program's context that counts the messages it has made, if its kernel asks for that."""
+
 STATE, HOLDER_BYTES = 16, 24
 
 # Include/object.h and Include/typeslots.h
@@ -58,8 +61,8 @@ class Context:
     holder_type: type
 
     def words(self) -> Words:
-        """The array that the entry reads. It borrows every reference: `self` must live as long."""
-        return np.array([self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type)], np.int64)
+        """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
+        return np.array([self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0], np.int64)
 
 
 def is_native() -> bool:

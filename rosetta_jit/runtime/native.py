@@ -16,7 +16,14 @@ from weakref import WeakValueDictionary, finalize
 from llvmlite import binding
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+MATHEMATICS = (
+    *("acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "copysign", "cos", "cosh", "erf", "erfc", "exp", "exp2", "expm1"),
+    *("fabs", "fma", "fmax", "fmin", "frexp", "hypot", "ldexp", "lgamma", "log", "log10", "log1p", "log2", "nearbyint", "pow", "round"),
+    *("roundeven", "sin", "sincos", "sinh", "tan", "tanh", "tgamma"),
+)
+"""Functions of the C library that users' functions call; those of float32 end in f."""
 
 ALLOWED = frozenset(
     [
@@ -32,10 +39,12 @@ ALLOWED = frozenset(
         "PyObject_Vectorcall",
         "Py_DecRef",
         "Py_IncRef",
+        "clock_gettime",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
         *("snprintf", "strtod", "strtoll"),
         *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
+        *(f"{name}{suffix}" for suffix in ("", "f") for name in MATHEMATICS),
     ]
 )
 """Everything that object code may take from the process: what the entries call, and what LLVM turns intrinsics into."""
@@ -58,7 +67,7 @@ class Library:
         return self.addresses[symbol]
 
 
-def load(image: bytes, symbols: Sequence[str]) -> Library:
+def load(image: bytes, symbols: Sequence[str], prepare: Callable[[Mapping[str, int]], object] = len) -> Library:
     """Link object code into the process, or find it there: whoever loads the same code at the same time shares it.
 
     Parameters
@@ -67,6 +76,8 @@ def load(image: bytes, symbols: Sequence[str]) -> Library:
         An object file, as the compiler made it.
     symbols
         What it defines.
+    prepare
+        Is given the addresses when the code is linked, before anybody calls it; what it gives lives as long as the code.
 
     Raises
     ------
@@ -76,11 +87,11 @@ def load(image: bytes, symbols: Sequence[str]) -> Library:
     key = (sha256(image).digest(), *symbols)
     library = _in_use().get(key)
     if library is None:
-        library = _in_use()[key] = _linked(image, symbols)
+        library = _in_use()[key] = _linked(image, symbols, prepare)
     return library
 
 
-def _linked(image: bytes, symbols: Sequence[str]) -> Library:
+def _linked(image: bytes, symbols: Sequence[str], prepare: Callable[[Mapping[str, int]], object]) -> Library:
     """A library in a linker of its own, because one that is shared keeps something of every library that it ever had."""
     foreign = sorted(undefined_symbols(image) - ALLOWED)
     if foreign:
@@ -98,11 +109,12 @@ def _linked(image: bytes, symbols: Sequence[str]) -> Library:
         raise ForeignCodeError(str(error)) from error
     library = Library({symbol: code[symbol] for symbol in symbols})
     # Not at exit: other objects may still call the code then.
-    finalize(library, _free, code, linker).atexit = False
+    finalize(library, _free, code, linker, prepare(library.addresses)).atexit = False
     return library
 
 
-def _free(code: binding.ResourceTracker, linker: binding.LLJIT) -> None:
+def _free(code: binding.ResourceTracker, linker: binding.LLJIT, called: object) -> None:
+    del called  # functions that the code has called until now
     code.close()
     linker.close()
 

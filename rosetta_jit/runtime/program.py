@@ -7,15 +7,16 @@ not the common case, other holders, many messages.
 from __future__ import annotations
 
 import ctypes
+import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from rosetta_jit.errors import DecodeError, EncodeError
-from rosetta_jit.kernel.state import CAPACITY, USED, VALID, lane_word
+from rosetta_jit.kernel.state import CAPACITY, NOW, NUMBER, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.callable import Context, bind_call
+from rosetta_jit.runtime.callable import MADE, Context, bind_call
 from rosetta_jit.runtime.lanes import CLEAN
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.native import Library
 
 _MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
@@ -44,6 +46,8 @@ class Loaded:
         The compiled code, None where kernels run in Python.
     borrow
         Whether bytes fields of decoded holders are views into the message.
+    told
+        Whether the kernels ask for the time or the number of a message.
     """
 
     holder_type: type[Holder]
@@ -53,6 +57,7 @@ class Loaded:
     size_sites: tuple[run.Site, ...] = ()
     library: Library | None = None
     borrow: bool = False
+    told: bool = False
 
 
 class Program:
@@ -60,6 +65,7 @@ class Program:
 
     _loaded: Loaded
     _holder: Holder
+    _context: tuple[Context, NDArray[np.int64]]
 
     def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
         self._loaded = loaded
@@ -67,6 +73,16 @@ class Program:
         lanes = self._holder.lanes_
         context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type)
         bind_call(self, None if loaded.library is None else loaded.library["call"], context)
+
+    def _tell(self, lanes: Lanes) -> None:
+        """Before messages are made: what their kernels may ask for."""
+        if self._loaded.told:
+            lanes.words[NOW], lanes.words[NUMBER] = time.time_ns(), int(self._context[1][MADE])
+
+    def _count(self, made: int) -> None:
+        """Behind them: the next one has the next number."""
+        if self._loaded.told:
+            self._context[1][MADE] += made
 
     @property
     def holder_type(self) -> type[Holder]:
@@ -131,6 +147,8 @@ class DecoderBase(Program):
         count = len(places) - 1
         batch = self._batch(count) if into is None else self._reused(into, count)
         lanes = batch.lanes
+        self._tell(lanes)
+        self._count(count)
         done = self._many(data, places, 0, batch)
         while done < count:
             result = run.result_of(lanes)
@@ -185,9 +203,11 @@ class DecoderBase(Program):
         message, lanes = arguments[0], holder.lanes_
         data = run.readable(message)
         lanes.words[VALID] = 0
+        self._tell(lanes)
         result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0)
         if result < 0:
             raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
+        self._count(1)
         lanes.words[VALID] = CLEAN
         lanes.source[0] = (message if isinstance(message, bytes) else memoryview(cast("Any", message))) if self._loaded.borrow else None
         return holder
@@ -219,7 +239,9 @@ class EncoderBase(Program):
 
     def size(self, holder: Any) -> int:
         """How many bytes the message takes."""
-        return self._measured(self._usable(holder))
+        usable = self._usable(holder)
+        self._tell(usable.lanes_)
+        return self._measured(usable)
 
     def many(self, batch: Batch) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
         """Encode all messages of a batch.
@@ -234,6 +256,8 @@ class EncoderBase(Program):
         if batch.family_ is not self._loaded.holder_type.family_:
             raise TypeError(f"a batch of {self._loaded.holder_type.__qualname__} is needed")
         count = len(batch)
+        self._tell(batch.lanes)
+        self._count(count)
         offsets = np.zeros(count + 1, np.int64)
         self._all(batch, lambda first: self._sizes(batch, offsets, first))
         buffer = np.empty(int(offsets[-1]), np.uint8)
@@ -294,6 +318,7 @@ class EncoderBase(Program):
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
         holder = self._usable(arguments[0])
+        self._tell(holder.lanes_)
         size = self._measured(holder)
         if len(arguments) == 1:
             written = np.empty(size, np.uint8)
@@ -310,6 +335,7 @@ class EncoderBase(Program):
         result = run.run_growing(self._loaded.kernel, target, begin, end, holder.lanes_, 0)
         if result < 0:
             raise run.encode_error(self._loaded.sites[-1 - result], holder.lanes_)
+        self._count(1)
         return result
 
 

@@ -285,21 +285,3 @@ def test_errors_of_making_programs():
         rj.Encoder(TORSO)
     with pytest.raises(rj.SchemaError, match="unknown-type"):
         rj.Decoder.of("rst.vision.Imag", imports=["rst/vision/Image.proto"])
-
-
-LISTS = '"x" (("points" (:list (:bottle ("name" :string) ("at" :double)))))'
-UNREACHABLE = {
-    "unmappable-place": (LISTS, "x", ".angles[0] = float32(.points[0].at)", "x.bottle-schema"),
-    "unmappable-wire": ("", "rst.geometry.Translation", ".angles[0] = float32(.x)", "rst/geometry/Translation.proto"),
-}
-
-
-@pytest.mark.parametrize("code", UNREACHABLE)
-def test_what_rules_cannot_reach_is_said(code):
-    schema, wire, rule, imported = UNREACHABLE[code]
-    text = (
-        f'import "rst/kinematics/JointAngles.proto"\nimport "{imported}"\ndata-holder: rst.kinematics.JointAngles\n'
-        f"wire-schema: {wire}\nunpack-rules:\n  len(.angles) = 1\n  {rule}\n"
-    )
-    with pytest.raises(rj.MappingError, match=code):
-        rj.Decoder("own.mapping", schema={"own.mapping": text, "x.bottle-schema": schema}, backend="python")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FOLDER = GOLDEN / "mapping"
 FRONT_ENDS = Readers({name: installed()[name] for name in ("yarp", "protobuf")})
-FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".txt"}}
+FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".txt", ".units"}}
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.mapping")), ids=lambda path: path.stem)

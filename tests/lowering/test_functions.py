@@ -86,3 +86,25 @@ def test_out_of_range(tmp_path, expression, backend):
         with pytest.raises(rj.DecodeError) as error:
             run(i=i, j=3)
         assert error.value.kind == "range"
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+def test_conversions_by_rule(tmp_path, backend):
+    run = program(tmp_path, "  .f = float64(.i, exact)\n  .n = int64(int8(.x, saturate))\n", backend)
+    for number in (0, -1, 1 << 53, 1 << 62, -(1 << 63), (1 << 63) - 1024):
+        assert run(i=number).f == number
+    for number in ((1 << 53) + 1, (1 << 63) - 1, -(1 << 62) - 1):
+        with pytest.raises(rj.DecodeError) as error:
+            run(i=number)
+        assert error.value.kind == "range"
+    for x, wanted in ((0.5, 0), (1.5, 2), (-1.5, -2), (126.6, 127), (1e300, 127), (-math.inf, -128)):
+        assert run(x=x).n == wanted
+    with pytest.raises(rj.DecodeError, match="does not fit int8"):
+        run(x=math.nan)
+    run = program(tmp_path, "  .f = float64(float32(.x, exact))\n  .n = 0\n", backend)
+    for x in (0.5, -0.0, math.inf, math.ldexp(1, -149)):
+        assert run(x=x).f == x
+    assert math.isnan(run(x=math.nan).f)
+    for x in (0.1, 1e300, 5e-324):
+        with pytest.raises(rj.DecodeError, match="does not fit float32"):
+            run(x=x)

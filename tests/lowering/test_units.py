@@ -7,6 +7,7 @@ import math
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.lowering.dimensions import USUAL, conversion
 
 HEAD = 'import "w.bottle-schema"\nimport "h.bottle-schema"\ndata-holder: h\nwire-schema: w\n'
 
@@ -87,3 +88,63 @@ def test_integers_are_converted_by_hand(tmp_path):
 def test_warnings(tmp_path, source, target, rule, codes):
     found = rj.check(files(tmp_path, source, target, f"unpack-rules:\n  {rule}\n"))
     assert [problem.code for problem in found] == codes
+
+
+TWO = '"w" (("x" :double (:unit :m)) ("z" :double (:unit :mm)) ("t" :double (:unit :s)) ("w" :double (:unit :degree)) ("n" :double))'
+
+
+@pytest.mark.parametrize(
+    ("rule", "words"),
+    [
+        (".y = .x + .z", "write `x * 0.001` to have the second in m"),
+        (".y = .x - .t", "they measure different things"),
+        (".y = .x % .z", "`%` has one value in m and one in mm"),
+        (".y = max(.x, 1.0, .z)", "`max` has one value in m"),
+        (".y = .x if .x < .z else 1.0", "`<` has one value in m"),
+        (".y = .x if .n < 1.0 else .z", "a choice has one value in m"),
+        (".y = .x if .x == .t else 1.0", "they measure different things"),
+        (".y = sin(.w)", "`sin` takes radians, and this is in degree"),
+        (".y = .x + .n", ""),
+        (".y = .x + .z * 0.001", ""),
+        (".y = sin(radians(.w))", ""),
+        (".y = .x if .t > 2.0 else 1.0", ""),
+    ],
+)
+def test_arithmetic(tmp_path, rule, words):
+    path = files(tmp_path, "m", "m", f"unpack-rules:\n  {rule}\n")
+    (tmp_path / "w.bottle-schema").write_text(TWO)
+    try:
+        found = [each for each in rj.check(path) if each.code != "never-read"]
+    except rj.MappingError as error:
+        found = [each for each in error.diagnostics if each.severity == "error"]
+    assert len(found) == (1 if words else 0)
+    assert words in "".join(f"{each.message} {each.help}" for each in found)
+
+
+def test_a_difference_of_temperatures_has_no_offset(tmp_path):
+    path = files(tmp_path, "degC", "kelvin", "unpack-rules:\n  .y = .x - .x\n")
+    with pytest.raises(rj.MappingError, match="no place on the scale of kelvin"):
+        rj.check(path)
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "expected"),
+    [
+        ("degC", "K", (1.0, 273.15)),
+        ("degF", "K", (5 / 9, 459.67 * 5 / 9)),
+        ("rpm", "rad/s", (math.tau / 60, 0.0)),
+        ("Hz", "rad/s", None),  # 1 Hz is 2π rad/s to most, and 1 to pint
+        ("dBm", "mW", None),  # a logarithm
+        ("m", "blurb", "blurb"),
+        ("10**10**10", "m", "10**10**10"),
+        ("m^-2", "m**-2", (1.0, 0.0)),
+        ("m^99", "s", None),
+    ],
+)
+def test_conversions(source, target, expected):
+    found = conversion(source, target)
+    assert found == (pytest.approx(expected, rel=1e-15) if isinstance(expected, tuple) else expected)
+
+
+def test_usual_units_are_known():
+    assert all(conversion(unit, unit, same=False) == (1.0, 0.0) for unit in USUAL)

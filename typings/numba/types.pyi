@@ -12,3 +12,7 @@ class Array(Type):
 uint8: Type
 int64: Type
 intp: Type
+
+boolean: Type
+float32: Type
+float64: Type

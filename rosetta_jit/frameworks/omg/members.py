@@ -11,6 +11,7 @@ from rosetta_jit.frameworks.omg.constants import evaluate, fit, word_of
 from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
 from rosetta_jit.frameworks.omg.types import value_of
 from rosetta_jit.model.types import Bool, Enum, Field, Int, Optional, Ref, Type, Union
+from rosetta_jit.model.units import with_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -69,8 +70,8 @@ class MemberMaker:
             following = number + 1
             default, options = notes.of_member(type_, self.default_of(scope, type_))
             shown = Optional(type_) if notes.flag("optional") else type_
-            unit = notes.text("unit")
-            yield Field(name.text, shown, number, unit, default=default, options=options, doc=notes.doc, span=name.span)
+            field = Field(name.text, shown, number, default=default, options=options, doc=notes.doc, span=name.span)
+            yield with_unit(field, notes.text("unit"))
 
     def unique(self, field: Field, ids: dict[int, str]) -> None:
         assert field.number is not None

@@ -12,6 +12,7 @@ from rosetta_jit.frameworks.ros.gather import gather
 from rosetta_jit.frameworks.ros.names import declared_in
 from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS, read
 from rosetta_jit.frameworks.ros.sections import sections
+from rosetta_jit.frameworks.ros.units import unit_in
 from rosetta_jit.model.types import Array, Bytes, Field, NamedConstant, Optional, Ref, Schema, String, Struct
 
 if TYPE_CHECKING:
@@ -88,7 +89,8 @@ def _field(field: tree.Field, dialect: Dialect) -> Field:
     type_ = _type(field.type, dialect)
     default, options = _default(field.default, type_)
     wrapped = Optional(type_) if field.optional else type_
-    return Field(field.name.text, wrapped, default=default, options=options, doc=field.doc, span=field.name.span)
+    unit = unit_in(field.doc) if dialect.extended else None
+    return Field(field.name.text, wrapped, unit=unit, default=default, options=options, doc=field.doc, span=field.name.span)
 
 
 def _default(default: Constant | tree.Values | None, type_: Type) -> tuple[Constant | None, Options]:

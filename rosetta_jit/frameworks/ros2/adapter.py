@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import ros as say
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros import definition_of
+from rosetta_jit.frameworks.ros.units import unit_in
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ def _constant(constant: Constant) -> str:
 
 def _member(field: Field) -> str:
     notes = "@optional " if field.optional else ""
+    unit = unit_in(field.doc)
+    notes += f"@unit(value={_quoted(unit)}) " if unit else ""
     if field.default is not None:
         notes += f"@default(value={_default(field)}) "
     type_ = field.type

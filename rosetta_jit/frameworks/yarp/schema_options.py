@@ -12,6 +12,7 @@ from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+from rosetta_jit.model.units import MAX_PARTS, with_units
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,6 +48,7 @@ SCALARS: Mapping[str, Type] = MappingProxyType(
 OPTIONS: Mapping[str, str] = MappingProxyType(
     {
         ":unit": "(:unit :degree)",
+        ":units": "(:units :degree :degree :m)",
         ":documentation": '(:documentation "...")',
         ":default": "(:default 0)",
         ":length": "(:length 16)",
@@ -99,6 +101,9 @@ def with_options(field: Field, options: Mapping[str, Node], problems: list[Diagn
     unit = options.get(":unit")
     if unit is not None:
         field = replace(field, unit=_unit(unit, problems))
+    units = options.get(":units")
+    if units is not None:
+        field = _with_units(field, units, problems)
     default = options.get(":default")
     if default is not None:
         field = replace(field, default=_default(default, field.type, problems))
@@ -165,13 +170,35 @@ def text_option(options: Mapping[str, Node], word: str, problems: list[Diagnosti
 
 def _unit(node: Node, problems: list[Diagnostic]) -> str | None:
     match node:
-        case Form((_, Word(name))) if name.startswith(":") and len(name) > 1:
-            return name[1:]
-        case Form((_, Text(name))) if name:
-            return name
+        case Form((_, name)) if _unit_name(name):
+            return _unit_name(name)
         case _:
             problems.append(catalogue.malformed_option(node.span, OPTIONS[":unit"]))
             return None
+
+
+def _with_units(field: Field, node: Node, problems: list[Diagnostic]) -> Field:
+    """The field with a unit for each of its first elements."""
+    if not isinstance(field.type, Array):
+        problems.append(catalogue.misplaced_option(node.span, ":units", "a :list"))
+        return field
+    match node:
+        case Form((_, *names)) if 0 < len(names) <= MAX_PARTS and all(map(_unit_name, names)):
+            return with_units(field, [_unit_name(name) for name in names])
+        case _:
+            problems.append(catalogue.malformed_option(node.span, OPTIONS[":units"]))
+            return field
+
+
+def _unit_name(node: Node) -> str:
+    """The unit that a word or text names; empty where it is none."""
+    match node:
+        case Word(name) if name.startswith(":"):
+            return name[1:]
+        case Text(name):
+            return name
+        case _:
+            return ""
 
 
 def _default(node: Node, type_: Type, problems: list[Diagnostic]) -> Constant | None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, Let, Load, Local, Place, SetField, Store, While, type_of
+from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, HostCall, Let, Load, Local, Place, SetField, Store, While, type_of
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import blocks_of, bound_names, expressions_of, statements, subexpressions
@@ -131,6 +131,8 @@ def _written(stmt: Stmt, routines: Mapping[str, set[int]]) -> set[int]:
             return {place.lane}
         case Copy(target, _, _) | Fill(target, _, _):
             return {_memory(target)}
+        case HostCall():
+            return set() if stmt.target is None else {_memory(stmt.target.address)}
         case _:
             return set()
 

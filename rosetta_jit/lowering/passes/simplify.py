@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Expect,
     For,
     Get,
+    HostCall,
     If,
     IsText,
     Let,
@@ -109,6 +110,9 @@ def _statement(stmt: Stmt, names: _Names) -> Block:
             return ()
         case Call():
             names.fixed.update(result.name for result in stmt.results)
+            return (stmt,)
+        case HostCall():
+            names.fixed.add(stmt.result.name)
             return (stmt,)
         case _:
             return _nested(stmt, names)

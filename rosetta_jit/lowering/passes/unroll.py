@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Assign, Block, Call, Const, For, Let, Var, While, index
+from rosetta_jit.kernel.ir import Assign, Block, Call, Const, For, HostCall, Let, Var, While, index
 from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_bodies, with_expressions
 from rosetta_jit.kernel.shape import bound_names, statements
 
@@ -36,7 +36,7 @@ def _block(block: Block, names: set[str]) -> Block:
 
 def _is_short(count: int, body: Block) -> bool:
     inner = [stmt for stmt, _ in statements(body)]
-    is_innermost = not any(isinstance(stmt, For | While | Call) for stmt in inner)
+    is_innermost = not any(isinstance(stmt, For | While | Call | HostCall) for stmt in inner)
     return is_innermost and count <= MAX_ROUNDS and count * len(inner) <= MAX_STATEMENTS and not ends(body)
 
 

@@ -6,7 +6,11 @@ class Library:
 class FunctionDescriptor:
     mangled_name: str
 
+class Signature:
+    return_type: object
+
 class CompileResult:
+    signature: Signature
     library: Library
     fndesc: FunctionDescriptor
 

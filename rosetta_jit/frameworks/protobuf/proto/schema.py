@@ -17,6 +17,7 @@ from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS, is_packable
 from rosetta_jit.frameworks.protobuf.proto.symbols import join
 from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Name, Oneof
 from rosetta_jit.model import types as model
+from rosetta_jit.model.units import with_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,6 +45,9 @@ def enum(entry: DeclaredEnum) -> model.Enum:
     values = tuple((value.name.text, value.number) for value in entry.enum.values)
     return model.Enum(entry.full, values, closed=entry.closed, span=entry.enum.name.span)
 
+
+UNIT = "option.(rosetta_jit.unit)"
+"""What says in which unit the values of a field are: idl/rosetta_jit/unit.proto."""
 
 KEEPS_UNKNOWN = (("unknown", True),)
 """The option of a struct whose messages keep fields that the schema does not know."""
@@ -78,16 +82,19 @@ class _Builder:
 
     def field(self, name: str, entry: DeclaredField, type_: model.Type, *marks: tuple[str, Constant]) -> model.Field:
         field = entry.field
-        return model.Field(
+        options = field_options(field, self.declared)
+        made = model.Field(
             name=name,
             type=type_,
             number=field.number,
             default=self.default(field),
             required=isinstance(type_, model.Optional) and entry.features.field_presence == "LEGACY_REQUIRED",
-            options=tuple(sorted((*marks, *self.encoding(entry), *field_options(field, self.declared)))),
+            options=tuple(sorted((*marks, *self.encoding(entry), *options))),
             doc=field.doc,
             span=field.name.span,
         )
+        unit = dict(options).get(UNIT)
+        return with_unit(made, unit) if isinstance(unit, str) else made
 
     def labelled(self, entry: DeclaredField) -> model.Type:
         value = self.value(entry.field)

@@ -1,0 +1,42 @@
+"""What can be wrong with images in a mapping."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.source import Span
+
+FORMS = {"compress": '`compress(pixels, "png", width, height, channels)`, and behind it a level or quality'}
+
+
+def arguments(span: Span | None, function: str, found: int) -> Diagnostic:
+    """Too many or too few arguments."""
+    message = f"`{function}` does not take {found} value{'' if found == 1 else 's'}"
+    return error("arguments", message, span, help_=f"write {FORMS.get(function, f'`{function}(image)`')}")
+
+
+def no_bytes(span: Span | None, function: str, found: str) -> Diagnostic:
+    """Something else where bytes are meant."""
+    return error("no-bytes", f"`{function}` takes bytes, not {found}", span, "not bytes", help_="name a field of bytes, or of uint8[]")
+
+
+def unknown_format(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
+    """A format that cannot be written."""
+    message = "a format is written in quotes" if found is None else f"images cannot be compressed as `{shorten(found)}`"
+    return error("image-format", message, span, help_=f"choose one of {', '.join(known)}")
+
+
+def no_integer(span: Span | None, found: str) -> Diagnostic:
+    """A width, height, number of channels or quality that is no integer."""
+    return error("integer", f"the size of an image is in integers, not {found}", span, f"this is {found}")
+
+
+def no_library() -> Diagnostic:
+    """A mapping with images where nothing can read them."""
+    return Diagnostic("error", "no-images", "images need Pillow, which is not installed", help="pip install rosetta-jit[images]")

@@ -1,0 +1,67 @@
+"""The functions that a user gives, against those that the mapping declares: each has its other half, and compiles to what is declared."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import functions as words
+from rosetta_jit.errors import MappingError
+from rosetta_jit.kernel.host import UserFunction
+from rosetta_jit.kernel.shape import calls_to_host
+from rosetta_jit.lowering.values import scalar_type
+from rosetta_jit.runtime.native import ALLOWED, undefined_symbols
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosetta_jit.kernel.ir import Kernel, Scalar
+    from rosetta_jit.lowering.functions import Signature
+    from rosetta_jit.request import Request
+
+
+def check_given(request: Request, declared: Mapping[str, Signature]) -> None:
+    """Refuse functions that no mapping declares."""
+    problems = tuple(words.not_declared(given.name, declared.keys()) for given in request.functions if given.name not in declared)
+    if problems:
+        raise MappingError(problems)
+
+
+def called_functions(request: Request, declared: Mapping[str, Signature], kernels: Iterable[Kernel]) -> tuple[UserFunction, ...]:
+    """The functions that kernels call, as given. A name with a dot is one of ours."""
+    called = sorted({call.function for call in calls_to_host(kernels) if "." not in call.function})
+    given = {each.name: each.function for each in request.functions}
+    missing = tuple(words.not_given(declared[name].span, name) for name in called if name not in given)
+    if missing:
+        raise MappingError(missing)
+    return tuple(_user_function(declared[name], given[name]) for name in called)
+
+
+def _user_function(signature: Signature, given: object) -> UserFunction:
+    assert callable(given)
+    parameters: tuple[Scalar, ...] = tuple(scalar_type(each) for each in signature.parameters)
+    return UserFunction(signature.name, given, parameters, scalar_type(signature.result))
+
+
+def check_compiled(functions: Iterable[UserFunction], declared: Mapping[str, Signature]) -> None:
+    """Refuse functions that do not compile to what is declared of them, or that need more of the process than kernels may have."""
+    problems = tuple(problem for function in functions for problem in _problems(function, declared[function.name]))
+    if problems:
+        raise MappingError(problems)
+
+
+def _problems(function: UserFunction, declared: Signature) -> Iterable[words.Diagnostic]:
+    if find_spec("numba") is None:
+        return (words.no_compiler(declared.span),)
+    from rosetta_jit.backends.functions import FunctionTypeError, compile_function
+    from rosetta_jit.backends.link import target_machine
+
+    try:
+        module = compile_function(function)
+    except FunctionTypeError as error:
+        return (words.does_not_compile(declared.span, function.name, str(error)),)
+    foreign = sorted(undefined_symbols(target_machine().emit_object(module)) - ALLOWED)
+    if foreign:
+        why = f"it needs {', '.join(foreign[:3])}, which kernels cannot call"
+        return (words.does_not_compile(declared.span, function.name, why),)
+    return ()

@@ -1,0 +1,116 @@
+"""What units measure, and the numbers between them: pint, asked only while a mapping is compiled.
+
+It takes half a second to load, so units that are equal, and the usual ones where only their existence matters, are not asked for.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any, cast
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"
+UNIT = re.compile(rf"(1 ?/ ?)?{WORD}( ?[*/·] ?{WORD}| {WORD})*")
+"""What is given to the library that knows units: words with small powers, multiplied and divided."""
+MAX_UNIT = 64
+
+USUAL = frozenset(
+    [
+        "m",
+        "mm",
+        "cm",
+        "km",
+        "s",
+        "ms",
+        "us",
+        "ns",
+        "rad",
+        "degree",
+        "g",
+        "kg",
+        "N",
+        "Pa",
+        "K",
+        "degC",
+        "V",
+        "A",
+        "W",
+        "J",
+        "Hz",
+        "T",
+        "lux",
+        "m^2",
+        "m/s",
+        "m/s^2",
+        "rad/s",
+        "rad/s^2",
+        "N*m",
+        "N*cm",
+    ]
+)
+"""Units that pint is known to know."""
+
+FAR = 2.0**80
+"""Where a second value of a conversion with an offset is taken: so far off that the offset is below the last digit."""
+
+
+def is_unit(unit: str) -> bool:
+    """Whether a unit is known."""
+    return unit in USUAL or conversion(unit, unit, same=False) == (1.0, 0.0)
+
+
+@cache
+def conversion(source: str, target: str, *, same: bool = True) -> tuple[float, float] | str | None:
+    """Factor and offset from one unit to another; None where there are none; the name of a unit that is not known.
+
+    There are none where the two measure different things, and between logarithms and what they are of. An angle is no number here:
+    pint would make 1 rad/s of 1 Hz. Where ``same``, a unit that is not known is still itself.
+    """
+    if same and source == target:
+        return 1.0, 0.0
+    unknown = next((unit for unit in (source, target) if len(unit) > MAX_UNIT or not UNIT.fullmatch(unit)), None)
+    return _conversion(source, target) if unknown is None else unknown
+
+
+def _conversion(source: str, target: str) -> tuple[float, float] | str | None:
+    from pint import PintError, UndefinedUnitError
+
+    registry, read = _registry(), source
+
+    def converted(value: float) -> float:
+        return float(registry.Quantity(value, source).to(target).magnitude)
+
+    try:
+        angles = _angles(registry, source)
+        read = target
+        if angles != _angles(registry, target):
+            return None
+        zero, one, two = (converted(value) for value in (0.0, 1.0, 2.0))
+        if not math.isclose(two - zero, 2 * (one - zero), rel_tol=1e-9):
+            return None
+        return (one, 0.0) if zero == 0 else (converted(FAR) / FAR, zero)
+    except UndefinedUnitError:
+        return read
+    except (PintError, ArithmeticError):  # pint raises the second for powers that no float holds
+        return None
+
+
+def _angles(registry: Any, unit: str) -> float:
+    """The power of an angle in a unit."""
+    return dict(registry.Quantity(1, unit).to_root_units().unit_items()).get("radian", 0)
+
+
+def known_units() -> Iterable[str]:
+    """Names of units, for those that are misspelt."""
+    return sorted({*USUAL, *(str(name) for name in dir(_registry()) if str(name).isalpha())})
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return cast("Any", pint).UnitRegistry()  # its types are known in part only
