@@ -184,9 +184,10 @@ def replaced(expr: Expr, known: dict[Path | Len, Expr]) -> Expr:
             return Binary(operator, replaced(left, known), replaced(right, known), span)
         case Call(function, arguments, span):
             return Call(function, tuple(replaced(argument, known) for argument in arguments), span)
-        case Choice(cases, otherwise, reason, span):
+        case Choice(cases, otherwise, reason, span, pieces):
             pairs = tuple((replaced(condition, known), replaced(value, known)) for condition, value in cases)
-            return Choice(pairs, None if otherwise is None else replaced(otherwise, known), reason, span)
+            shown = tuple(replaced(piece, known) for piece in pieces)
+            return Choice(pairs, None if otherwise is None else replaced(otherwise, known), reason, span, shown)
         case _:
             return expr
 

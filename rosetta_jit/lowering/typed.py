@@ -242,6 +242,7 @@ class Choice:
     reason: str
     type: Type
     span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
 
 
 Asked = Told | HostCall | ImageCall
@@ -320,10 +321,11 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class Reject:
-    """The message is refused, with this text."""
+    """The message is refused, with this text, or with what the ``pieces`` say, which are texts."""
 
     text: str
     span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
