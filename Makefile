@@ -5,9 +5,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT ?= demo-output
 NATIVE := build/native/libpeers.so
+BENCH = --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --benchmark-storage=file://build/bench/runs $(if $(QUICK),--quick)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check campaign conformance bench bench-check clean
+RUN := build/bench/run.json
+
+.PHONY: help demo test check campaign conformance bench bench-check bench-compare native clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -29,11 +32,18 @@ campaign: $(VENV)/.test ## the long runs of the test programme (hours)
 conformance: $(VENV)/.test ## protobuf's own conformance suite; CONFORMANCE_TEST_RUNNER and CONFORMANCE_PROTOS name its program and schemas
 	$(BIN)/python -m pytest tests/conformance $(ARGS)
 
-bench: $(VENV)/.test $(NATIVE) ## measure, print the table of targets and ratios; missed targets are marked
-	$(BIN)/python -m pytest bench --bench-report $(ARGS)
+# What the report shows is in pytest-benchmark's JSON, of which each run's is kept in build/bench/runs, too.
+bench: $(VENV)/.bench native ## measure everything, write build/bench/report.html and .md; QUICK=1: a look, in minutes
+	mkdir -p $(dir $(RUN))
+	$(BIN)/python -m pytest bench --bench-report $(BENCH) $(ARGS); status=$$?; $(BIN)/python -m bench.report $(RUN) && exit $$status
 
-bench-check: $(VENV)/.test $(NATIVE) ## the same, failing where a target is missed
-	$(BIN)/python -m pytest bench $(ARGS)
+bench-check: $(VENV)/.bench native ## the same, failing where a target is missed
+	mkdir -p $(dir $(RUN))
+	$(BIN)/python -m pytest bench $(BENCH) $(ARGS)
+
+bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file; fails where a ratio with a target is 15 % worse
+	@test -n "$(OLD)" || { echo "name a run: make bench-compare OLD=build/bench/runs/..." >&2; exit 2; }
+	$(BIN)/python -m bench.compare $(OLD) $(RUN)
 
 clean: ## remove all that these commands made
 	rm -rf $(VENV) build dist $(OUTPUT) .ruff_cache .hypothesis .benchmarks
@@ -49,10 +59,14 @@ $(VENV)/.test: pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	touch $@ $(VENV)/.demo
 
+$(VENV)/.bench: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	touch $@
+
 $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or name one: make PYTHON=..." >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is older than Python 3.11" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
-$(NATIVE): bench/native/Makefile $(wildcard bench/native/*.cpp bench/native/*.hpp bench/native/CMakeLists.txt)
-	$(MAKE) --directory bench/native OUTPUT=$(abspath $@)
+native: $(VENV)/.bench ## build the native peers: YARP or the model of it, and the C++ of each framework that is installed
+	$(MAKE) --directory bench/native OUTPUT=$(abspath $(NATIVE)) LCM_GEN=$(abspath $(firstword $(wildcard $(VENV)/lib/python*/site-packages/bin/lcm-gen)))

@@ -1,4 +1,4 @@
-"""Collects the rows of all benchmarks, prints the table, and fails where a target is missed unless only a report is wanted."""
+"""Collects what the benchmarks find for pytest-benchmark's JSON, and fails where a target is missed unless only a report is wanted."""
 
 from __future__ import annotations
 
@@ -6,46 +6,94 @@ from pathlib import Path
 
 import pytest
 
-from bench.peers import Peers
-from bench.ratios import Row, insert_in_readme, markdown, write_report
+from bench import contest
+from bench.figures import Curve, Report, Row, to_json
+from bench.machine import versions
+from bench.report.markdown import targets
+from bench.report.readme import insert_in_readme
+from bench.turns import Call, Effort
 
 ROOT = Path(__file__).resolve().parent.parent
-ROWS = pytest.StashKey[list[Row]]()
+ORDER = ("native_bottle", "native_image", "peers", "start", "memory", "limits", "curves")
+"""The modules as they are run and reported: what users ask first comes first."""
+
+FOUND = pytest.StashKey[dict[str, list]]()
 
 
 def pytest_addoption(parser):
+    parser.addoption("--quick", action="store_true", help="few and short rounds, small curves: a look, in minutes")
     parser.addoption("--bench-report", action="store_true", help="missed targets are shown and do not fail the run")
-    parser.addoption("--bench-readme", action="store_true", help="write the table into README.md")
+    parser.addoption("--bench-readme", action="store_true", help="write the table of targets into README.md")
 
 
 def pytest_configure(config):
-    config.stash[ROWS] = []
+    config.stash[FOUND] = {"rows": [], "comparisons": [], "curves": []}
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: ORDER.index(item.path.stem.removeprefix("test_")))
+
+
+def pytest_benchmark_update_json(config, output_json):
+    output_json["rosetta_jit"] = {**to_json(_report(config)), "quick": config.getoption("--quick"), "versions": versions()}
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    report = _report(config)
+    if not report.rows:
+        return
+    terminalreporter.write_sep("=", "targets")
+    terminalreporter.write(targets(report.rows))
+    if config.getoption("--bench-readme"):
+        insert_in_readme(report.rows, ROOT / "README.md")
+
+
+def _report(config):
+    return Report(**{name: tuple(found) for name, found in config.stash[FOUND].items()})
+
+
+@pytest.fixture(scope="session")
+def effort(request):
+    return Effort.of(quick=request.config.getoption("--quick"))
 
 
 @pytest.fixture
-def record(request):
+def record(request, found):
     """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted."""
 
     def record_row(what, measured, at_most, unit, detail=""):
         row = Row(what, measured, at_most, unit, detail)
-        request.config.stash[ROWS].append(row)
+        found("rows", row)
         if not request.config.getoption("--bench-report"):
-            assert row.met, f"{what}: {measured:.3g} {unit}, at most {at_most:.3g} wanted"
+            assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"
 
     return record_row
 
 
-@pytest.fixture(scope="session")
-def peers():
-    return Peers(ROOT / "build" / "native" / "libpeers.so")
+@pytest.fixture
+def compare(found, effort, benchmark):
+    """Call it with a chapter, a title and contenders, ours first: the comparison joins the report, and ours pytest-benchmark's own."""
+
+    def measure(chapter, title, contenders, *, rounds=None):
+        outcome = contest.held(effort, contenders, rounds=rounds)
+        found("comparisons", contest.comparison(chapter, title, contenders, outcome))
+        ours = contenders[0].timed
+        assert isinstance(ours, Call)
+        benchmark.group = chapter
+        benchmark.extra_info.update({who: outcome.took(who).median for who in outcome.rounds_ns})
+        benchmark.pedantic(ours.function, ours.arguments, rounds=5, iterations=max(1, ours.count // 5))
+        return outcome
+
+    return measure
 
 
-def pytest_terminal_summary(terminalreporter, config):
-    rows = config.stash[ROWS]
-    if not rows:
-        return
-    terminalreporter.write_sep("=", "targets")
-    terminalreporter.write(markdown(rows))
-    write_report(rows, ROOT / "build" / "bench")
-    if config.getoption("--bench-readme"):
-        insert_in_readme(rows, ROOT / "README.md")
+@pytest.fixture
+def found(request):
+    """Call it with `rows`, `comparisons` or `curves` and one of them: it joins the report."""
+    return lambda kind, each: request.config.stash[FOUND][kind].append(each)
+
+
+@pytest.fixture
+def draw(found):
+    """Call it with the fields of a `Curve`, which joins the report."""
+    return lambda *arguments, **options: found("curves", Curve(*arguments, **options))

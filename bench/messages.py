@@ -23,8 +23,12 @@ def tagged(count: int = 16) -> bytes:
 
 def batch(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Many specialised bottles in one buffer, and their n + 1 offsets."""
-    message = np.frombuffer(specialised(), np.uint8)
-    return np.tile(message, count), np.arange(count + 1, dtype=np.int64) * len(message)
+    return repeated(specialised(), count)
+
+
+def repeated(message: bytes, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """A message many times in one buffer, and the n + 1 offsets."""
+    return np.tile(np.frombuffer(message, np.uint8), count), np.arange(count + 1, dtype=np.int64) * len(message)
 
 
 def image(width: int = WIDTH, height: int = HEIGHT) -> bytes:

@@ -1,4 +1,4 @@
-"""What a thousand decoders of one type hold."""
+"""What is held: by a decoder, by a holder, by a million rows."""
 
 from __future__ import annotations
 
@@ -8,26 +8,64 @@ from pathlib import Path
 import pytest
 
 import rosetta_jit as rj
-from bench.messages import joints_mapping, specialised
+from bench.figures import Spread
+from bench.messages import joints_mapping, repeated, specialised
 
-COUNT = 1000
+COUNT = 10_000
 STATUS = Path("/proc/self/statm")
 PAGE_BYTES = 4096
 
+pytestmark = pytest.mark.skipif(not STATUS.exists(), reason="reads the resident set from /proc")
 
-@pytest.mark.skipif(not STATUS.exists(), reason="reads the resident set from /proc")
-def test_a_thousand_decoders(tmp_path, record):
+
+@pytest.fixture
+def decoder(tmp_path):
+    return rj.Decoder(joints_mapping(24, tmp_path), encoding="yarp3")
+
+
+def test_decoders(tmp_path, record):
     mapping, message = joints_mapping(24, tmp_path), specialised(24)
-    warm = [rj.Decoder(mapping, encoding="yarp3") for _ in range(20)]
+
+    def make():
+        decoder = rj.Decoder(mapping, encoding="yarp3")
+        decoder(message)
+        return decoder
+
+    record("memory of 10,000 decoders of one type, each", held(make, COUNT), None, "KB", "aim 20 KB")
+
+
+def test_holders(decoder, record):
+    message = specialised(24)
+    record("memory of 10,000 holders of 24 angles, each", held(lambda: decoder.into(message, decoder.new()), COUNT), None, "KB")
+
+
+def test_programs(tmp_path, record, effort):
+    """Of different mappings: each has code of its own."""
+    numbers = iter(range(30, 30 + 200))
+
+    def make():
+        return rj.Decoder(joints_mapping(next(numbers), tmp_path), encoding="yarp3")
+
+    record("memory of decoders of different mappings, each", held(make, 5 if effort.quick else 40, warm=2), None, "KB", "30 to 70 doubles")
+
+
+def test_a_million_rows(decoder, record, effort):
+    rows = 100_000 if effort.quick else 1_000_000
+    buffer, offsets = repeated(specialised(24), rows)
+    size = held(lambda: decoder.many(buffer, offsets), 1, warm=0).times(1000 / rows)
+    record("memory of a million rows of 24 angles, each", size, None, "bytes", "96 bytes of them angles")
+
+
+def held(make, count, *, warm=20):
+    """Kilobytes of the resident set for each of so many things, made and kept."""
+    kept = [make() for _ in range(warm)]
     before = resident_bytes()
-    decoders = [rj.Decoder(mapping, encoding="yarp3") for _ in range(COUNT)]
-    for decode in decoders:
-        decode(message)
-    held = (resident_bytes() - before) / COUNT
-    assert len(warm) + len(decoders) == COUNT + 20
-    record("memory of 1,000 decoders of one type, each", held / 1000, None, "KB", "aim 20 KB")
+    kept += [make() for _ in range(count)]
+    each = (resident_bytes() - before) / count / 1000
+    assert len(kept) == warm + count
+    return Spread.of([each])
 
 
 def resident_bytes() -> int:
     gc.collect()
-    return int(STATUS.read_text().split()[1]) * PAGE_BYTES
+    return int(STATUS.read_text("utf-8").split()[1]) * PAGE_BYTES

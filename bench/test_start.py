@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import statistics
-import subprocess
-import sys
-import time
+import json
+import shutil
 
 import pytest
 
+from bench.figures import Comparison, Figure, Series, Spread, ratio
 from bench.messages import joints_mapping
-
-ROUNDS = 11
-
-SURROUNDINGS = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-"""Our modules are compiled to bytecode once, as an installer has done with numpy's and llvmlite's."""
+from bench.processes import run, took_s
 
 FIRST_DECODE = """
 import struct, sys
@@ -25,40 +19,99 @@ decode(struct.pack("<ii24d", 266, 24, *range(24)))
 assert sys.argv[2] != "warm" or not {"numba", "lark"} & set(sys.modules)
 """
 
-BASELINE = "import numpy, llvmlite.binding"
+BASELINES = {
+    "a process that imports nothing": "pass",
+    "a process that imports numpy": "import numpy",
+    "a process that imports numpy and llvmlite": "import numpy, llvmlite.binding",
+    "a process that imports numba": "import numba",
+}
+NEEDED = "a process that imports numpy and llvmlite"
+WARM, COLD = "first decode, warm cache", "first decode, nothing cached"
 
-FIRST_COMPILE = """
+COMPILES = """
 import sys, time
-import numba
-import rosetta_jit as rj
-started = time.perf_counter()
-rj.Decoder(sys.argv[1], encoding="yarp3")
-print(time.perf_counter() - started)
+import numpy, llvmlite.binding
+for mapping in sys.argv[1:]:
+    started = time.process_time()
+    import rosetta_jit as rj
+    rj.Decoder(mapping, encoding="yarp3")
+    print(1000 * (time.process_time() - started))
 """
 
 
-def test_warm_start_against_importing_what_it_needs(tmp_path, record):
-    mapping = str(joints_mapping(24, tmp_path))
-    environment = {**SURROUNDINGS, "ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
-    run(environment, FIRST_DECODE, mapping, "cold")
-    times = {"warm": [], "baseline": []}
-    for _ in range(ROUNDS):
-        times["warm"].append(run(environment, FIRST_DECODE, mapping, "warm"))
-        times["baseline"].append(run(environment, BASELINE))
-    warm, baseline = (statistics.median(times[name]) for name in ("warm", "baseline"))
-    record("fresh process to first decode, warm cache", warm / baseline, 1.5, "x importing numpy and llvmlite", f"{1000 * warm:.0f} ms")
+@pytest.fixture(scope="module")
+def warm_cache(tmp_path_factory):
+    """A mapping, and a cache that has it."""
+    folder = tmp_path_factory.mktemp("warm")
+    mapping = str(joints_mapping(24, folder))
+    run("-c", FIRST_DECODE, mapping, "cold", ROSETTA_JIT_CACHE_DIR=str(folder / "cache"))
+    return mapping, folder / "cache"
 
 
-@pytest.mark.parametrize(("fields", "aim_ms"), [(10, 60), (100, 250)])
-def test_first_compile(tmp_path, record, fields, aim_ms):
-    mapping = str(joints_mapping(fields, tmp_path))
-    environment = {**SURROUNDINGS, "ROSETTA_JIT_CACHE": "off"}
-    command = [sys.executable, "-c", FIRST_COMPILE, mapping]
-    best = min(float(subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout) for _ in range(3))
-    record(f"first compile, {fields} fields, numba imported", 1000 * best, None, "ms", f"aim {aim_ms} ms")
+def test_processes(warm_cache, effort, found, record):
+    mapping, cache = warm_cache
+    processes = {
+        WARM: lambda: took_s(FIRST_DECODE, mapping, "warm", ROSETTA_JIT_CACHE_DIR=str(cache)),
+        COLD: lambda: took_s(FIRST_DECODE, mapping, "cold", ROSETTA_JIT_CACHE="off"),
+        **{name: lambda program=program: took_s(program) for name, program in BASELINES.items()},
+    }
+    taken = in_turns(processes, 5 if effort.quick else 11)
+    roles = dict.fromkeys(BASELINES, "limit")
+    figures = tuple(Figure(who, roles.get(who, "ours"), "", tuple(1e9 * each for each in values)) for who, values in taken.items())
+    found("comparisons", Comparison("Limits", "a process, from its start to its end", figures))
+    milliseconds = 1000 * Spread.of(taken[WARM]).median
+    what, unit = "fresh process to first decode, warm cache", "x importing numpy and llvmlite"
+    record(what, ratio(taken[WARM], taken[NEEDED]), 1.5, unit, f"{milliseconds:.0f} ms")
 
 
-def run(environment: dict[str, str], program: str, *arguments: str) -> float:
-    started = time.perf_counter()
-    subprocess.run([sys.executable, "-c", program, *arguments], env=environment, check=True)
-    return time.perf_counter() - started
+@pytest.mark.parametrize(("fields", "aim_ms"), [(10, 100), (100, 400)])
+def test_compile(tmp_path, effort, record, fields, aim_ms):
+    """The first one in a process pays for the compiler's import; the next one, of another mapping, for itself alone."""
+    mappings = [str(joints_mapping(count, tmp_path)) for count in (fields, fields + 1)]
+    runs = [run("-c", COMPILES, *mappings, ROSETTA_JIT_CACHE="off").split() for _ in range(3 if effort.quick else 7)]
+    first, next_ = (Spread.of([float(each[number]) for each in runs]) for number in (0, 1))
+    record(f"first compile in a process, {fields} fields", first, None, "ms", "numpy and llvmlite imported, nothing of ours")
+    record(f"next compile in a process, {fields} fields", next_, None, "ms", f"aim {aim_ms} ms")
+
+
+@pytest.mark.parametrize("backend", ["numba", "llvm"])
+def test_cold_compile(tmp_path, effort, draw, backend):
+    counts = [1, 10, 100] if effort.quick else [1, 3, 10, 30, 100, 300, 1000]
+    points: dict[str, list] = {}
+    for count in counts:
+        mapping = str(joints_mapping(count, tmp_path))
+        rounds = [json.loads(run("-m", "bench.cold_compile", mapping, backend)) for _ in range(1 if effort.quick else 3)]
+        for stage in rounds[0]:
+            points.setdefault(stage, []).append((count, Spread.of([each[stage] for each in rounds])))
+    series = [Series(stage, "ours", tuple(each)) for stage, each in points.items() if any(cost.median for _, cost in each)]
+    draw(f"cold compile in a new process, {backend}", "fields", "ms", tuple(series), parts=True)
+
+
+def test_warm_load_against_cache_size(warm_cache, effort, draw, tmp_path):
+    mapping, warm = warm_cache
+    sizes = [1, 100] if effort.quick else [1, 10, 100, 1000]
+    points = []
+    for size in sizes:
+        folder = tmp_path / f"cache{size}"
+        fill(warm, folder, size)
+        taken = in_turns({WARM: lambda folder=folder: took_s(FIRST_DECODE, mapping, "warm", ROSETTA_JIT_CACHE_DIR=str(folder))}, 5)
+        points.append((size, Spread.of(taken[WARM]).times(1000)))
+    draw("warm start against the size of the cache", "programs", "ms", (Series(WARM, "ours", tuple(points)),), may_grow=0)
+
+
+def fill(warm, folder, programs):
+    """A cache of so many programs: one that is asked for, and copies of it under other names."""
+    shutil.copytree(warm, folder)
+    folder.chmod(0o700)
+    for number in range(1, programs):
+        for file in warm.iterdir():
+            shutil.copy(file, folder / f"{number:0{len(file.stem)}x}{file.suffix}")
+
+
+def in_turns(processes, rounds):
+    """Seconds of each process, by rounds; the first round, in which files are read from the disk, does not count."""
+    taken = {name: [] for name in processes}
+    for _ in range(1 + rounds):
+        for name, process in processes.items():
+            taken[name].append(process())
+    return {name: values[1:] for name, values in taken.items()}

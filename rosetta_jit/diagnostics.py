@@ -5,8 +5,9 @@ The words of each diagnostic stand in `rosetta_jit.catalogue`, one function a mi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

@@ -6,12 +6,12 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
@@ -139,7 +139,8 @@ class Build:
 
     @cached_property
     def backend(self) -> Backend:
-        return self.request.backend or ("numba" if find_spec("numba") is not None else "llvm")
+        """The one that was asked for, or LLVM: what numba adds, a type for users' own functions, `Decoder.kernel` has in any case."""
+        return self.request.backend or "llvm"
 
     @cached_property
     def functions(self) -> tuple[UserFunction, ...]:

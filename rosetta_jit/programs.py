@@ -86,7 +86,7 @@ class Options(TypedDict, total=False):
     functions : mapping of str to callable
         The functions that the mapping declares, by name: Python functions of numbers, or numba's. They are compiled into the kernel.
     backend : {"numba", "llvm", "python", "interpreter"}
-        What runs the kernel; numba where it is installed, else LLVM.
+        What runs the kernel; LLVM by default. numba types it on its way to LLVM, which takes longer and gives the same code.
     """
 
     encoding: str | None

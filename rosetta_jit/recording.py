@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import lzma
 import struct
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 from rosetta_jit.catalogue import recording as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 
 if TYPE_CHECKING:

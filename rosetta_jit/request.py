@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Literal
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -54,7 +56,7 @@ class Request:
     functions
         Functions of the user's own that the mapping calls.
     backend
-        What runs the kernels; None for numba where it is installed, else LLVM.
+        What runs the kernels; None for LLVM.
     """
 
     direction: Direction

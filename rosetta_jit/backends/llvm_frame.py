@@ -7,11 +7,12 @@ so many registers, and LLVM would spend minutes on finding that out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, USED, lane_word
 
 if TYPE_CHECKING:

@@ -63,11 +63,11 @@ IMPORTS = (
     "from rosetta_jit.backends.python_support import Failed, has_room, is_text, quotient, remainder, reserve, run_attempts",
     "from rosetta_jit.kernel.arithmetic import binary, convert, fits, from_bytes, to_bytes, unary, wrapped",
 )
-OF_DECIMALS = "from rosetta_jit.kernel.decimals import digits, nearest, scale"
 HOST_IMPORTS = ("from rosetta_jit.kernel.host import RefusedError",)
 """Of a kernel that calls functions of its host."""
 
-CALLED = frozenset(name.strip(",") for line in (*IMPORTS, OF_DECIMALS, *HOST_IMPORTS) for name in line.partition(" import ")[2].split())
+OF_DECIMALS = "from rosetta_jit.kernel.decimals import digits, nearest, scale"
+CALLED = frozenset(name.strip(",") for line in (*IMPORTS, *HOST_IMPORTS, OF_DECIMALS) for name in line.partition(" import ")[2].split())
 PARAMETERS = "buffer, begin, end, state, lanes, row"
 
 
@@ -89,7 +89,7 @@ def python_text(kernel: Kernel) -> str:
     writer = Writer()
     writer.line(f"# Made by rosetta_jit from the kernel {kernel.name!a}, which is to {kernel.direction}. Changes will be lost.")
     calls_host = any(isinstance(stmt, HostCall) for body in kernel.bodies for stmt in statements(body))
-    for line in (*IMPORTS, *([OF_DECIMALS] if _has_decimals(kernel) else []), *(HOST_IMPORTS if calls_host else ())):
+    for line in (*IMPORTS, *(HOST_IMPORTS if calls_host else ()), *([OF_DECIMALS] if _has_decimals(kernel) else [])):
         writer.line(line)
     for routine in kernel.routines:
         writer.line()

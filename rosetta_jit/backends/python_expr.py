@@ -7,9 +7,10 @@ exception, and one that is only moved keeps all bits of a NaN.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -79,12 +80,8 @@ def expression(names: Names, expr: Expr) -> str:
             return _read(names, type_, Wire(at), order)
         case Get(type_, place):
             return _read(names, type_, place, "<")
-        case Used(lane):
-            return names.used_name(lane)
-        case Capacity(lane):
-            return names.capacity_name(lane)
-        case Told(what):
-            return TOLD[what]
+        case Used() | Capacity() | Told():
+            return _known(names, expr)
         case Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
         case Unary(function, operand):
@@ -100,17 +97,28 @@ def expression(names: Names, expr: Expr) -> str:
             return _convert(type_, type_of(operand), expression(names, operand))
         case Select(condition, then, otherwise):
             return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
-        case IsText() | Nearest() | Digits() | Scale():
-            return _text(names, expr)
+        case IsText(address, size):
+            return f"is_text({part(names, address, expression(names, size))})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(names, expr)
         case _:
             assert_never(expr)
 
 
-def _text(names: Names, expr: IsText | Nearest | Digits | Scale) -> str:
-    """What is asked of a text, or of the text of a number."""
+def _known(names: Names, expr: Used | Capacity | Told) -> str:
     match expr:
-        case IsText(address, size):
-            return f"is_text({part(names, address, expression(names, size))})"
+        case Used(lane):
+            return names.used_name(lane)
+        case Capacity(lane):
+            return names.capacity_name(lane)
+        case Told(what):
+            return TOLD[what]
+        case _:
+            assert_never(expr)
+
+
+def _decimal(names: Names, expr: Nearest | Digits | Scale) -> str:
+    match expr:
         case Nearest(address, size, exponent):
             return f"nearest({part(names, address, expression(names, size))}, {expression(names, exponent)})"
         case Digits(value, places):

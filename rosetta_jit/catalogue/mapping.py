@@ -97,6 +97,11 @@ def lone_brace(span: Span | None) -> Diagnostic:
     )
 
 
+def no_value(span: Span | None) -> Diagnostic:
+    """A value in braces, and more."""
+    return error("syntax", "braces hold one value", span, "more than one")
+
+
 def many_pieces(span: Span | None, most: int) -> Diagnostic:
     """A text with too many values."""
     return error("many-pieces", f"a text has at most {most} values and texts between them", span)

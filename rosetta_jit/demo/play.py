@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from tqdm import tqdm
 
 import rosetta_jit
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.demo.dynamic import dynamic_reader
 from rosetta_jit.demo.start import start_key, start_times_ms
 from rosetta_jit.demo.streams import Stream, load_streams

@@ -5,8 +5,6 @@ Run as a program, with ``cold`` or ``warm`` as argument, it prints milliseconds 
 
 from __future__ import annotations
 
-import contextlib
-import importlib
 import json
 import os
 import subprocess
@@ -19,11 +17,11 @@ from rosetta_jit.demo.streams import DIALECTS, MAPPINGS
 
 
 def start_times_ms() -> tuple[dict[str, float], dict[str, float]]:
-    """Cold and warm milliseconds by `start_key`; the import of numba before a first compile is not counted."""
+    """Cold and warm milliseconds by `start_key`: the second process finds what the first one compiled."""
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "ROSETTA_JIT_CACHE_DIR": os.path.join(folder, "cache")}  # noqa: PTH118 - one join
         environment.pop("ROSETTA_JIT_CACHE", None)
-        return _run("cold", environment), _run("warm", environment)
+        return _run(environment), _run(environment)
 
 
 def start_key(mapping: str, dialect: str) -> str:
@@ -31,18 +29,15 @@ def start_key(mapping: str, dialect: str) -> str:
     return f"{mapping} {dialect}"
 
 
-def _run(start: str, environment: dict[str, str]) -> dict[str, float]:
-    command = [sys.executable, "-m", "rosetta_jit.demo.start", start]
+def _run(environment: dict[str, str]) -> dict[str, float]:
+    command = [sys.executable, "-m", "rosetta_jit.demo.start"]
     output = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, text=True).stdout  # noqa: S603 - our own module
     return cast("dict[str, float]", json.loads(output))
 
 
-def _measure(start: str) -> dict[str, float]:
+def _measure() -> dict[str, float]:
     import rosetta_jit
 
-    if start == "cold":
-        with contextlib.suppress(ImportError):
-            importlib.import_module("numba")
     times: dict[str, float] = {}
     for mapping in dict.fromkeys(MAPPINGS.values()):
         for dialect in DIALECTS:
@@ -53,4 +48,4 @@ def _measure(start: str) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(_measure(sys.argv[1])))
+    sys.stdout.write(json.dumps(_measure()))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.recording import Message, read_messages
 
 RECORDINGS = Path(__file__).resolve().parent / "recordings"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from fnmatch import fnmatch
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:

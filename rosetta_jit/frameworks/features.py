@@ -8,10 +8,11 @@ Whatever fails on that way is a gap, with what stood in the way. What the framew
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import Choices
 from rosetta_jit.frameworks.feature_list import FEATURES

@@ -6,17 +6,18 @@ an index within the place included, is on the other side: a target has nothing t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, cast
 
-from lark import Lark, Token, Tree
+from lark import Token, Tree
 from lark.lark import PostLex
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.mapping_rules import Context, read_rule, read_string
+from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
 from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
 from rosetta_jit.source import Span
@@ -24,9 +25,13 @@ from rosetta_jit.source import Span
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from lark import Lark
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Source
+
+GRAMMAR = FilePath(__file__).with_name("mapping.lark")
 
 MAX_NESTING = 64
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
@@ -59,18 +64,10 @@ def parse(source: Source) -> Mapping:
 
 @cache
 def _grammar() -> Lark:
-    text = FilePath(__file__).with_name("mapping.lark").read_text(encoding="utf-8")
-    return Lark(
-        text,
-        parser="lalr",
-        lexer="basic",
-        postlex=_Tokens(),
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
+    return parser_of(GRAMMAR, postlex=Tokens(), positions=True)
 
 
-class _Tokens(PostLex):
+class Tokens(PostLex):
     """Tells the `when` of a rejection from one that begins a block, and makes lark keep the tokens that stand for mistakes."""
 
     always_accept = ("UNCLOSED", "STRANGE")

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frontend.templates import pieces_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Member, Name, Path, Unary
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, Via, When

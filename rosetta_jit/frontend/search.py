@@ -7,12 +7,13 @@ variable ROSETTA_JIT_PATH), and what is shipped with the package.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import field
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.source import Source
 

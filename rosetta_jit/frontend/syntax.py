@@ -7,13 +7,13 @@ that was open then is dropped, and so is the closing word of a block whose openi
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 from lark.exceptions import UnexpectedToken
 from lark.lexer import Token
 from lark.parsers.lalr_analysis import Shift
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 """Values in the text of a rejection: `"frame {.name} has {.count} joints"`; `{{` and `}}` stand for braces.
 
-What stands in braces is parsed by the grammar of the mapping language, on its own.
+What stands in braces is parsed as the condition of a rejection, the only rule of a block.
 """
 
 from __future__ import annotations
@@ -11,15 +11,18 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from lark import Lark, Token, Tree
+from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from lark import Lark
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr
@@ -30,6 +33,9 @@ MAX_PIECES = 20
 
 MAX_TOKENS = 64
 """Of a value: that bounds how deep it nests."""
+
+BEFORE = (("UNPACK_RULES", "unpack-rules"), ("COLON", ":"), ("REJECT", "reject"), ("STRING", '""'), ("GUARD", "when"))
+"""The tokens before a condition."""
 
 NOWHERE = Recovery({}, frozenset(), opens=frozenset(), closes="")
 
@@ -73,12 +79,17 @@ def _value(text: str, place: Span, problems: list[Diagnostic]) -> Tree[Token] | 
         return None
     for token in tokens:
         token.start_pos, token.end_pos = (place.start + 1 + (end or 0) for end in (token.start_pos, token.end_pos))
-    tree = parse_tokens(_grammar(), place.source, tokens, NOWHERE, words.unexpected)
-    if isinstance(tree, Tree):
-        (value,) = (child for child in tree.children if isinstance(child, Tree))
-        return value
-    problems.extend(problem if _is_in(problem, place) else replace(problem, span=place) for problem in tree)
-    return None
+    before = [Token(kind, text, start_pos=place.start, end_pos=place.start) for kind, text in BEFORE]
+    tree = parse_tokens(_grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)
+    if not isinstance(tree, Tree):
+        problems.extend(problem if _is_in(problem, place) else replace(problem, span=place) for problem in tree)
+        return None
+    statements = [rules for rules in tree.children if isinstance(rules, Tree)]
+    found = [rule for rules in statements for rule in rules.children if isinstance(rule, Tree)]
+    if len(found) > 1 or len(statements) > 1:
+        problems.append(words.no_value(place))
+        return None
+    return next(value for value in found[0].children if isinstance(value, Tree))
 
 
 def _is_in(problem: Diagnostic, place: Span) -> bool:
@@ -87,5 +98,4 @@ def _is_in(problem: Diagnostic, place: Span) -> bool:
 
 @cache
 def _grammar() -> Lark:
-    text = Path(__file__).with_name("mapping.lark").read_text(encoding="utf-8")
-    return Lark(text, parser="lalr", lexer="basic", start="value", propagate_positions=True, maybe_placeholders=False)
+    return parser_of(Path(__file__).with_name("mapping.lark"), positions=True)

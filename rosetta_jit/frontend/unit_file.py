@@ -11,10 +11,10 @@ The text is read line by line; what is wrong with one line does not keep the oth
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ A function gets the numbers, then the bytes that it reads, then those that it fi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS, Value, constant, limits
 
 if TYPE_CHECKING:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import arithmetic, decimals
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError

@@ -70,8 +70,9 @@ replaces what the holder held. Later rows of a batch are added to the rows befor
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from rosetta_jit.dataclass import dataclass
 
 Scalar = Literal["bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"]
 Order = Literal["<", ">"]

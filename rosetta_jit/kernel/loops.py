@@ -6,9 +6,9 @@ round breaks is dropped for good, so that for all its loops together a kernel is
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Advance, Assign
 from rosetta_jit.kernel.linear import Linear, minus, plus, times

@@ -6,9 +6,9 @@ the message, its value before), as far as every path shows them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import limits
 from rosetta_jit.kernel.linear import Linear, coefficient_of, minus, plus, shifted, times
 from rosetta_jit.kernel.symbolic import MAX_ROWS, Scope, linear

@@ -12,9 +12,10 @@ Facts are gained along a path and given up at its end (`mark`, `rollback`), so t
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
 
 FIRST = (6, 40)

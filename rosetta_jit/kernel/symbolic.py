@@ -6,9 +6,10 @@ whoever has a value has the proof too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import integers
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
 from rosetta_jit.kernel.decimals import MAX_PLACES, MAX_SCALE, MOST_DIGITS

@@ -6,10 +6,11 @@ survives where paths meet), `contracts` (routines), `shape` (the text). A failed
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import contracts, paths
 from rosetta_jit.kernel.ir import (
     WIDTH,

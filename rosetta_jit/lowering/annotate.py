@@ -7,10 +7,11 @@ what the vector's own type cannot.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frontend.unit_file import MAX_PROBLEMS
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.dimensions import conversion, is_unit, known_units

@@ -7,9 +7,10 @@ fill afterwards. In the alternatives of a `Choice` the same fields are bound in 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Protocol
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer

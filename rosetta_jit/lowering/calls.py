@@ -39,9 +39,25 @@ NO_ENUMS: Mapping[str, Enum] = MappingProxyType({})
 INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
 FLOATS = ("float32", "float64")
 ANGULAR = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
-DIVISIONS = ("divide", "floor_divide", "modulo")
 TOLD: dict[str, Literal["now", "number"]] = {"now": "now", "counter": "number"}
-FUNCTIONS = (*TOLD, "radians", "degrees", *ANGULAR, "sqrt", "floor", "ceil", "round", "abs", "min", "max", "align", *DIVISIONS)
+DIVISIONS = ("divide", "floor_divide", "modulo")
+FUNCTIONS = (
+    *TOLD,
+    "radians",
+    "degrees",
+    *ANGULAR,
+    "sqrt",
+    "floor",
+    "ceil",
+    "round",
+    "abs",
+    "min",
+    "max",
+    "align",
+    "divide",
+    "floor_divide",
+    "modulo",
+)
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -50,14 +66,14 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if target is not None:
         scope.named_enums.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
-    if expr.function in IMAGE_FUNCTIONS:
-        return type_image_call(expr, scope, type_expr)
     if expr.function == "len":
         return type_length(expr, scope, type_expr)
     if expr.function in NAMES:
         return type_text_call(expr, scope, type_expr)
+    if expr.function in IMAGE_FUNCTIONS:
+        return type_image_call(expr, scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *IMAGE_FUNCTIONS, *NAMES, "bool", "has", "len", *scope.enums, *scope.functions}
+        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *NAMES, *IMAGE_FUNCTIONS, "bool", "has", "len", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

@@ -5,20 +5,21 @@ Imports are read by the front ends, names and types resolved, and each direction
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.errors import MappingError, ReportError
-from rosetta_jit.frontend import unit_file
-from rosetta_jit.frontend.search import Reading, refusal
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.errors import MappingError
+from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
-from rosetta_jit.lowering.others import MAPPING_SUFFIX, read_others
+from rosetta_jit.lowering.imports import Imports, merge, read_imports
+from rosetta_jit.lowering.others import read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
-from rosetta_jit.model.types import Schema, name_parts
+from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,13 +27,11 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frontend.idl import FrontEnds
     from rosetta_jit.frontend.search import SearchPath
-    from rosetta_jit.frontend.unit_file import UnitFile
     from rosetta_jit.lowering.functions import Signature
+    from rosetta_jit.lowering.imports import Imported
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
-    from rosetta_jit.model.mapping import Import, Mapping
-    from rosetta_jit.model.types import Declaration
-    from rosetta_jit.source import Source
+    from rosetta_jit.model.mapping import Mapping
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +48,6 @@ class Checked:
     pack: tuple[Rule, ...] | None
     functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _Imported:
-    """What one import declares, or says of units."""
-
-    statement: Import
-    schema: Schema
-    units: tuple[UnitFile, ...] = ()
 
 
 def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: Reading | None = None) -> Checked:
@@ -79,13 +69,12 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
     mapping, reading = derive(mapping, problems), reading or Reading()
     derived = len(problems)
     others = read_others(mapping, search, reading, problems)
-    imports = _Imports(mapping.source, front_ends, search, reading)
-    imported = _imports(mapping, imports, problems)
-    theirs = [each for other in others.mappings() for each in _imports(other, replace(imports, importer=other.source), problems)]
-    everything = [*imported, *theirs]
-    merged = _merged(everything, problems)
+    imports = Imports(mapping.source, front_ends, search, reading)
+    imported = read_imports(mapping, imports, problems)
+    theirs = [each for other in others.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
+    merged = merge([*imported, *theirs], problems)
     complete = not any(problem.severity == "error" for problem in problems[derived:])
-    schema = annotated(merged, [file for each in everything for file in each.units], imports.has, problems)
+    schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
@@ -98,68 +87,6 @@ def check(mapping: Mapping, front_ends: FrontEnds, search: SearchPath, reading: 
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
-
-
-@dataclass(frozen=True, slots=True)
-class _Imports:
-    """How the imports of one source are read."""
-
-    importer: Source
-    front_ends: FrontEnds
-    search: SearchPath
-    reading: Reading
-
-    def has(self, type_: str) -> bool:
-        """Whether there is a file that a type of this name is likely declared in."""
-        return any(not refusal(name) and self.search.find(name, self.importer) is not None for name in self.front_ends.guesses(type_))
-
-    def read(self, statement: Import) -> _Imported | Diagnostic:
-        source = self.search.loader(self.reading, self.importer)(statement.path)
-        if source is None:
-            return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
-        if source.name.endswith(unit_file.SUFFIX):
-            problems: list[Diagnostic] = []
-            units = unit_file.parse(source, problems)
-            if problems:
-                raise MappingError(tuple(problems))
-            return _Imported(statement, Schema({}), (units,))
-        front_end = self.front_ends.find(source.name)
-        if front_end is None:
-            return words.import_suffix(statement.span, statement.path, self.front_ends.suffixes)
-        return _Imported(statement, front_end(source, self.search.loader(self.reading, source)))
-
-
-def _imports(mapping: Mapping, imports: _Imports, problems: list[Diagnostic]) -> list[_Imported]:
-    imported: list[_Imported] = []
-    seen: set[str] = set()
-    for statement in mapping.imports:
-        if statement.path.endswith(MAPPING_SUFFIX):
-            continue
-        if statement.path in seen:
-            problems.append(words.import_repeated(statement.span, statement.path))
-            continue
-        seen.add(statement.path)
-        try:
-            found = imports.read(statement)
-        except ReportError as error:
-            problems.extend(words.placed(problem, statement.span) for problem in error.diagnostics)
-            continue
-        if isinstance(found, _Imported):
-            imported.append(found)
-        else:
-            problems.append(found)
-    return imported
-
-
-def _merged(imported: list[_Imported], problems: list[Diagnostic]) -> Schema:
-    types: dict[str, Declaration] = {}
-    owners: dict[str, str] = {}
-    for one in imported:
-        for name, declaration in one.schema.types.items():
-            if types.setdefault(name, declaration) != declaration:
-                problems.append(words.conflicting_type(one.statement.span, name, owners[name], one.statement.path))
-            owners.setdefault(name, one.statement.path)
-    return Schema(types, tuple(dict.fromkeys(source for one in imported for source in one.schema.sources)))
 
 
 def _directions(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
@@ -185,13 +112,13 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
     return warnings
 
 
-def _unused(imported: list[_Imported], resolved: Resolved) -> list[Diagnostic]:
+def _unused(imported: list[Imported], resolved: Resolved) -> list[Diagnostic]:
     used = {resolved.holder.root.name, resolved.wire.root.name, *resolved.enums}
     known = {name_parts(name) for name in resolved.holder.schema.types}
     return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
 
 
-def _is_used(one: _Imported, used: set[str], known: set[tuple[str, ...]]) -> bool:
+def _is_used(one: Imported, used: set[str], known: set[tuple[str, ...]]) -> bool:
     measured = any(name_parts(each.text) in known for file in one.units for each in file.types)
     return measured or bool(used & one.schema.types.keys())
 

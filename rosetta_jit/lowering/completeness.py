@@ -7,11 +7,11 @@ its length and all of its elements. Fields that the schema fixes need no rule.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.coverage import coverage
 from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.lowering.scope import element_type

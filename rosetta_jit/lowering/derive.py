@@ -7,10 +7,11 @@ and `default .a` are each other's reverse.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.calls import TOLD
 from rosetta_jit.lowering.inverse import NoInverseError, calls_in, fields_in, reads_in_index, replaced, solve
 from rosetta_jit.model.expr import Binary, Len, Path

@@ -6,9 +6,10 @@ holder. The fields of a wire that a mapping relates to another type are `rosetta
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     ROW,
     Advance,

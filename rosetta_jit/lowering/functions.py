@@ -5,10 +5,10 @@ A mapping is checked without the functions themselves: their types stand in it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import functions as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.calls import FLOATS, FUNCTIONS, INTEGERS, named_type
 from rosetta_jit.lowering.conversions import convert, describe, word_for
 from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS

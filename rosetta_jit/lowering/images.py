@@ -6,9 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Advance, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire, index
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.text_values import text_of
 from rosetta_jit.lowering.type_images import MEASURES
-from rosetta_jit.lowering.views import LANE, placed
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
@@ -30,6 +28,9 @@ PROBLEMS = {
     -5: "an image of no such width, height, channels or quality",
 }
 """What the host's functions give where there is nothing to give."""
+
+LANE = "texts"
+"""The hidden lane of what is computed: one byte a row."""
 
 
 def measured(call: typed.ImageCall, values: Values) -> Expr:
@@ -56,9 +57,6 @@ def bytes_of(value: typed.Expr, values: Values) -> Extent:
             numbers = (index(FORMATS.index(value.format)), *(values.writer.let("number", values.of(each)) for each in value.numbers))
             size = _asked(COMPRESSED, numbers, (source,), values)
             return _filled(COMPRESS, numbers, source, size, values)
-        case typed.TextCall():
-            view = placed(values.writer, text_of(value, values))
-            return Extent(view.address, values.writer.let("size", view.size))
         case _:
             raise AssertionError(value)
 

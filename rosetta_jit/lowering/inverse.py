@@ -19,9 +19,9 @@ Those of texts stand in `rosetta_jit.lowering.inverse_texts`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.inverse_texts import opposite, without
 from rosetta_jit.model.expr import Binary, Call, Choice, Index, Len, Literal, Name, Path, Unary
 

@@ -7,9 +7,9 @@ of an encoding becomes a body of the kernel.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.lowering.bear import bear, opened_lanes, places_left

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import BEGIN, Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While, add, index
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.writer import Writer, block, integer

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import nested as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.frontend.mapping import parse
 from rosetta_jit.lowering.derive import derive

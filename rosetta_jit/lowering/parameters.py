@@ -6,9 +6,9 @@ fits. Lengths do not count padding; those of DDS-XTypes 1.1 do, up to a multiple
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import BEGIN, END, Assign, Binary, Compare, Const, If, Local, Select, Switch, While, index
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.members import Seen, if_present, store_size

@@ -9,9 +9,10 @@ quotient, a call. Its arguments are polynomials again, so that a substitution re
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import (
     Access,
@@ -172,10 +173,10 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
         case Call(function, arguments):
             return atom(function, *(polynomial_of(argument) for argument in arguments))
-        case TextCall(function, arguments):
-            return atom(function, *map(polynomial_of, arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
+        case TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):

@@ -6,9 +6,9 @@ before children), then the lengths. To measure, the list is made and gone throug
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,

@@ -6,11 +6,12 @@ the checks that follow do not report the same mistake in other words.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
@@ -309,9 +310,9 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         value = _adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
-    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
-        return value
     if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
+        return value
+    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
         return value
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None

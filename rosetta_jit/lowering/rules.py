@@ -7,17 +7,17 @@ lays out the message (`supplies`), and the rules then fill the elements into the
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue.pipeline import endless_copy
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
-from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import shown
@@ -116,10 +116,8 @@ class Runner:
                 self.assign_text(place, text.encode(), values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
-            case ((String() | Bytes() | Array()), typed.TextCall()):
+            case ((String() | Bytes() | Array()), (typed.TextCall() | typed.ImageCall())):
                 self.assign_computed(place, value, values)
-            case ((Bytes() | Array()), typed.ImageCall()):
-                self.assign_image(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
                 self.copy(place, origin, values, change)
             case Array(), typed.Access(origin):
@@ -149,8 +147,8 @@ class Runner:
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), source, size))
 
-    def assign_computed(self, place: typed.Place, value: typed.TextCall, values: Values) -> None:
-        """A text that is made of others. On the wire there is no place for it before it is made."""
+    def assign_computed(self, place: typed.Place, value: typed.TextCall | typed.ImageCall, values: Values) -> None:
+        """A text that is made of others, an image, or its pixels. On the wire there is no place for it before it is made."""
         if isinstance(self.target, WireSide):
             raise NotInPlaceError
         view = placed(self.writer, text_of(value, values))
@@ -159,14 +157,6 @@ class Runner:
         size = self.count(view.size)
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
-
-    def assign_image(self, place: typed.Place, value: typed.ImageCall, values: Values) -> None:
-        """An image or its pixels. On the wire there is no place for it before it is made."""
-        if isinstance(self.target, WireSide):
-            raise NotInPlaceError(())
-        made = bytes_of(value, values)
-        self.take(place, made.size, values)
-        self.writer.emit(Copy(self.target.address(place, values), made.address, made.size))
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
 from rosetta_jit.model.expr import Index, Member

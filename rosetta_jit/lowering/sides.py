@@ -5,9 +5,10 @@ A side can be read (`values.Source`) and be written; which one is which depends 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,

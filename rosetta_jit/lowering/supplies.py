@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.bound import NotInPlaceError
@@ -82,7 +83,7 @@ class Supplies:
             case typed.Default():
                 return index(0)
             case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
-                raise NotInPlaceError(())
+                raise NotInPlaceError
             case _:
                 raise AssertionError(rule)
 

@@ -9,9 +9,9 @@ else is appended to it while its message is being read. So a message notes where
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     BEGIN,
     WIDTH,

@@ -6,9 +6,9 @@ A message within another comes after its length. `size` computes all lengths and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,

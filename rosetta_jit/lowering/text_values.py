@@ -6,10 +6,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, If, IsText, Site, Unary, Used, Wire, add, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, If, IsText, Place, Site, Unary, Used, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
 from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
+from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.number_text import Read, read_float, read_integer
 from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
 from rosetta_jit.lowering.sides import HolderSide
@@ -47,8 +48,7 @@ def text_of(value: typed.Expr, values: Values) -> Text:
         case typed.TextCall():
             return _called(value, values)
         case typed.ImageCall():
-            made = values.bytes_of(value)
-            return _view(made.address, made.size, values)
+            return _image(value, values)
         case _:
             raise AssertionError(value)
 
@@ -64,6 +64,14 @@ def _view(address: Address, size: Expr, values: Values) -> View:
         writer.require(size, values.where, at=address.at)  # it is there: said again where the proof may have lost it
         return sound(writer, View(None, address.at, writer.let("after", Binary("add", address.at, size))))
     return sound(writer, View(address.lane, address.row, writer.let("after", Binary("add", address.row, size))))
+
+
+def _image(value: typed.ImageCall, values: Values) -> View:
+    """An image, or its pixels, in the hidden lane."""
+    made = bytes_of(value, values)
+    assert isinstance(made.address, Place)
+    after = values.writer.let("after", Binary("add", made.address.row, made.size))
+    return sound(values.writer, View(made.address.lane, made.address.row, after))
 
 
 def _pieces(value: typed.Expr) -> Sequence[typed.Expr]:

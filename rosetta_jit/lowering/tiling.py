@@ -12,10 +12,11 @@ Lengths and counts are never negative: a loop that ends below its start is an er
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.polynomial import add, multiply, number
 
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked      each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Asked     each with `type`
     Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
@@ -16,10 +16,11 @@ text is checked, and a length that the target fixes is checked.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import Bool, Int
 
 if TYPE_CHECKING:
@@ -187,16 +188,6 @@ class Has:
 
 
 @dataclass(frozen=True, slots=True)
-class TextCall:
-    """A function that takes texts or gives one: strings, bytes, arrays of 8-bit integers. ``compared`` is below, at or above 0."""
-
-    function: TextFunction
-    arguments: tuple[Expr, ...]
-    type: Type
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
 class Told:
     """When this message came, in ns since 1970, or how many came before it; int64."""
 
@@ -210,6 +201,16 @@ class HostCall:
     """A function that the mapping declares and its user gives; the arguments have the types that it declares."""
 
     function: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TextCall:
+    """A function that takes texts or gives one: strings, bytes, arrays of 8-bit integers. ``compared`` is below, at or above 0."""
+
+    function: TextFunction
     arguments: tuple[Expr, ...]
     type: Type
     span: Span | None = field(default=None, compare=False, repr=False)

@@ -6,10 +6,11 @@ the way give to what is within them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.dimensions import conversion
 from rosetta_jit.lowering.typed import Access, Binary, Const, Convert, EachElement, EachMember, Rescale

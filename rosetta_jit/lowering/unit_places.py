@@ -7,9 +7,10 @@ itself and by one around it, the outer one counts: it knows more.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.typed import INT64, Const, FieldStep, IndexStep
 from rosetta_jit.model.types import Array, Optional
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import converted, scalar_name
-from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.text_values import forgetting, number_of, reject_with
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
@@ -22,7 +22,6 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosetta_jit.kernel.ir import Extent
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -114,10 +113,6 @@ class Values:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
-
-    def bytes_of(self, image: typed.ImageCall) -> Extent:
-        """An image or its pixels, where the host has put them."""
-        return bytes_of(image, self)
 
     def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: Expr | None = None) -> None:
         """Refuse the message, always or where something holds: with a reason, or with what its pieces say."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import state
 from rosetta_jit.kernel.ir import (
     BEGIN,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.polynomial import (
     Polynomial,
     TooComplexError,

@@ -8,9 +8,9 @@ that zero selects. What may be absent is born when it comes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import Row, Span, Variant
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Optional, Struct, Union
 

@@ -9,9 +9,11 @@ constant) the side is always ``wire``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

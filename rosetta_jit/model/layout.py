@@ -15,9 +15,10 @@ such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their wor
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import (
     Array,
     Bool,

@@ -11,8 +11,10 @@ both directions alone, with the place on the holder's side.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr, Len, Path

@@ -12,8 +12,10 @@ Scalars carry the word that their IDL uses (`spelling`): two IDL types with the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

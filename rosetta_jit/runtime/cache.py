@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import os
 import warnings
-from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import CacheWarning
 from rosetta_jit.runtime.sealed import DamagedError, Entry, seal, unseal
 from rosetta_jit.runtime.stores import FolderStore, MemoryStore, Store, Stored, UntrustedError

@@ -13,11 +13,12 @@ from __future__ import annotations
 import ctypes
 import sys
 import sysconfig
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

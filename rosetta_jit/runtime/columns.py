@@ -5,11 +5,11 @@ A number is a strided array. An array of anything is `Ragged`: the column of its
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import String
 from rosetta_jit.runtime.holder import coerce

@@ -7,12 +7,14 @@ cannot be looked into (an object of some class) makes the digest a new one each 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import field
 from hashlib import sha256
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, cast
 
 import numpy as np
+
+from rosetta_jit.dataclass import dataclass
 
 PLAIN = (type(None), bool, int, float, complex, str, bytes, type(...))
 MAX_FUNCTIONS = 1000

@@ -8,12 +8,12 @@ wrote, ask again.
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
 from importlib.util import find_spec
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.catalogue.images import no_library
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 
 if TYPE_CHECKING:

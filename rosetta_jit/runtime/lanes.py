@@ -6,11 +6,12 @@ small. A lane that grows moves to memory of its own; whoever still has a view ke
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import InvalidHolder
 from rosetta_jit.kernel.state import (
     ADDRESS,

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import ctypes
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import CAPACITY, NOW, NUMBER, USED, VALID, lane_word
 from rosetta_jit.runtime import run

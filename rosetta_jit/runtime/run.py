@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW_LANE, GROW_ROWS, RESULT
 

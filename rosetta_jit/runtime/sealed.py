@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import json
 import struct
-from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,8 +12,9 @@ import os
 import stat
 import sys
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO, Protocol
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

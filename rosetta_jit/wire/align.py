@@ -7,9 +7,10 @@ one size, which are read in bulk.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.wire.codec import (
     Align,
     Blob,

@@ -10,8 +10,10 @@ a `Tagged` field. The path () is that element itself. What decoding and encoding
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -104,6 +104,8 @@ def test_tables_loops_and_batches(backend):
         ("{}", "syntax"),
         ("{.s .t}", "syntax"),
         ("{.i +}", "syntax"),
+        ("{.i ignore .s}", "syntax"),
+        ("{.i pack-rules:}", "syntax"),
         ("{" + "-" * 70 + ".i}", "nesting"),
         ("{.i}" * 30, "many-pieces"),
         ("{len(.i)}", "no-length"),

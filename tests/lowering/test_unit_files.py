@@ -218,6 +218,6 @@ def candidates(name, root):
     ],
 )
 def test_hostile_files_end_in_a_report(tmp_path, text):
-    start = time.perf_counter()
+    start = time.process_time()
     assert any(problem.severity == "error" for problem in reports(tmp_path, text)) or "joints[1]: m" in text
-    assert time.perf_counter() - start < 20
+    assert time.process_time() - start < 30

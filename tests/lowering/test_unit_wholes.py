@@ -174,9 +174,9 @@ def test_many_units_take_no_time(tmp_path):
     rules = "".join(f"  .b{number} = .a[len(.a) - {number}]\n" for number in range(500))
     fields = " ".join(f'("b{number}" :double (:unit :m))' for number in range(500))
     files = schemas(f'("a" (:list :double) (:units {units}))', fields, f"unpack-rules:\n{rules}")
-    start = time.perf_counter()
+    start = time.process_time()
     assert {code for code, _ in found(files, tmp_path)} == {"unit"}
-    assert time.perf_counter() - start < 30
+    assert time.process_time() - start < 30
 
 
 VIA = {

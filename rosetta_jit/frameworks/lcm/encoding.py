@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm.fingerprint import MAX_DEPTH, fingerprint
 from rosetta_jit.model import expr

@@ -6,10 +6,11 @@ file that uses it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.lcm.reading import read
 from rosetta_jit.frameworks.lcm.scalars import PRIMITIVES
 from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS

@@ -7,10 +7,11 @@ each field, and rotates the sum. A struct that is met again inside itself adds 0
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm.shape import shape_of, written_sizes
 from rosetta_jit.model.layout import recursive_structs

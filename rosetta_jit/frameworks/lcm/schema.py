@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.lcm.numbers import floating, integer
 from rosetta_jit.frameworks.lcm.scalars import BYTE, CONSTANTS, INTEGERS, PRIMITIVES
 from rosetta_jit.frameworks.lcm.shape import SIZES

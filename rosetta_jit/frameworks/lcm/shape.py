@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Ref, String
 

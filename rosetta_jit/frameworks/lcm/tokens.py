@@ -7,10 +7,10 @@ beginning of a struct named ``t{`` to lcm-gen, and ``a//text`` a field. Here suc
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ Member    = type, Name, size*                 Constant = type, Name, value
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Source, Span

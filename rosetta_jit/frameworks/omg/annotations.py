@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import re
 from ast import literal_eval
-from dataclasses import dataclass
 from hashlib import md5
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
 from rosetta_jit.frameworks.omg.scopes import LookupProblem

@@ -9,10 +9,11 @@ Everything is written at a multiple of its size from the origin, behind the head
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import cdr as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union

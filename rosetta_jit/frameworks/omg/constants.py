@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, assert_never
 from typing import Literal as OneOf
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary
 from rosetta_jit.frameworks.omg.literals import LiteralError, number, unescape
 from rosetta_jit.frameworks.omg.scopes import LookupProblem

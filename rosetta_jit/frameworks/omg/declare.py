@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg import tree
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit

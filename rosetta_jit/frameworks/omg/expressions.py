@@ -7,10 +7,11 @@ The declarations of IDL and the conditions of its preprocessor share them (OMG I
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
 
 if TYPE_CHECKING:

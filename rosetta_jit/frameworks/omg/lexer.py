@@ -6,9 +6,9 @@ OMG IDL 4.2, 7.2 (lexical conventions). What is no token at all becomes a `wrong
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:

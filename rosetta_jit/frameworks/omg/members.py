@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import evaluate, fit, word_of
 from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope

@@ -5,10 +5,11 @@ A file is read once, however often it is included: what rosidl writes has no inc
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.conditions import answer_defined, holds
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
 from rosetta_jit.frameworks.omg.includes import find

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

@@ -8,9 +8,9 @@ An `Aggregate` is a struct, a union or an exception; a declaration may stand whe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
 
 if TYPE_CHECKING:

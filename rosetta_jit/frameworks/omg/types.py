@@ -5,10 +5,10 @@ What the model has nothing for becomes a reference to a type that is declared no
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import idl as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.constants import evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
 from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope

@@ -7,12 +7,13 @@ import re
 import subprocess
 import sys
 from bisect import bisect_right
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import orocos as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos.includes import MAIN, STANDARD, USER
 from rosetta_jit.source import Span

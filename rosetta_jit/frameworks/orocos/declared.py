@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import orocos as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos.depth import dependents, nesting_problems, reached
 from rosetta_jit.frameworks.orocos.includes import MAIN

@@ -11,10 +11,10 @@ and their elements. Padding at the very end of the object is left out; at the en
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import orocos as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos.layout import UNDERLYING, Layouts
 from rosetta_jit.model.layout import recursive_structs, scalar_of

@@ -7,9 +7,10 @@ bytes, ``size`` and ``alignment`` of a struct.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:

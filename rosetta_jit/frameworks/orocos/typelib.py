@@ -15,11 +15,12 @@ by the offsets of the file.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import orocos as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos.depth import nesting_problems, references
 from rosetta_jit.frameworks.orocos.elements import read_elements

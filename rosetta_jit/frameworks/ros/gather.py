@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.ros.interfaces import parts
 from rosetta_jit.frameworks.ros.names import SUFFIX, Declared, declared_in, places, split
 from rosetta_jit.frameworks.ros.order import dependencies_first

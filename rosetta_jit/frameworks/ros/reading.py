@@ -6,10 +6,11 @@ Field    = ["@optional"] TypeName Word [default]        Constant = TypeName Word
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Word
 from rosetta_jit.frameworks.ros.typenames import type_name
 from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted

@@ -6,10 +6,11 @@ https://wiki.ros.org/Bags/Format/2.0 and https://mcap.dev/spec/registry#ros2msg
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.ros.names import split
 from rosetta_jit.source import Span
 

@@ -6,8 +6,9 @@ Constant   = TypeName, Word, value        Field = TypeName, Word, default
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Constant as Value

@@ -5,9 +5,9 @@ Counts have 32 bits; an array of a fixed length has none, and an empty message n
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Number, Path, Repeat, Seq, Table
 

@@ -6,11 +6,11 @@ The numbers of types are the constants of ``type_description_interfaces/msg/Fiel
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import ros as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
 

@@ -9,10 +9,11 @@ list, and then such values. A union is an element whose code says which of its c
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.computed import Scope
 from rosetta_jit.frameworks.yarp.forms import is_dict, is_packed, union_of

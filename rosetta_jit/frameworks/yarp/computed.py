@@ -5,9 +5,9 @@ A holder need not have a computed field set, so where another value uses one, wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Ref, Struct
 

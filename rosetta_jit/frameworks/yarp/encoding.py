@@ -9,9 +9,9 @@ first attempt, and the general one comes after it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.bottle_codec import Bottles
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect

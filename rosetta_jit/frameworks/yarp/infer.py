@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.detect import read_any

@@ -7,9 +7,9 @@ What a holder shows is the bottle that it would be written as. It is made anew f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.yarp import tree
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.tags import YARP4, vocab

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS

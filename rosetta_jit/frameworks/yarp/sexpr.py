@@ -9,24 +9,27 @@ r"""S-expressions: text into nested forms with their places.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from lark import Lark, UnexpectedCharacters
+from lark import UnexpectedCharacters
 
 from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from lark import Token
+    from lark import Lark, Token
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Source
+
+GRAMMAR = Path(__file__).with_name("bottle_schema.lark")
 
 MAX_FORMS = 160
 """Parentheses within parentheses: two for each level of a message, and room for expressions."""
@@ -137,8 +140,7 @@ def _tokens(source: Source, problems: list[Diagnostic]) -> Iterator[Token]:
 
 @cache
 def _lark() -> Lark:
-    grammar = Path(__file__).with_name("bottle_schema.lark").read_text("utf-8")
-    return Lark(grammar, parser="lalr")
+    return parser_of(GRAMMAR)
 
 
 def _atom(token: Token, span: Span) -> Node:

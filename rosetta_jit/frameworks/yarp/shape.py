@@ -13,12 +13,12 @@ length never varied: the writer of the schema says which.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import reduce
 from math import isnan
 from struct import pack
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
 
 if TYPE_CHECKING:

@@ -8,9 +8,11 @@ Scalars are known by one spelling each: int8 int16 int32 int64 float32 float64 v
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

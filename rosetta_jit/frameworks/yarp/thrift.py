@@ -6,10 +6,11 @@ A function of a service is several messages: ``Service.function.request``, a bot
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import thrift as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import thrift_grammar as tree
 from rosetta_jit.frameworks.yarp.tags import vocab

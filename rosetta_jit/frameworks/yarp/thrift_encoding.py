@@ -6,11 +6,11 @@ tag that its list announces, and in YARP 3 so does a list of lists, so that neit
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.catalogue import thrift
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.tags import FIXED_FORMATS, LIST, YARP4, Dialect, vocab
 from rosetta_jit.model import expr

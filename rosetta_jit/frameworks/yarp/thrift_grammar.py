@@ -6,10 +6,11 @@ Type   = Named(name) | List(element) | Set(element) | Map(key, value)
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import thrift as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 
 if TYPE_CHECKING:

@@ -12,9 +12,10 @@ The tree says which of its two forms a list has, so that writing gives back the 
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from math import isnan
 from typing import TYPE_CHECKING
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS, constant, to_bytes
 from rosetta_jit.kernel.ir import (
     WIDTH,

@@ -7,9 +7,10 @@ reported by the attempt whose format it has.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Binary, Block, Const, Expect, Failure, Part, Require, Site, index
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks

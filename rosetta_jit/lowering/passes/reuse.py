@@ -7,10 +7,11 @@ memory; what was checked of one read says nothing of the next, until both are on
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import count
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, HostCall, Let, Load, Local, Place, SetField, Store, While, type_of
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands

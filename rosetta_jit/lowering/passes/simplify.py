@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,

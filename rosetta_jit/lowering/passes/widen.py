@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, Fits, add, index, mul, type_of
 
 if TYPE_CHECKING:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union

@@ -12,9 +12,10 @@ Nodes are never changed, and not frozen only because every process pays for the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, ClassVar, assert_never, cast
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import layout as slots
 from rosetta_jit.model.births import Births, selected, selecting
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union

@@ -196,9 +196,9 @@ BOMBS = {
 @pytest.mark.parametrize("name", BOMBS)
 def test_bombs_are_refused_or_read(name, monkeypatch):
     monkeypatch.setattr(compiler, "PROCESSOR_SECONDS", 1)
-    text, begin = BOMBS[name], time.monotonic()
+    text, begin = BOMBS[name], time.process_time()
     refusal(parse, Source("bomb.hpp", text), lambda asked: Source("self.hpp", text) if asked == "self.hpp" else None)
-    assert time.monotonic() - begin < 20
+    assert time.process_time() - begin < 30
 
 
 WORDS = [

@@ -140,3 +140,33 @@ def test_diagnostic_status(backend):
     ):
         with pytest.raises(rj.EncodeError, match=words):
             encode(encode.holder_type.from_dict({"entries": change}))
+
+
+GOAL_STATES = ["INITIATED", "ACCEPTED", "ABORTED", "COMPLETED", "FAILED", "REJECTED", "ABORT", "ABORT", "ABORTED", "FAILED"]
+BACK = {state: GOAL_STATES.index(state) for state in GOAL_STATES}
+BACK |= dict.fromkeys(("UPDATE", "UPDATE_REJECTED", "ABORT_FAILED", "RESULT_AVAILABLE"), 1)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_goal_status(backend):
+    decode, encode = programs("goal_status", backend)
+    stamp = theirs("builtin_interfaces/msg/Time", sec=5, nanosec=6)
+
+    def goal(status, name="4294967295"):
+        return raw(
+            theirs(
+                "actionlib_msgs/msg/GoalStatus", goal_id=theirs("actionlib_msgs/msg/GoalID", stamp=stamp, id=name), status=status, text="t"
+            )
+        )
+
+    for status, state in enumerate(GOAL_STATES):
+        found = decode(goal(status)).to_dict()
+        assert found == {"origin": "HANDLER", "state": state, "serial": 4294967295, "wire_schema": b"", "payload": b""}
+    for state, status in BACK.items():
+        task = encode.holder_type.from_dict({"origin": "SUBMITTER", "state": state, "serial": 17, "wire_schema": b"x", "payload": b"y"})
+        back = STORE.deserialize_ros1(encode(task), "actionlib_msgs/msg/GoalStatus")
+        assert (back.status, back.goal_id.id, back.goal_id.stamp.sec, back.text) == (status, "17", 0, "")
+    for broken, kind in ((goal(10), "rejected"), (goal(1, "seven"), "text"), (goal(1, "4294967296"), "range"), (goal(1, ""), "text")):
+        with pytest.raises(rj.DecodeError) as error:
+            decode(broken)
+        assert error.value.kind == kind

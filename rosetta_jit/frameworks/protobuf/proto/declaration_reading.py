@@ -5,13 +5,13 @@ What depends on other statements is left to the checks.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,

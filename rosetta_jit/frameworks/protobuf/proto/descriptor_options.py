@@ -7,9 +7,9 @@ where its generated module was imported; elsewhere it is an unknown field, and i
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.options import OPTIONS
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import Option, Value, Word

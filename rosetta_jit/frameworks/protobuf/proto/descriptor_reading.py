@@ -6,10 +6,10 @@ https://github.com/protocolbuffers/protobuf/blob/main/src/google/protobuf/descri
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
     features,
     has_unknown_features,

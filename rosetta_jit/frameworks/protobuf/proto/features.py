@@ -7,9 +7,10 @@ https://protobuf.dev/editions/features/
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Word
 
 if TYPE_CHECKING:

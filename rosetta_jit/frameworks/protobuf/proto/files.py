@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.reading import read
 from rosetta_jit.frameworks.protobuf.proto.wellknown import well_known
 

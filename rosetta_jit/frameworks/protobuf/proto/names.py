@@ -5,11 +5,12 @@ Scalar types keep their words. A name that stands for nothing becomes empty, is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of

@@ -7,9 +7,9 @@ named `[package.extension]`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.constants import constant, enum_number
 from rosetta_jit.frameworks.protobuf.proto.declarations import cases_in, field_in
 from rosetta_jit.frameworks.protobuf.proto.options import field_options

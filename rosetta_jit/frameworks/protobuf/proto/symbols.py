@@ -6,10 +6,10 @@ https://protobuf.dev/programming-guides/proto2/#name-resolution
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, choose
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME, MAX_REPORTED, refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof

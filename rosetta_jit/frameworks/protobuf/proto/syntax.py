@@ -6,12 +6,15 @@ wrong one were not there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from lark.lark import PostLex
+
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:
@@ -20,6 +23,8 @@ if TYPE_CHECKING:
     from lark import Token, Tree
 
     from rosetta_jit.diagnostics import Diagnostic
+
+GRAMMAR = Path(__file__).with_name("proto.lark")
 
 MAX_NESTING = 32
 """Messages within messages, and lists and messages within an option's value; protoc stops at the same depth."""
@@ -78,18 +83,17 @@ def span_of(source: Source, token: Token) -> Span:
 
 @cache
 def grammar() -> Any:
-    """The parser. LALR tables take 70 ms, so they are made once a process, at the first file."""
-    from lark import Lark
-    from lark.lark import PostLex
+    """The parser; made once a process, at the first file."""
+    return parser_of(GRAMMAR, start="file", postlex=WrongTokens())
 
-    class KeepWrongTokens(PostLex):
-        always_accept = ("UNCLOSED_STRING", "UNCLOSED_COMMENT", "UNKNOWN")
 
-        def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-            return stream
+class WrongTokens(PostLex):
+    """Makes lark keep the tokens that stand for mistakes."""
 
-    text = files("rosetta_jit.frameworks.protobuf.proto").joinpath("proto.lark").read_text("utf-8")
-    return Lark(text, start="file", parser="lalr", lexer="basic", postlex=KeepWrongTokens(), maybe_placeholders=False)
+    always_accept = ("UNCLOSED_STRING", "UNCLOSED_COMMENT", "UNKNOWN")
+
+    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        return stream
 
 
 def _tokens(source: Source) -> Iterator[Token]:

@@ -9,8 +9,9 @@ A group is a field (`group` is set) and a message beside it. Spans are None wher
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, get_args
+
+from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

@@ -5,12 +5,12 @@ Numbers and strings get their values here, so what is wrong with one of them is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, cast
 
 from lark import Token, Tree
 
 from rosetta_jit.catalogue import proto as say
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME

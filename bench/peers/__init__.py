@@ -1,0 +1,38 @@
+"""Whom we are compared with: each peer that is installed, on each message that it can read.
+
+`python_peers` and `native_peers` say who they are; a peer that is not installed is left out of the report, never an error.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from bench.peers import by_hand, cyclone, lcm_gen, mcap, protobuf, rosbags
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from bench.peers.base import Peer
+    from bench.subjects import Subject
+
+_PACKAGES: Mapping[str, tuple[str, Callable[[Subject], tuple[Peer, ...]]]] = {
+    "rosbags": ("rosbags", rosbags.peers),
+    "mcap-ros1-support": ("mcap_ros1", mcap.ros1_peers),
+    "mcap-ros2-support": ("mcap_ros2", mcap.ros2_peers),
+    "cyclonedds": ("cyclonedds", cyclone.peers),
+    "lcm": ("lcm", lcm_gen.peers),
+    "protobuf": ("grpc_tools", protobuf.peers),
+}
+"""Distribution → what to look for, and its peers for a message."""
+
+
+def packages() -> tuple[str, ...]:
+    """The distributions of peers that are installed."""
+    return tuple(name for name, (module, _) in _PACKAGES.items() if find_spec(module) is not None)
+
+
+def python_peers(subject: Subject) -> tuple[Peer, ...]:
+    """All that read the subject's message in this process; what a person writes by hand comes last."""
+    found = [peer for name in packages() for peer in _PACKAGES[name][1](subject)]
+    return (*found, *by_hand.peers(subject))

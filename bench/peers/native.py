@@ -1,0 +1,69 @@
+"""The native peers of `bench/native`, through ctypes; they time their own loops, so that ctypes costs nothing."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from bench.subjects import Subject
+
+FOLDER = Path(__file__).resolve().parents[2] / "build" / "native"
+
+_LIBRARIES = {
+    "ros1": ("roscpp", "roscpp in C++", "an object, used again; std::vector and std::string"),
+    "protobuf": ("protobuf", "protobuf in C++", "a message, used again; RepeatedField and std::string"),
+    "cdr-giop": ("omniorb", "omniORB in C++", "a struct, used again; its sequence allocates"),
+    "lcm": ("lcm", "lcm-gen's C++", "an object, used again; std::vector"),
+}
+"""Encoding → the library's name, who it is, and what it makes."""
+
+FIRST = 100
+"""Iterations from which the number that fills a round is reckoned."""
+
+
+@dataclass(frozen=True, slots=True)
+class NativePeer:
+    """A peer that times itself: ``decode(iterations)`` and ``encode(iterations)`` give nanoseconds a message."""
+
+    who: str
+    makes: str
+    decode: Callable[[int], float]
+    encode: Callable[[int], float]
+
+
+def native_peers(subject: Subject) -> tuple[NativePeer, ...]:
+    """The libraries that were built and know the subject's type."""
+    if subject.encoding not in _LIBRARIES:
+        return ()
+    name, who, makes = _LIBRARIES[subject.encoding]
+    path = FOLDER / f"lib{name}_peer.so"
+    if not path.exists():
+        return ()
+    library = ctypes.CDLL(str(path))
+    jobs = tuple(partial(_nanoseconds, library[f"{job}_ns"], subject) for job in ("decode", "encode"))
+    return (NativePeer(who, makes, *jobs),)
+
+
+def built() -> tuple[str, ...]:
+    """The native peers whose libraries were built."""
+    return tuple(who for name, who, _ in _LIBRARIES.values() if (FOLDER / f"lib{name}_peer.so").exists())
+
+
+def rounds_of(job: Callable[[int], float], round_s: float) -> Callable[[], float]:
+    """A contender: as many iterations each time as fill a round."""
+    count = max(1, int(1e9 * round_s / max(job(FIRST), 0.1)))
+    return partial(job, count)
+
+
+def _nanoseconds(function: Any, subject: Subject, iterations: int) -> float:
+    function.restype = ctypes.c_double
+    took = function(subject.type.encode(), subject.message, ctypes.c_int64(len(subject.message)), ctypes.c_int64(iterations))
+    if took < 0:
+        raise ValueError(f"{function.__name__} refuses {subject.type}")
+    return took

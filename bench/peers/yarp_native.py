@@ -1,0 +1,72 @@
+"""The native peers of bottles and images: real YARP or the model of it, and decoders written by hand in C++."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from bench.peers.native import FOLDER
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+LIBRARY = FOLDER / "libpeers.so"
+
+
+class Peers:
+    """Each method gives a function from iterations to nanoseconds a message."""
+
+    def __init__(self) -> None:
+        self.library = ctypes.CDLL(str(LIBRARY))
+        self.library.dynamic_decoder.restype = ctypes.c_char_p
+
+    @property
+    def dynamic_decoder(self) -> str:
+        """Which dynamic decoder was linked: real YARP, or the model of it."""
+        return self.library.dynamic_decoder().decode()
+
+    def dynamic(self, message: bytes) -> Callable[[int], float]:
+        return self._timed("dynamic_decode_ns", message)
+
+    def loop(self, message: bytes, tag: int) -> Callable[[int], float]:
+        return self._timed("loop_decode_ns", message, tag, (ctypes.c_float * (len(message) // 8))())
+
+    def tagged_loop(self, message: bytes, tag: int) -> Callable[[int], float]:
+        return self._timed("tagged_decode_ns", message, tag, (ctypes.c_float * (len(message) // 12))())
+
+    def copy(self, message: bytes, tag: int) -> Callable[[int], float]:
+        return self._timed("copy_decode_ns", message, tag, (ctypes.c_double * (len(message) // 8))())
+
+    def image(self, job: str, message: bytes) -> Callable[[int], float]:
+        """``job``: ``unpad``, ``swap`` or ``planar``."""
+        return self._timed(f"image_{job}_ns", message, (ctypes.c_uint8 * len(message))())
+
+    def memmove(self, size: int) -> Callable[[int], float]:
+        function = self._function("memmove_ns")
+        target, source = ctypes.create_string_buffer(size), ctypes.create_string_buffer(size)
+        return lambda iterations: function(target, source, ctypes.c_int64(size), ctypes.c_int64(iterations))
+
+    def _timed(self, name: str, message: bytes, *arguments: Any) -> Callable[[int], float]:
+        return partial(_nanoseconds, self._function(name), (message, ctypes.c_int64(len(message)), *arguments))
+
+    def _function(self, name: str) -> Any:
+        function = self.library[name]
+        function.restype = ctypes.c_double
+        return function
+
+
+def _nanoseconds(function: Any, arguments: tuple[Any, ...], iterations: int) -> float:
+    took = function(*arguments, ctypes.c_int64(iterations))
+    if took < 0:
+        raise ValueError(f"{function.__name__} refuses the message")
+    return took
+
+
+def empty_builtin() -> Any:
+    """A built-in function of one argument that gives it back: what any call from Python into compiled code costs at the least."""
+    library = ctypes.CDLL(str(LIBRARY))
+    library.empty_method.restype = ctypes.c_void_p
+    make = ctypes.pythonapi.PyCFunction_NewEx
+    make.restype, make.argtypes = ctypes.py_object, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
+    return make(library.empty_method(), None, None)

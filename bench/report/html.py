@@ -1,0 +1,88 @@
+"""A run as one page of HTML: its style and its plots are in it, and nothing is loaded."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.figures import chapters, ratio
+from bench.report import plot, words
+from bench.slopes import exponent, too_steep
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from bench.figures import Comparison, Curve, Report, Row
+
+HOW = (
+    "All contenders of a job were measured in turns. Figures are medians over the rounds with their quartiles; ratios are those of single "
+    "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread on a processor. "
+    "Bars and curves have logarithmic axes."
+)
+STYLE = Path(__file__).with_name("style.css")
+
+
+def page(report: Report, about: Mapping[str, str]) -> str:
+    """The whole page."""
+    body = "".join(_body(report, about))
+    style = STYLE.read_text("utf-8")
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Benchmarks</title><style>{style}</style>'
+    return f'<!DOCTYPE html><html lang="en"><head>{head}</head><body>{body}</body></html>\n'
+
+
+def _body(report: Report, about: Mapping[str, str]) -> Iterator[str]:
+    yield "<h1>Benchmarks of rosetta_jit</h1>"
+    yield f"<p>{escape(HOW)}</p>"
+    yield _table((), about.items())
+    yield "<h2>Targets</h2>"
+    yield _table(("what", "measured", "at most", "", ""), map(_target, report.rows))
+    for chapter, comparisons in chapters(report.comparisons).items():
+        yield f"<h2>{escape(chapter)}</h2>"
+        yield from map(_comparison, comparisons)
+    yield "<h2>How costs grow</h2><p>The exponent k of x<sup>k</sup> is fitted over the upper half of each curve.</p>"
+    yield from map(_curve, report.curves)
+
+
+def _target(row: Row) -> tuple[str, ...]:
+    at_most = "" if row.at_most is None else f"{row.at_most:.3g} {row.unit}"
+    mark = "" if row.at_most is None else "met" if row.met else "missed"
+    return row.what, f"{words.ratio(row.measured)} {row.unit}", at_most, mark, row.detail
+
+
+def _comparison(comparison: Comparison) -> str:
+    ours = comparison.figures[0]
+    lines = (
+        (
+            each.who,
+            each.makes,
+            words.spread_of_time(each.took),
+            "" if each is ours or ours.role != "ours" else words.ratio(ratio(ours.rounds_ns, each.rounds_ns)),
+        )
+        for each in comparison.figures
+    )
+    multiple = f"{ours.who}, as a multiple" if ours.role == "ours" else ""
+    table = _table(("who", "makes", "median (quartiles)", multiple), lines)
+    return f"<section><h3>{escape(comparison.title)}</h3>{plot.bars(comparison)}{table}</section>"
+
+
+def _curve(curve: Curve) -> str:
+    steep = too_steep(curve)
+    lines = (
+        (each.who, f"x^{exponent(each):.2f}", f"steeper than the job, which is x^{curve.may_grow:g}" if each.who in steep else "")
+        for each in curve.series
+    )
+    drawn = plot.stacked(curve) if curve.parts else plot.lines(curve)
+    note = f"<p>{escape(curve.note)}</p>" if curve.note else ""
+    return f"<section><h3>{escape(curve.title)}</h3>{drawn}{note}{_table(('of', 'grows as', ''), lines)}</section>"
+
+
+def _table(head: Iterable[str], lines: Iterable[Iterable[str]]) -> str:
+    top = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    rows = "".join(f"<tr>{''.join(_cell(cell) for cell in line)}</tr>" for line in lines)
+    return f"<table><thead><tr>{top}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def _cell(text: str) -> str:
+    mark = f' class="{text}"' if text in {"met", "missed"} else ' class="missed"' if text.startswith("steeper") else ""
+    return f"<td{mark}>{escape(text)}</td>"

@@ -1,0 +1,42 @@
+"""Numbers as people read them: nanoseconds in the unit that suits, ratios in three digits, medians with their quartiles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from bench.figures import Spread
+
+_TIMES = ((1e9, "s"), (1e6, "ms"), (1e3, "µs"), (1.0, "ns"))
+
+
+def time(nanoseconds: float) -> str:
+    """`1.23 µs`."""
+    size, unit = next(((size, unit) for size, unit in _TIMES if nanoseconds >= size), _TIMES[-1])
+    return f"{_three(nanoseconds / size)} {unit}"
+
+
+def spread_of_time(took: Spread) -> str:
+    """`1.23 µs (1.20 to 1.31)`: quartiles in the median's unit."""
+    size, unit = next(((size, unit) for size, unit in _TIMES if took.median >= size), _TIMES[-1])
+    return f"{_three(took.median / size)} {unit} ({_three(took.low / size)} to {_three(took.high / size)})"
+
+
+def ratio(value: Spread) -> str:
+    """`1.23 (1.20 to 1.31)`."""
+    return f"{_three(value.median)} ({_three(value.low)} to {_three(value.high)})"
+
+
+def count(value: float) -> str:
+    """A number on an axis: `8`, `1k`, `16M`."""
+    for size, unit in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if value >= size:
+            return f"{value / size:.3g}{unit}"
+    return f"{value:.3g}"
+
+
+def _three(value: float) -> str:
+    """Three digits, never an exponent."""
+    if value >= 100:
+        return f"{value:.0f}"
+    return f"{value:.3g}"

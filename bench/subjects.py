@@ -1,0 +1,101 @@
+"""One message of each kind that the frameworks are measured with."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import rosetta_jit as rj
+from bench import ros_wire
+from bench.ros_wire import NUMBERS, Ros1, Ros2, noise, written
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+DOUBLES = 1000
+ANGLES_PROTO = Path(__file__).with_name("native") / "angles.proto"
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A message of a type, and what a decoder of it is made with."""
+
+    type: str
+    encoding: str
+    message: bytes
+    options: dict[str, Any] = field(default_factory=dict[str, Any])
+
+    def decoder(self, **options: Any) -> Any:
+        return rj.Decoder.of(self.type, encoding=self.encoding, **self.options, **options)
+
+    def encoder(self) -> Any:
+        return rj.Encoder.of(self.type, encoding=self.encoding, **self.options)
+
+
+def _ros(name: str, describe: Callable[[Ros1], None]) -> tuple[Subject, Subject]:
+    package, _, type_ = name.partition("/")
+    return Subject(name, "ros1", written(Ros1(), describe)), Subject(f"{package}/msg/{type_}", "cdr", written(Ros2(), describe))
+
+
+def _doubles(count: int) -> bytes:
+    return NUMBERS[:count].astype("<f8").tobytes()
+
+
+IMU, IMU_2 = _ros("sensor_msgs/Imu", ros_wire.imu)
+JOINT_STATE, JOINT_STATE_2 = _ros("sensor_msgs/JointState", ros_wire.joint_state)
+LASER_SCAN, LASER_SCAN_2 = _ros("sensor_msgs/LaserScan", ros_wire.laser_scan)
+POSE_ARRAY, POSE_ARRAY_2 = _ros("geometry_msgs/PoseArray", ros_wire.pose_array)
+IMAGE, IMAGE_2 = _ros("sensor_msgs/Image", ros_wire.image)
+POINT_CLOUD, POINT_CLOUD_2 = _ros("sensor_msgs/PointCloud2", ros_wire.point_cloud)
+
+LCM_DOUBLES = Subject(
+    "rjtest.doubles_t",
+    "lcm",
+    bytes.fromhex("29e473ce1716ca37") + struct.pack(">qi", 1_700_000_000_000_000, DOUBLES) + NUMBERS[:DOUBLES].astype(">f8").tobytes(),
+)
+CORBA_DOUBLES = Subject(
+    "RTC::TimedDoubleSeq",
+    "cdr-giop",
+    struct.pack("<IIII", 1_700_000_000, 123_456_789, DOUBLES, 0) + _doubles(DOUBLES),
+    {"imports": ("openrtm/BasicDataType.idl",), "byte_order": "little"},
+)
+OROCOS_DOUBLES = Subject(
+    "std::vector<double>",
+    "rtt-mqueue",
+    struct.pack("<Q", DOUBLES) + _doubles(DOUBLES),
+    {"schema": {"numbers.hpp": "struct Empty { int nothing; };"}},
+)
+_ANGLES = {"schema": {"angles.proto": ANGLES_PROTO.read_text("utf-8")}}
+RST_ANGLES = Subject(
+    "rj.JointAngles", "protobuf", b"".join(b"\x09" + NUMBERS[i : i + 1].astype("<f8").tobytes() for i in range(24)), _ANGLES
+)
+RST_ANGLES_PACKED = Subject("rj.PackedJointAngles", "protobuf", b"\x0a\xc0\x01" + _doubles(24), _ANGLES)
+RST_IMAGE = Subject("rst.vision.Image", "protobuf", b"\x0a\x80\x88\x0e" + noise(320 * 240 * 3) + b"\x10\xc0\x02\x18\xf0\x01")
+
+SUBJECTS = {
+    "Imu": IMU,
+    "JointState, 32 joints": JOINT_STATE,
+    "LaserScan 1080": LASER_SCAN,
+    "PoseArray 1000": POSE_ARRAY,
+    "Image 640x480": IMAGE,
+    "PointCloud2, 100,000 points": POINT_CLOUD,
+    "LCM, 1,000 big-endian doubles": LCM_DOUBLES,
+    "RST JointAngles, packed": RST_ANGLES_PACKED,
+    "RST JointAngles, unpacked": RST_ANGLES,
+    "RST Image 320x240": RST_IMAGE,
+    "CORBA TimedDoubleSeq 1000": CORBA_DOUBLES,
+    "OROCOS vector<double> 1000": OROCOS_DOUBLES,
+}
+"""The rows of the table of targets."""
+
+ROS_2 = {
+    "Imu, ROS 2": IMU_2,
+    "JointState, 32 joints, ROS 2": JOINT_STATE_2,
+    "LaserScan 1080, ROS 2": LASER_SCAN_2,
+    "PoseArray 1000, ROS 2": POSE_ARRAY_2,
+    "Image 640x480, ROS 2": IMAGE_2,
+    "PointCloud2, 100,000 points, ROS 2": POINT_CLOUD_2,
+}
+"""The same data in ROS 2's encoding, where other peers are at home."""

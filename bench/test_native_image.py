@@ -1,0 +1,92 @@
+"""An image of a camera, RGB, against moving its pixels: as it is, without padding, with channels swapped, in planes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from bench.contest import Contender
+from bench.messages import HEIGHT, MAPPINGS, WIDTH, image
+from bench.peers.native import rounds_of
+from bench.peers.yarp_native import Peers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+CHAPTER = "Images"
+HEADER = 60
+PADDED = 318
+"""A width whose rows are padded: 954 bytes to 960."""
+OURS, MOVE, LEN = "rosetta_jit", "memmove", "len()"
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What is done to the pixels: by our mapping, by hand in C++, by numpy."""
+
+    what: str
+    mapping: str
+    at_most: float | None
+    native: str
+    numpy: Callable[[np.ndarray], np.ndarray]
+    width: int = WIDTH
+
+
+JOBS = (
+    Job("image, copied", "image_copied", 1.15, "unpad", lambda pixels: pixels.copy()),
+    Job("image of padded rows, unpadded", "image_unpadded", None, "unpad", lambda pixels: pixels.copy(), PADDED),
+    Job("image, unpadded and channels swapped", "image_swapped", 1.6, "swap", lambda pixels: pixels[:, :, ::-1].copy()),
+    Job("image, made planar", "image_planar", 1.6, "planar", lambda pixels: pixels.transpose(2, 0, 1).copy()),
+)
+
+
+@pytest.mark.parametrize("job", JOBS, ids=lambda job: job.mapping)
+def test_image_against_memmove(job, effort, compare, record):
+    decode, message, peers = rj.Decoder(MAPPINGS / f"{job.mapping}.mapping", encoding="yarp3"), image(job.width), Peers()
+    by_numpy = numpy_decoder(job)
+    assert bytes(decode(message).data) == by_numpy(message).tobytes()
+    source, target = np.frombuffer(message, np.uint8, offset=HEADER), np.empty(len(message) - HEADER, np.uint8)
+    outcome = compare(
+        CHAPTER,
+        f"{job.what}, {job.width}x{HEIGHT}",
+        [
+            Contender(OURS, "ours", "an RST image, used again", effort.call(decode, message)),
+            Contender(MOVE, "limit", "the pixels, elsewhere", effort.call(np.copyto, target, source)),
+            Contender(
+                peers.dynamic_decoder,
+                "peer",
+                "a bottle with a blob, in C++; nothing is converted",
+                rounds_of(peers.dynamic(message), effort.round_s),
+            ),
+            Contender("C++ by hand", "peer", "an array, used again", rounds_of(peers.image(job.native, message), effort.round_s)),
+            Contender("numpy, unchecked", "peer", "an array, anew", effort.call(by_numpy, message)),
+        ],
+    )
+    record(job.what, outcome.ratio(OURS, MOVE), job.at_most, "x memmove", f"{outcome.took(OURS).median / 1000:.2f} µs")
+
+
+def test_borrowed_image_against_len(effort, compare, record):
+    decode, message = rj.Decoder(MAPPINGS / "image_copied.mapping", encoding="yarp3", borrow=True), image()
+    outcome = compare(
+        CHAPTER,
+        "image, borrowed",
+        [
+            Contender(OURS, "ours", "an RST image, used again; its data a view of the message", effort.call(decode, message)),
+            Contender(LEN, "limit", "a number", effort.call(len, message)),
+        ],
+    )
+    record("image, borrowed", outcome.ratio(OURS, LEN), 4, "x len()", f"{outcome.took(OURS).median:.0f} ns")
+
+
+def numpy_decoder(job):
+    row = -(-job.width * 3 // 8) * 8
+
+    def decode(message):
+        rows = np.frombuffer(message, np.uint8, offset=HEADER).reshape(HEIGHT, row)
+        return job.numpy(rows[:, : job.width * 3].reshape(HEIGHT, job.width, 3))
+
+    return decode

@@ -1,0 +1,118 @@
+"""Each framework's messages into a holder that is used again, one Python call a message, and back into a buffer that is given."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bench.contest import Contender
+from bench.peers import python_peers
+from bench.peers.native import native_peers, rounds_of
+from bench.peers.yarp_native import Peers
+from bench.subjects import ROS_2, SUBJECTS
+
+OURS, FRESH, INTO, BORROWED, LEN, COPY, MOVE = (
+    "rosetta_jit",
+    "rosetta_jit, a holder anew",
+    "rosetta_jit, into a buffer",
+    "rosetta_jit, borrowed",
+    "len()",
+    "numpy's copy",
+    "memmove in C++",
+)
+ALL = {**SUBJECTS, **ROS_2}
+BLOBS = ("Image 640x480", "PointCloud2, 100,000 points", "RST Image 320x240")
+SMALL = {"Imu": 3, "RST JointAngles, packed": 3, "RST JointAngles, unpacked": 5}
+ARRAYS = {
+    "LaserScan 1080": 2,
+    "PoseArray 1000": 1.5,
+    "LCM, 1,000 big-endian doubles": 2,
+    "CORBA TimedDoubleSeq 1000": 1.5,
+    "OROCOS vector<double> 1000": 1.5,
+}
+PYTHON_SHARES = {"Imu": 50, "JointState, 32 joints": 30, "PoseArray 1000": None, "LaserScan 1080": None}
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_decode(name, effort, compare, record):
+    subject = ALL[name]
+    message, decode = subject.message, subject.decoder()
+    contenders = [
+        Contender(OURS, "ours", "a holder of lanes, used again", effort.call(decode, message)),
+        Contender(FRESH, "ours", "a holder of lanes, anew", effort.call(lambda: decode.into(message, decode.new()))),
+        *borrowed(effort, name, subject),
+        *limits(effort, message),
+        *(Contender(peer.who, "peer", peer.makes, effort.call(peer.decode, message)) for peer in python_peers(subject)),
+        *(Contender(peer.who, "peer", peer.makes, rounds_of(peer.decode, effort.round_s)) for peer in native_peers(subject)),
+    ]
+    outcome = compare("Decoding", name, contenders)
+    for row in decode_rows(name, outcome, [peer.who for peer in python_peers(subject)]):
+        record(*row)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_encode(name, effort, compare, record):
+    subject = ALL[name]
+    message, decode, encode = subject.message, subject.decoder(), subject.encoder()
+    holder, buffer = decode(message), bytearray(len(message))
+    assert encode(holder) == message
+    peers = [(peer, peer.decode(message)) for peer in python_peers(subject) if peer.encode is not None]
+    for peer, value in peers:
+        assert bytes(peer.encode(value)) == message, peer.who
+    contenders = [
+        Contender(INTO, "ours", "a buffer that is given", effort.call(encode, holder, buffer, 0)),
+        Contender(OURS, "ours", "bytes, anew", effort.call(encode, holder)),
+        Contender("its decode", "limit", "a holder, used again", effort.call(decode, message)),
+        *limits(effort, message),
+        *(Contender(peer.who, "peer", "bytes, anew", effort.call(peer.encode, value)) for peer, value in peers),
+        *(Contender(peer.who, "peer", "a buffer that is given", rounds_of(peer.encode, effort.round_s)) for peer in native_peers(subject)),
+    ]
+    outcome = compare("Encoding", name, contenders)
+    if name in SUBJECTS:
+        took = outcome.took(INTO).median
+        record(f"{name}, encode", outcome.ratio(INTO, "its decode"), 1.5, "x its decode", f"{took:.0f} ns")
+
+
+def borrowed(effort, name, subject):
+    """Ours once more, for what can stay where it is."""
+    if name not in BLOBS:
+        return []
+    decode = subject.decoder(borrow=True)
+    return [Contender(BORROWED, "ours", "a holder, used again; bytes are a view of the message", effort.call(decode, subject.message))]
+
+
+def limits(effort, message):
+    """What no decoder in Python can do without: a call, and the bytes moved."""
+    source, target = np.frombuffer(message, np.uint8), np.empty(len(message), np.uint8)
+    return [
+        Contender(LEN, "limit", "a number", effort.call(len, message)),
+        Contender(COPY, "limit", "the message's bytes, elsewhere", effort.call(np.copyto, target, source)),
+        Contender(MOVE, "limit", "the same, without a call from Python", rounds_of(Peers().memmove(len(message)), effort.round_s)),
+    ]
+
+
+def decode_rows(name, outcome, peers):
+    """The rows of the table that this message has."""
+    took, len_ = outcome.took(OURS).median, outcome.took(LEN).median
+    moved = outcome.took(MOVE).median
+    if name in SMALL:
+        allowed = SMALL[name] + (moved / len_ if name == "Imu" else 0)
+        yield f"{name}, decode", outcome.ratio(OURS, LEN), allowed, "x len()", f"{took:.0f} ns"
+    if name in ARRAYS:
+        allowed, detail = ARRAYS[name] + len_ / moved, f"{took:.0f} ns, the call in the limit"
+        yield f"{name}, decode", outcome.ratio(OURS, MOVE), allowed, "x memmove", detail
+    if name in BLOBS:
+        yield f"{name}, copied", outcome.ratio(OURS, COPY), 1.15, "x memmove", f"{took / 1000:.1f} µs"
+        yield f"{name}, borrowed", outcome.ratio(BORROWED, LEN), 4, "x len()", f"{outcome.took(BORROWED).median:.0f} ns"
+    if name in PYTHON_SHARES and peers:
+        yield against_python(name, outcome, peers)
+    if name == "JointState, 32 joints" and "roscpp in C++" in outcome.rounds_ns:
+        roscpp = outcome.took("roscpp in C++").median
+        yield f"{name}, against roscpp in C++", outcome.ratio(OURS, "roscpp in C++"), 1.2, "x", f"{roscpp:.0f} ns, object used again"
+
+
+def against_python(name, outcome, peers):
+    peer, part = outcome.fastest(peers), PYTHON_SHARES[name]
+    share = None if part is None else 1 / part
+    detail = f"{peer}: {outcome.took(peer).median / 1000:.1f} µs"
+    return f"{name}, against the fastest Python peer", outcome.ratio(OURS, peer), share, "of it", detail

@@ -1,0 +1,71 @@
+"""Measures contenders in turns, so that a busy moment of the machine hits all alike.
+
+Absolute times do not travel between machines; how many `len()` or `memmove` a decode costs does, roughly. A contender is a function without
+arguments that returns the nanoseconds a message took: Python's are timed here, native ones time their own loops. Time is the
+thread's on a processor: while others have it, no clock runs.
+"""
+
+from __future__ import annotations
+
+import time
+import timeit
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function with its arguments, called so many times a round, without anything in between."""
+
+    function: Callable[..., object]
+    arguments: tuple[object, ...]
+    timer: timeit.Timer
+    count: int
+    messages: int = 1  # that one call deals with
+
+    def __call__(self) -> float:
+        return 1e9 * self.timer.timeit(self.count) / (self.count * self.messages)
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How long is measured: rounds, and seconds a contender in each of them."""
+
+    rounds: int
+    round_s: float
+    quick: bool
+
+    @classmethod
+    def of(cls, *, quick: bool) -> Effort:
+        return cls(7, 0.004, quick=True) if quick else cls(21, 0.02, quick=False)
+
+    def in_turns(self, contenders: Mapping[str, Callable[[], float]], *, rounds: int | None = None) -> dict[str, tuple[float, ...]]:
+        """Nanoseconds a message of each contender, a figure a round."""
+        taken: dict[str, list[float]] = {name: [] for name in contenders}
+        for timed in contenders.values():
+            timed()  # caches, branch predictors, and lanes that grow
+        for _ in range(rounds or self.rounds):
+            for name, timed in contenders.items():
+                taken[name].append(timed())
+        return {name: tuple(values) for name, values in taken.items()}
+
+    def call(
+        self, function: Callable[..., object], *arguments: object, count: int | None = None, messages: int = 1, threaded: bool = False
+    ) -> Call:
+        """A contender: a function that is called ``count`` times a round, or as often as fills one. Threads need a common clock."""
+        names = [f"argument{number}" for number in range(len(arguments))]
+        given = {"given_function": function, **{f"given_{name}": argument for name, argument in zip(names, arguments, strict=True)}}
+        setup = "; ".join(f"{name} = given_{name}" for name in ("function", *names))
+        clock = time.perf_counter if threaded else time.thread_time
+        timer = timeit.Timer(f"function({', '.join(names)})", setup, clock, given)
+        return Call(function, arguments, timer, count or self._count(timer), messages)
+
+    def _count(self, timer: timeit.Timer) -> int:
+        """How many calls fill a round."""
+        count = 1
+        while (took := timer.timeit(count)) < self.round_s / 4:
+            count *= 4
+        return max(1, int(count * self.round_s / took))

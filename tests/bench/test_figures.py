@@ -1,0 +1,72 @@
+"""What a run finds, as data: medians, ratios round by round, slopes."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import pytest
+
+from bench.contest import Contender, held
+from bench.figures import Spread, chapters, from_json, ratio, to_json
+from bench.slopes import exponent, too_steep
+from bench.turns import Effort
+from tests.bench import runs
+
+
+def test_a_spread_is_the_median_between_quartiles():
+    assert Spread.of([5.0, 1.0, 2.0, 4.0, 3.0]) == Spread(3.0, 2.0, 4.0)
+    assert Spread.of([7.0]) == Spread(7.0, 7.0, 7.0)
+
+
+def test_ratios_are_of_single_rounds():
+    """A moment that slows both down threefold does not show."""
+    assert ratio([10.0, 30.0, 10.0], [5.0, 15.0, 5.0]) == Spread(2.0, 2.0, 2.0)
+
+
+def test_reports_survive_json():
+    report = runs.report()
+    assert from_json(json.loads(json.dumps(to_json(report)))) == report
+
+
+def test_chapters_gather_what_was_measured_apart():
+    first, *_ = runs.report().comparisons
+    other = type(first)("Limits", "a call", first.figures)
+    assert chapters([first, other, first]) == {"Decoding": [first, first], "Limits": [other]}
+
+
+@pytest.mark.parametrize("power", [0.0, 0.5, 1.0, 2.0])
+def test_the_exponent_is_the_slope_in_logarithms(power):
+    assert exponent(runs.curve(power).series[0]) == pytest.approx(power)
+
+
+def test_only_what_outgrows_its_job_is_too_steep():
+    assert too_steep(runs.curve(2.0)) == ("decode",)
+    assert too_steep(runs.curve(1.1)) == ()
+    assert too_steep(runs.curve(1.1, may_grow=0.0)) == ("decode",)
+    assert too_steep(runs.curve(2.0, role="limit")) == ()
+
+
+def test_a_limit_that_grows_as_much_explains():
+    ours, limit = runs.curve(1.5).series, runs.curve(1.4, role="limit").series
+    both = type(runs.curve(1.0))("size", "bytes", "ns", (*ours, *limit))
+    assert too_steep(both) == ()
+
+
+def test_contenders_are_measured_in_turns():
+    calls = []
+    outcome = held(Effort(3, 0.001, quick=True), [Contender(who, "ours", "", lambda who=who: calls.append(who) or 1.0) for who in "ab"])
+    assert calls == list("ab") * 4
+    assert outcome.rounds_ns == {"a": (1.0,) * 3, "b": (1.0,) * 3}
+
+
+def test_a_call_is_timed_without_what_waits():
+    """The clock is the thread's: it stands while the thread sleeps."""
+    asleep = Effort(3, 0.001, quick=True).call(time.sleep, 0.02, count=2)
+    assert 0 < asleep() < 10e6
+
+
+def test_a_call_counts_messages():
+    effort = Effort(3, 0.001, quick=True)
+    one, thousand = effort.call(sum, range(10_000), count=20), effort.call(sum, range(10_000), count=20, messages=1000)
+    assert 100 < min(one() for _ in range(5)) / min(thousand() for _ in range(5)) < 10_000

@@ -1,0 +1,120 @@
+"""Reports of a run: the page, the table, the README, and the comparison of two runs."""
+
+from __future__ import annotations
+
+import json
+import re
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from bench import compare
+from bench.figures import from_json
+from bench.report import __main__ as reports
+from bench.report.readme import BEGIN, END, insert_in_readme
+from tests.bench import runs
+
+
+@pytest.fixture
+def written(tmp_path):
+    reports.write(runs.run(runs.row("fast"), runs.row("slow", 3.0), runs.row("reported", at_most=None)), tmp_path)
+    return tmp_path
+
+
+def test_the_table_marks_what_was_missed(written):
+    text = (written / "report.md").read_text("utf-8")
+    assert "| fast | 1.5 x len() | 2 x len() | met - 25 ns |" in text
+    assert "| slow | 3 x len() | 2 x len() | **missed** - 25 ns |" in text
+    assert "| reported | 1.5 x len() |  | 25 ns |" in text
+
+
+def test_the_table_says_what_peers_make_and_how_we_stand_to_them(written):
+    lines = (written / "report.md").read_text("utf-8").splitlines()
+    assert "| len() | a number | 10 ns (10 to 10) | 3 (2.5 to 3.5) |" in lines
+    (peer,) = [line for line in lines if "alert" in line and "anew" in line]
+    assert peer.endswith("| an object, anew | 400 ns (300 to 500) | 0.1 (0.075 to 0.1) |")
+
+
+def test_slopes_are_stated_and_superlinear_ones_are_flagged(written):
+    lines = [line for line in (written / "report.md").read_text("utf-8").splitlines() if line.startswith("| size")]
+    assert [("x^2.00" in line, "steeper" in line) for line in lines] == [(True, True), (False, False)]
+
+
+def test_the_page_needs_nothing_beside_itself(written):
+    page = (written / "report.html").read_text("utf-8")
+    assert not re.search(r"(src|href)=|@import|url\(", page)
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+
+
+def test_plots_are_well_formed_and_within_their_pictures(written):
+    page = (written / "report.html").read_text("utf-8")
+    pictures = [ET.fromstring(each) for each in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]  # noqa: S314 - written by us
+    assert len(pictures) == 1 + 3
+    for picture in pictures:
+        _, _, width, height = map(float, picture.get("viewBox").split())
+        for mark in picture.iter("circle"):
+            assert 0 <= float(mark.get("cx")) <= width
+            assert 0 <= float(mark.get("cy")) <= height
+
+
+def test_shares_add_up_to_the_whole(written):
+    page = (written / "report.html").read_text("utf-8")
+    assert "parse: 1 ms, 25 %" in page
+    assert ">8 ms</text>" in page
+
+
+def test_the_readme_keeps_what_stands_around_the_table(tmp_path):
+    readme = tmp_path / "README.md"
+    readme.write_text(f"before\n{BEGIN}old\n{END}\nafter\n")
+    insert_in_readme([runs.row("fast")], readme)
+    text = readme.read_text("utf-8")
+    assert text.startswith(f"before\n{BEGIN}| what |")
+    assert text.endswith(f"met - 25 ns |\n{END}\nafter\n")
+    assert "old" not in text
+
+
+def compared(tmp_path, old, new):
+    paths = [tmp_path / name for name in ("old.json", "new.json")]
+    for path, rows in zip(paths, (old, new), strict=True):
+        path.write_text(json.dumps(runs.run(*rows)))
+    return compare.main([str(path) for path in paths])
+
+
+def test_a_regression_fails(tmp_path, capsys):
+    assert compared(tmp_path, [runs.row("a"), runs.row("b")], [runs.row("a", 1.5 * 1.2), runs.row("b")]) == 1
+    out = capsys.readouterr().out
+    assert "| a | 1.5 (1.4 to 1.6) | 1.8 (1.7 to 1.9) x len() | +20 % | **regression** |" in out
+    assert "| b" not in out
+
+
+@pytest.mark.parametrize(
+    ("new", "why"),
+    [
+        (runs.row("a", 1.5 * 1.14), "not enough"),
+        (runs.row("a", 1.0), "better"),
+        (runs.row("a", 3.0, at_most=None), "no target"),
+        (runs.row("b", 9.0), "nothing to compare with"),
+    ],
+)
+def test_other_changes_do_not_fail(tmp_path, new, why):
+    assert compared(tmp_path, [runs.row("a")], [new]) == 0, why
+
+
+def test_noise_is_not_shown(tmp_path, capsys):
+    assert compared(tmp_path, [runs.row("a", width=0.3)], [runs.row("a", 1.6, width=0.3)]) == 0
+    assert capsys.readouterr().out == "nothing changed beyond the noise\n"
+
+
+def test_a_target_that_is_not_measured_any_more_is_told(tmp_path, capsys):
+    compared(tmp_path, [runs.row("a"), runs.row("b")], [runs.row("a")])
+    assert "not measured any more: b" in capsys.readouterr().out
+
+
+def test_reports_are_made_from_the_json_alone(tmp_path, capsys):
+    run = tmp_path / "run.json"
+    run.write_text(json.dumps(runs.run()))
+    reports.main([str(run), "--output", str(tmp_path / "out")])
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"report.md", "report.html"}
+    assert "report.html" in capsys.readouterr().out
+    assert from_json(json.loads(run.read_text())["rosetta_jit"]) == runs.report()
