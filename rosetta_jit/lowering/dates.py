@@ -6,9 +6,9 @@ The calendar's arithmetic counts years from March, so that the leap day is the l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Binary, Compare, Convert, If, Select, Unary, add, index, mul
 from rosetta_jit.lowering.views import TRUE, View, between, byte_at, has_room, is_between, is_one_of, kept, parameters, put, room, scanning
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block

@@ -10,11 +10,11 @@ A text is a string, bytes, or an array of 8-bit integers. What is computed from 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, describe
 from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, TextCall
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
