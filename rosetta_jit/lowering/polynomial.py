@@ -173,12 +173,10 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Convert(operand, _, rule):
             keeps = isinstance(operand.type, Int) and rule in {"widen", "exact"}
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
-        case Call(function, arguments):
-            return atom(function, *(polynomial_of(argument) for argument in arguments))
+        case Call(function, arguments) | TextCall(function, arguments):
+            return atom(function, *map(polynomial_of, arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
-        case TextCall(function, arguments):
-            return atom(function, *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
