@@ -94,10 +94,10 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return argument, Call(OPPOSITE[function], (value,), span)
         case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
             return argument, value
-        case Call() if (found := opposite(expr, value)) is not None:
-            return found
         case Call("divide", (argument, divisor), span) if not fields_in(divisor):
             return argument, Binary("*", value, divisor, span)
+        case Call() if (found := opposite(expr, value)) is not None:
+            return found
         case Call(function):
             raise NoInverseError(expr, f"`{function}` gives the same for several values")
         case Choice():

@@ -5,7 +5,6 @@ A side can be read (`values.Source`) and be written; which one is which depends 
 
 from __future__ import annotations
 
-from contextlib import contextmanager, nullcontext
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
@@ -38,9 +37,6 @@ from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.model.types import Array
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-    from contextlib import AbstractContextManager
-
     from rosetta_jit.lowering import typed
     from rosetta_jit.lowering.bound import Region, WireFields
     from rosetta_jit.lowering.fields import HolderElements, HolderFields
@@ -97,13 +93,6 @@ class HolderSide:
             return value
         scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
         return Select(present, value, Const(scalar_name(scalar), _number(last.default)))
-
-    @contextmanager
-    def forgetting(self) -> Generator[None]:
-        """Around statements that may not run: what is looked up within them is not known behind them."""
-        known = dict(self.arrays)
-        yield
-        self.arrays = known
 
     def count(self, place: typed.Place, values: Values) -> Expr:
         return self.array(place, values)[1]
@@ -213,10 +202,6 @@ class WireSide:
             return found
         region, at = self.element(key, indices, values)
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
-
-    def forgetting(self) -> AbstractContextManager[None]:
-        """The walk has found all that there is."""
-        return nullcontext()
 
     def count(self, place: typed.Place, values: Values) -> Expr:
         del values

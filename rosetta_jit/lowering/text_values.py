@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
@@ -12,6 +13,7 @@ from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_a
 from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.number_text import Read, read_float, read_integer
 from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
+from rosetta_jit.lowering.sides import HolderSide
 from rosetta_jit.lowering.text_making import padded, replaced, with_case
 from rosetta_jit.lowering.text_search import compared, find, part, parts, stripped
 from rosetta_jit.lowering.type_texts import BLANKS
@@ -20,10 +22,10 @@ from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.types import Float, String
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Generator, Sequence
 
     from rosetta_jit.kernel.ir import Expr, Local
-    from rosetta_jit.lowering.values import Values
+    from rosetta_jit.lowering.values import Source, Values
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
@@ -89,7 +91,7 @@ def _chosen(choice: typed.Choice, values: Values) -> View:
         writer.assign(undecided, Const("bool", value=False))
 
     for condition, value in choice.cases:
-        with values.source.forgetting(), writer.nested() as step:
+        with forgetting(values.source), writer.nested() as step:
             holds = values.of(condition)
             with writer.nested() as then:
                 choose(value)
@@ -98,7 +100,7 @@ def _chosen(choice: typed.Choice, values: Values) -> View:
     if choice.otherwise is None:
         values.reject(choice.reason, when=undecided)
     else:
-        with values.source.forgetting(), writer.nested() as other:
+        with forgetting(values.source), writer.nested() as other:
             choose(choice.otherwise)
         writer.emit(If(undecided, block(other)))
     return _found(lane, first, size, values)
@@ -125,6 +127,17 @@ def _found(lane: int, first: Local, size: Local, values: Values) -> View:
         writer.expect(known, "length", values.where, LOST)
     writer.expect(Compare("le", first, Binary("sub", Used(lane), size)), "length", values.where, LOST)
     return sound(writer, View(lane, first, writer.let("after", Binary("add", first, size))))
+
+
+@contextmanager
+def forgetting(source: Source) -> Generator[None]:
+    """Around statements that may not run: what is looked up within them is not known behind them."""
+    if not isinstance(source, HolderSide):
+        yield
+        return
+    known = dict(source.arrays)
+    yield
+    source.arrays = known
 
 
 def _called(call: typed.TextCall, values: Values) -> Text:

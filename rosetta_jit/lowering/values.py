@@ -13,7 +13,7 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import converted, scalar_name
-from rosetta_jit.lowering.text_values import number_of
+from rosetta_jit.lowering.text_values import forgetting, number_of
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -21,7 +21,6 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from contextlib import AbstractContextManager
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.model.types import Type
@@ -41,10 +40,6 @@ class Source(Protocol):
 
     def address(self, place: typed.Place, values: Values) -> Address:
         """Where the bytes of a string or bytes field begin."""
-        ...
-
-    def forgetting(self) -> AbstractContextManager[None]:
-        """Around statements that may not run: what is looked up within them is not known behind them."""
         ...
 
     def present(self, place: typed.Place, values: Values) -> Expr:
@@ -69,9 +64,9 @@ class Values:
                 return constant(number, scalar_type(type_))
             case typed.Local(name):
                 return self.variables[name]
-            case typed.Access(place):
-                found = self.source.number(place, self)
-                return converted(found, "bool") if isinstance(place.type, Bool) else found
+            case typed.Access(place, type_):
+                number = self.source.number(place, self)
+                return converted(number, "bool") if isinstance(type_, Bool) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
@@ -86,26 +81,16 @@ class Values:
                 return self.convert(self.of(operand), scalar_type(type_), rule)
             case typed.Call(function, arguments, _):
                 return self.call(function, [self.of(argument) for argument in arguments])
-            case typed.IsText() | typed.TextCall():
-                return self.of_text(value)
-            case typed.Has(place):
-                return self.source.present(place, self)
-            case typed.Choice():
-                return self.choice(value)
-            case typed.Listed() | typed.Given():
-                return self.listed(value)
-            case typed.Told() | typed.HostCall() | typed.ImageCall():
-                return asked(value, self)
-            case _:
-                assert_never(value)
-
-    def of_text(self, value: typed.IsText | typed.TextCall) -> Expr:
-        """What is asked of a text."""
-        match value:
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
             case typed.TextCall():
                 return number_of(value, self)
+            case typed.Has(place):
+                return self.source.present(place, self)
+            case typed.Choice() | typed.Listed() | typed.Given():
+                return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
+            case typed.Told() | typed.HostCall() | typed.ImageCall():
+                return asked(value, self)
             case _:
                 assert_never(value)
 
@@ -115,7 +100,7 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with self.source.forgetting(), writer.nested() as step:
+            with forgetting(self.source), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
@@ -125,7 +110,7 @@ class Values:
         if choice.otherwise is None:
             self.reject(choice.reason, when=undecided)
             return found
-        with self.source.forgetting(), writer.nested() as other:
+        with forgetting(self.source), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
@@ -145,7 +130,7 @@ class Values:
         writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
         cases: list[tuple[int, Block]] = []
         for case, item in enumerate(listed.items):
-            with self.source.forgetting(), writer.nested() as body:
+            with forgetting(self.source), writer.nested() as body:
                 use(item)
             cases.append((case, block(body)))
         writer.emit(Switch(number, tuple(cases), ()))
