@@ -317,7 +317,7 @@ def _imported(build: Build) -> Schema:
 
 def _plain_site(site: Site) -> list[Any]:
     parts = [[part.offset, part.size, part.path, part.step] for part in site.parts]
-    return [site.kind, site.path, site.detail, site.line, parts]
+    return [site.kind, site.path, site.detail, site.line, parts, site.detail_lane]
 
 
 def _report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:

@@ -95,6 +95,27 @@ def escape(span: Span, text: str) -> Diagnostic:
     return error("escape", f"unknown escape `{text}`", span, help_=r"known are \" \\ \n \t \r")
 
 
+def lone_brace(span: Span | None) -> Diagnostic:
+    """A brace without its other half."""
+    return error(
+        "lone-brace",
+        "a brace that belongs to no other",
+        span,
+        "here",
+        help_="a value stands in braces: `{.name}`; write a brace as `{{` or `}}`",
+    )
+
+
+def no_value(span: Span | None) -> Diagnostic:
+    """A value in braces, and more."""
+    return error("syntax", "braces hold one value", span, "more than one")
+
+
+def many_pieces(span: Span | None, most: int) -> Diagnostic:
+    """A text with too many values."""
+    return error("many-pieces", f"a text has at most {most} values and texts between them", span)
+
+
 def number(span: Span, target: str) -> Diagnostic:
     """A number that no type of the language holds."""
     return error("number", f"the number does not fit {target}", span, "too large", help_="write a smaller one")

@@ -13,6 +13,7 @@ from lark import Token, Tree
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frontend.templates import pieces_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Item, Len, List, Literal, Member, Name, Path, Pick, Slice, Unary
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Parameter, Reject, Relation, SameNames, SetLength, Via, When
 from rosetta_jit.source import Span
@@ -103,10 +104,17 @@ def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span
 
 
 def _reject(tree: Tree[Token], context: Context, span: Span) -> Rule:
-    rejection = Reject(_text(tree, context), span)
+    text, pieces = _template(tree, context)
+    rejection = Reject(text, span, pieces)
     for condition in _trees(tree):
         return When(_expr(condition, context), (rejection,), (), span)
     return rejection
+
+
+def _template(tree: Tree[Token], context: Context) -> tuple[str, tuple[Expr, ...]]:
+    """A text and, where it has values in braces, what it consists of."""
+    text, place = _text(tree, context), context.span(_tokens(tree)[0])
+    return text, pieces_of(text, place, context.problems, lambda value: _expr(value, context))
 
 
 def _text(tree: Tree[Token], context: Context) -> str:
@@ -172,7 +180,7 @@ def _table(tree: Tree[Token], context: Context, span: Span) -> Choice:
     subject, *entries = _trees(tree)
     compared = _expr(subject, context)
     cases: list[tuple[Expr, Expr]] = []
-    otherwise, reason = None, "the table has no entry for it"
+    otherwise, reason, pieces = None, "the table has no entry for it", ()
     for entry in entries:
         values = [_expr(part, context) for part in _trees(entry)]
         if entry.data == "entry":
@@ -180,8 +188,8 @@ def _table(tree: Tree[Token], context: Context, span: Span) -> Choice:
         elif values:
             otherwise = values[0]
         else:
-            reason = _text(entry, context)
-    return Choice(tuple(cases), otherwise, reason, span)
+            reason, pieces = _template(entry, context)
+    return Choice(tuple(cases), otherwise, reason, span, pieces)
 
 
 def _path(tree: Tree[Token], side: Side, context: Context) -> Path:

@@ -448,7 +448,8 @@ class Part:
 class Site:
     """One place where a message can fail: what the static table turns ``-(1 + number)`` into.
 
-    ``path`` has a ``{}`` for each index. ``line`` is the rule of the mapping (``file:line:column``) where one is to blame.
+    ``path`` has a ``{}`` for each index. ``line`` is the rule of the mapping (``file:line:column``) where one is to blame. With a
+    ``detail_lane`` the detail is what bytes of that hidden lane say: two more indices are their first row and how many they are.
     """
 
     kind: str
@@ -456,6 +457,7 @@ class Site:
     detail: str
     line: str = ""
     parts: tuple[Part, ...] = ()
+    detail_lane: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

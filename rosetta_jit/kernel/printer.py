@@ -260,7 +260,8 @@ def _extent(extent: Extent) -> str:
 
 
 def _site(number: int, site: Site) -> Iterator[str]:
-    yield f"  {number}: {site.kind!r} {site.path!r} {site.detail!r} {site.line!r}"
+    lane = "" if site.detail_lane is None else f" of lane {site.detail_lane}"
+    yield f"  {number}: {site.kind!r} {site.path!r} {site.detail!r} {site.line!r}{lane}"
     yield from (f"    {_part(part)}" for part in site.parts)
 
 

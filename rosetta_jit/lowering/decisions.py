@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, same
-from rosetta_jit.lowering.type_texts import comparison
+from rosetta_jit.lowering.type_texts import comparison, type_pieces
 from rosetta_jit.lowering.typed import BOOL, Access, Binary, Choice, Const, IsText, Unary
 from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
@@ -127,7 +127,8 @@ def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr |
         return None
     otherwise = None if expr.otherwise is None else fitting[-1]
     cases = tuple((condition, value) for condition, value in zip(conditions, fitting, strict=False) if condition is not None)
-    return Choice(cases, otherwise, expr.reason, fitting[0].type, expr.span)
+    pieces = type_pieces(expr.pieces, scope, type_expr)
+    return Choice(cases, otherwise, expr.reason, fitting[0].type, expr.span, pieces)
 
 
 def unified(values: list[Expr]) -> list[Expr] | None:

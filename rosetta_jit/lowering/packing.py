@@ -93,13 +93,13 @@ class Packing:
                 return self.loop(rule, loops)
             case Relation():
                 return self.relation(rule, loops)
-            case When(condition, (Reject(),), ()):
-                known = self.known.replaced(condition, loops)
-                return () if self.is_unknown(known, rule.condition) else (replace(rule, condition=known),)
+            case When(condition, (Reject() as refusal,), ()):
+                known, then = self.known.replaced(condition, loops), (self.refusal(refusal, loops),)
+                return () if self.is_unknown(known, rule.condition) else (replace(rule, condition=known, then=then),)
             case When():
                 return self.when(rule, loops)
             case Reject():
-                return (rule,)
+                return (self.refusal(rule, loops),)
             case Ignore(place, span):
                 return (Default(place, span),)
             case Default(place, span):
@@ -250,6 +250,11 @@ class Packing:
         self.owed = tuple(owed for owed in self.owed if any(owed is each for block in blocks for each in block.owed))
 
     # --- what is missing -----------------------------------------------------------------------------------------------
+
+    def refusal(self, rule: Reject, loops: Loops) -> Reject:
+        """A rejection with what is known of the values that its text shows; with the text alone, where that is not all."""
+        pieces = tuple(self.known.replaced(piece, loops) for piece in rule.pieces)
+        return replace(rule, pieces=() if any(fields_of(piece, "wire") for piece in pieces) else pieces)
 
     def is_unknown(self, known: Expr, written: Expr) -> bool:
         missing = fields_of(known, "wire")

@@ -99,7 +99,10 @@ def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
                 yield from _read((*then, *otherwise))
             case typed.Ignore(place):
                 yield place
-            case typed.Reject() | typed.Default():
+            case typed.Reject(pieces=pieces):
+                for piece in pieces:
+                    yield from _in(piece)
+            case typed.Default():
                 pass
 
 
@@ -124,8 +127,8 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.ImageCall(_, image, _, _, numbers):
             for part in (image, *numbers):
                 yield from _in(part)
-        case typed.Choice(cases, otherwise):
-            for part in (part for case in cases for part in case):
+        case typed.Choice(cases, otherwise, pieces=pieces):
+            for part in (*(part for case in cases for part in case), *pieces):
                 yield from _in(part)
             if otherwise is not None:
                 yield from _in(otherwise)

@@ -24,7 +24,7 @@ from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_images import is_bytes
-from rosetta_jit.lowering.type_texts import is_textual
+from rosetta_jit.lowering.type_texts import is_textual, type_pieces
 from rosetta_jit.lowering.typed import (
     Access,
     Assign,
@@ -181,8 +181,8 @@ class _Block:
                 return self.loop(rule, scope)
             case model.When():
                 return self.when(rule, scope)
-            case model.Reject(text):
-                return Reject(text, rule.span)
+            case model.Reject(text, span, pieces):
+                return Reject(text, span, type_pieces(pieces, scope, type_expr))
             case model.Ignore(path) | model.Default(path):
                 return self.left_alone(rule, path, scope)
             case model.SameNames():
@@ -306,7 +306,9 @@ def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
     """A choice among texts as one rule a text: numbers alone are chosen in an expression."""
     if not (isinstance(value, Choice) and isinstance(place.type, String | Bytes)):
         return Assign(place, value, span)
-    rest: tuple[Rule, ...] = (Reject(value.reason, span),) if value.otherwise is None else (_by_case(place, value.otherwise, span),)
+    rest: tuple[Rule, ...] = (
+        (Reject(value.reason, span, value.pieces),) if value.otherwise is None else (_by_case(place, value.otherwise, span),)
+    )
     for condition, chosen in reversed(value.cases):
         rest = (When(condition, (_by_case(place, chosen, span),), rest, span),)
     return rest[0]

@@ -51,13 +51,13 @@ class Runner:
                     self.take(place, self.count(here.of(value)), here)
                 case typed.For():
                     self.loop(rule, here)
-                case typed.When(condition, (typed.Reject(text, span),), ()):
-                    here.at_rule(span).reject(text, when=here.of(condition))
+                case typed.When(condition, (typed.Reject(text, span, pieces),), ()):
+                    here.at_rule(span).reject(text, pieces, when=here.of(condition))
                 case typed.When(condition, then, otherwise):
                     holds = here.of(condition)
                     self.writer.emit(If(holds, self.branch(then, values), self.branch(otherwise, values)))
-                case typed.Reject(text):
-                    here.reject(text)
+                case typed.Reject(text, _, pieces):
+                    here.reject(text, pieces)
                 case typed.Ignore() | typed.Default():
                     pass
                 case _:

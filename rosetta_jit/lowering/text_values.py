@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Place, Unary, Used, Wire, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, If, IsText, Place, Site, Unary, Used, Wire, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
 from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
@@ -24,8 +24,11 @@ from rosetta_jit.model.types import Float, String
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
 
-    from rosetta_jit.kernel.ir import Expr, Local
+    from rosetta_jit.kernel.ir import Address, Expr, Local
     from rosetta_jit.lowering.values import Source, Values
+
+MAX_SHOWN = 100
+"""Bytes of a value in the text of a rejection."""
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
@@ -53,9 +56,12 @@ def text_of(value: typed.Expr, values: Values) -> Text:
 
 
 def _field(place: typed.Place, values: Values) -> View:
+    size = values.writer.let("size", values.source.count(place, values))
+    return _view(values.source.address(place, values), size, values)
+
+
+def _view(address: Address, size: Expr, values: Values) -> View:
     writer = values.writer
-    size = writer.let("size", values.source.count(place, values))
-    address = values.source.address(place, values)
     if isinstance(address, Wire):
         writer.require(size, values.where, at=address.at)  # it is there: said again where the proof may have lost it
         return sound(writer, View(None, address.at, writer.let("after", Binary("add", address.at, size))))
@@ -98,7 +104,7 @@ def _chosen(choice: typed.Choice, values: Values) -> View:
             writer.emit(If(holds, block(then)))
         writer.emit(If(undecided, block(step)))
     if choice.otherwise is None:
-        values.reject(choice.reason, when=undecided)
+        values.reject(choice.reason, choice.pieces, when=undecided)
     else:
         with forgetting(values.source), writer.nested() as other:
             choose(choice.otherwise)
@@ -335,6 +341,25 @@ def _read(read: Read, what: str, target: str, values: Values) -> Expr:
 
 def _expect(values: Values, condition: Expr, kind: str, detail: str) -> None:
     values.writer.expect(condition, kind, values.where, detail, line=values.line)
+
+
+def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Values) -> None:
+    """Refuse the message with a text that is put together where it is refused; long values are cut."""
+    writer = values.writer
+    with forgetting(values.source), writer.nested() as refused:
+        shown = joined(writer, [_cut(text_of(piece, values), values) for piece in pieces])
+        site = Site("rejected", values.where.path, reason, values.line, detail_lane=shown.lane)
+        number = writer.sites.setdefault(site, len(writer.sites))
+        indices = (*values.where.indices, shown.first, shown.size)
+        writer.emit(Expect(Const("bool", value=False), Failure(number, writer.position, indices)))
+    writer.emit(If(Const("bool", value=True) if when is None else when, block(refused)))
+
+
+def _cut(text: Text, values: Values) -> Text:
+    if isinstance(text, Quoted):
+        return text
+    after = values.writer.let("cut", Binary("min", text.after, add(text.first, MAX_SHOWN)))
+    return sound(values.writer, replace(text, after=after))
 
 
 def checked(view: View, values: Values) -> View:

@@ -16,8 +16,8 @@ from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, describe
-from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, TextCall
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
+from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, Convert, TextCall
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,6 +137,25 @@ def comparison(left: Expr, right: Expr, operator: model.Operator, span: Span | N
     if not (is_textual(left.type) and is_textual(right.type)):
         return None
     return Binary(operator, TextCall("compared", (left, right), INT64, span), Const(0, INT64), BOOL, span)
+
+
+def type_pieces(pieces: tuple[model.Expr, ...], scope: Scope, type_expr: TypeExpr) -> tuple[Expr, ...]:
+    """The pieces of a rejection as texts: numbers are written, enums by number."""
+    found: list[Expr] = []
+    for piece in pieces:
+        value = type_expr(piece, scope)
+        match None if value is None else value.type:
+            case None:
+                continue
+            case Enum() if value is not None:
+                found.append(TextCall("written", (Convert(value, INT64, "exact", value.span),), TEXT, value.span))
+            case Bool() | Int() | Float() if value is not None:
+                found.append(TextCall("written", (value,), TEXT, value.span))
+            case _ if value is not None and _usable("reject", value, scope):
+                found.append(value)
+            case _:
+                pass
+    return tuple(found)
 
 
 def _kind(value: Expr) -> String | Bytes:

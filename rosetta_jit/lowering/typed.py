@@ -244,6 +244,7 @@ class Choice:
     reason: str
     type: Type
     span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -345,10 +346,11 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class Reject:
-    """The message is refused, with this text."""
+    """The message is refused, with this text, or with what the ``pieces`` say, which are texts."""
 
     text: str
     span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

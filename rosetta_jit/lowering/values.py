@@ -14,7 +14,7 @@ from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided,
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.rebuild import rebuilt
-from rosetta_jit.lowering.text_values import forgetting, number_of
+from rosetta_jit.lowering.text_values import forgetting, number_of, reject_with
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -119,7 +119,7 @@ class Values:
                 writer.emit(If(holds, block(then)))
             writer.emit(If(undecided, block(step)))
         if choice.otherwise is None:
-            self.reject(choice.reason, when=undecided)
+            self.reject(choice.reason, choice.pieces, when=undecided)
             return found
         with forgetting(self.source), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
@@ -146,8 +146,11 @@ class Values:
             cases.append((case, block(body)))
         writer.emit(Switch(number, tuple(cases), ()))
 
-    def reject(self, reason: str, *, when: Expr | None = None) -> None:
-        """Refuse the message, always or where something holds."""
+    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: Expr | None = None) -> None:
+        """Refuse the message, always or where something holds: with a reason, or with what its pieces say."""
+        if pieces:
+            reject_with(pieces, reason, when, self)
+            return
         good = Const("bool", value=False) if when is None else Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)
 

@@ -135,7 +135,8 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The value of the first case whose condition holds, else ``otherwise``; None rejects the message, with ``reason``.
+    """The value of the first case whose condition holds, else ``otherwise``; None rejects the message, with ``reason``, or with
+    what its ``pieces`` say, texts and values by turns.
 
     ``a if condition else b`` is one; so is ``table(subject) { key = value, … }``, whose conditions compare the subject with the keys.
     """
@@ -144,6 +145,7 @@ class Choice:
     otherwise: Expr | None
     reason: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,10 +113,11 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class Reject:
-    """``reject "text"``: the message is refused, whatever else it holds."""
+    """``reject "text"``: the message is refused, whatever else it holds. ``pieces`` are the texts and values of a text with braces."""
 
     text: str
     span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,7 +38,8 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, arguments=tuple(map(change, arguments)))
         case Choice(cases, otherwise):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)
-            return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise))
+            pieces = tuple(map(change, expr.pieces))
+            return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise), pieces=pieces)
         case List(items):
             return replace(expr, items=tuple(map(change, items)))
         case Item(items=items, index=index):
@@ -67,7 +68,9 @@ def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
         case mapping.Arranged(place, flag, cases):
             pairs = tuple((change(constant), change(value)) for constant, value in cases)
             return replace(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
-        case mapping.Reject() | mapping.SameNames():
+        case mapping.Reject(pieces=pieces):
+            return replace(rule, pieces=tuple(map(change, pieces)))
+        case mapping.SameNames():
             return rule
         case _:
             assert_never(rule)

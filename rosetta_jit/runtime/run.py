@@ -103,25 +103,26 @@ class Site:
     detail: str
     line: str
     parts: tuple[Part, ...]
+    detail_lane: int | None
 
     @classmethod
     def of(cls, plain: Sequence[Any]) -> Site:
         """From the header of a cached program."""
-        kind, path, detail, line, parts = plain
-        return cls(kind, path, detail, line, tuple(Part(*part) for part in parts))
+        kind, path, detail, line, parts, lane = plain
+        return cls(kind, path, detail, line, tuple(Part(*part) for part in parts), lane)
 
 
 def decode_error(site: Site, lanes: Lanes, begin: int, end: int) -> DecodeError:
     """What a failed kernel has left in the state, as an error. Offsets count from the message's begin."""
     at = lanes.words[ERROR_OFFSET]
     path, at = _located(site, lanes, at, end)
-    return DecodeError(cast("Kind", site.kind), path, _sentence(site), at - begin)
+    return DecodeError(cast("Kind", site.kind), path, _sentence(site, lanes), at - begin)
 
 
 def encode_error(site: Site, lanes: Lanes) -> EncodeError:
     """The same of an encoder."""
     path, _ = _located(site, lanes, 0, 0)
-    return EncodeError(cast("Kind", site.kind), path, _sentence(site))
+    return EncodeError(cast("Kind", site.kind), path, _sentence(site, lanes))
 
 
 def missing(lanes: Lanes) -> tuple[int, int]:
@@ -150,5 +151,14 @@ def _located(site: Site, lanes: Lanes, at: int, end: int) -> tuple[str, int]:
     return site.path.format(*indices), at
 
 
-def _sentence(site: Site) -> str:
-    return f"{site.detail} ({site.line})" if site.line else site.detail
+def _sentence(site: Site, lanes: Lanes) -> str:
+    detail = site.detail if site.detail_lane is None else _told(site, site.detail_lane, lanes)
+    return f"{detail} ({site.line})" if site.line else detail
+
+
+def _told(site: Site, lane: int, lanes: Lanes) -> str:
+    """The text that a kernel has put together; a character that it cut shows as a mark."""
+    assert lanes.hidden is not None, "a kernel that writes to a hidden lane has made it grow"
+    first = ERROR_INDICES + site.path.count("{}")
+    start, size = lanes.words[first], lanes.words[first + 1]
+    return bytes(lanes.hidden.buffers[lane - len(lanes.buffers)][start : start + size]).decode(errors="replace")

@@ -35,8 +35,16 @@ FRONT_ENDS = Readers({name: installed()[name] for name in ("yarp", "protobuf", "
 FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".lcm", ".txt", ".units"}}
 CATALOGUE = (mapping_words, resolve_words, check_words, derive_words, units_words)
 MAKERS = ("error", "warning", "placed", "in_one_way")
-ELSEWHERE = ("file_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
+OF_FILES = ("file_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
 """What takes files: tests/frontend/test_search.py has it."""
+
+OF_BOTH_WAYS = ("alike_blocks", "too_complex", "too_many_blocks", "unknown_condition")
+"""What rules for both directions cannot decide: test_both_ways.py and test_hostile_mappings.py have it."""
+
+OF_PIECES = ("many_pieces", "lone_brace", "no_value")
+"""Values in the texts of rejections, and parameters: test_rejections.py and test_parameters.py have it."""
+
+ELSEWHERE = (*OF_FILES, *OF_BOTH_WAYS, *OF_PIECES)
 
 
 def diagnostics(path: Path) -> tuple[Diagnostic, ...]:
