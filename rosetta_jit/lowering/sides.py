@@ -30,7 +30,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.lowering.bear import bear_each
 from rosetta_jit.lowering.bound import EACH, NotInPlaceError
-from rosetta_jit.lowering.fields import converted, member_of, presence_bit, scalar_name
+from rosetta_jit.lowering.fields import converted, has_gaps, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
@@ -164,7 +164,7 @@ class HolderSide:
         elements = fields.open(path, count)
         self.arrays[_key(place)] = elements, count
         lane = self.root.layout.lanes[elements.lane]
-        if not isinstance(lane.element, Number):
+        if not isinstance(lane.element, Number) and not has_gaps(lane.element):
             self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
             self.root.clear(elements.lane, elements.start, count)
         if isinstance(place.type, Array) and self.births is not None:

@@ -12,6 +12,7 @@ from rosetta_jit.lowering.passes.hoist import hoist
 from rosetta_jit.lowering.passes.merge import merge
 from rosetta_jit.lowering.passes.reuse import reuse
 from rosetta_jit.lowering.passes.simplify import simplify
+from rosetta_jit.lowering.passes.sink import sink
 from rosetta_jit.lowering.passes.unroll import unroll
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     bulk,
     simplify,
     merge,
+    sink,
 )
 
 
