@@ -1,0 +1,143 @@
+"""What a mapping adds: its decode against that of the same message without one, and what its arithmetic takes in a numba kernel by hand."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from bench.contest import Contender
+from bench.figures import Spread
+from bench.messages import joints_mapping, specialised
+
+numba = pytest.importorskip("numba")
+
+CHAPTER = "Mappings"
+OURS, PLAIN, BY_HAND, CALL, MOVE = "rosetta_jit", "unmapped", "numba by hand", "numba, of nothing", "memmove"
+AT_MOST = 1.2
+COUNT = 1000
+FILES = {
+    "wire/msg/Wire.msg": "float64[] numbers\nint32[] kinds\nwire/Point[] points\n",
+    "wire/msg/Point.msg": "float64 x\nfloat64 y\nfloat64 z\nint32 id\n",
+    "held/msg/Held.msg": "float32[] numbers\nint32[] kinds\nheld/Point[] points\n",
+    "held/msg/Point.msg": "float64 z\nfloat64 y\nfloat64 x\nint32 id\n",
+}
+HEAD = 'import "wire/msg/Wire.msg"\nimport "held/msg/Held.msg"\ndata-holder: held/Held\nwire-schema: wire/Wire\nunpack-rules:\n'
+RULES = {
+    "numbers": "  .numbers[] = float32(radians(.numbers[]))\n",
+    "kinds": "  .kinds[] = table(.kinds[]) { 5 = 0, 6 = 2, 7 = 1, otherwise 3 }\n",
+    "points": "".join(f"  .points[].{name} = .points[].{name}{by}\n" for name, by in (("x", ""), ("y", " * 2.0"), ("z", ""), ("id", ""))),
+}
+
+
+def radians(source, target, count):
+    for i in range(count):
+        target[i] = np.float32(source[i] * (math.pi / 180))
+
+
+def looked_up(source, target, count):
+    for i in range(count):
+        kind = source[i]
+        target[i] = 0 if kind == 5 else 2 if kind == 6 else 1 if kind == 7 else 3
+
+
+def doubled(source, target, count):
+    for i in range(count):
+        target[i] = source[i] * 2.0
+
+
+NUMBERS = np.arange(COUNT, dtype=np.float64)
+KINDS = (np.arange(COUNT) % 4 + 5).astype(np.int32)
+WORK = {
+    "numbers": (radians, NUMBERS, np.empty(COUNT, np.float32)),
+    "kinds": (looked_up, KINDS, np.empty(COUNT, np.int32)),
+    "points": (doubled, NUMBERS, np.empty(COUNT)),
+}
+WHAT = {
+    "numbers": f"mapping, {COUNT} degrees to radians",
+    "kinds": f"mapping, {COUNT} numbers looked up in a table",
+    "points": f"mapping, {COUNT} points renamed and one coordinate doubled",
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("mapped")
+    for name, content in FILES.items():
+        (made / name).parent.mkdir(parents=True, exist_ok=True)
+        (made / name).write_text(content)
+    return made
+
+
+def message(part):
+    """A message in which one of the three arrays has elements."""
+    points = np.zeros(COUNT, [("x", "<f8"), ("y", "<f8"), ("z", "<f8"), ("id", "<i4")])
+    points["x"], points["y"], points["id"] = NUMBERS, NUMBERS, KINDS
+    arrays = {"numbers": NUMBERS, "kinds": KINDS, "points": points}
+    return b"".join(struct.pack("<I", COUNT) + each.tobytes() if name == part else bytes(4) for name, each in arrays.items())
+
+
+def mapped(part, folder):
+    rest = "".join(f"  ignore .{name}\n  default .{name}\n" for name in RULES if name != part)
+    (folder / f"{part}.mapping").write_text(HEAD + RULES[part] + rest)
+    return rj.Decoder(folder / f"{part}.mapping", encoding="ros1", search_path=[folder])
+
+
+def check(part, found):
+    match part:
+        case "numbers":
+            assert np.allclose(found.numbers, np.radians(NUMBERS), rtol=1e-6)
+        case "kinds":
+            assert list(found.kinds) == [{5: 0, 6: 2, 7: 1}.get(kind, 3) for kind in KINDS.tolist()]
+        case _:
+            assert [(point.x, point.y, point.z, point.id) for point in found.points[:3]] == [(i, 2.0 * i, 0.0, 5 + i) for i in range(3)]
+
+
+@pytest.mark.parametrize("part", RULES)
+def test_arrays(part, folder, effort, compare, record):
+    decode, data = mapped(part, folder), message(part)
+    check(part, decode(data))
+    plain = rj.Decoder.of("wire/Wire", encoding="ros1", search_path=[folder], imports=["wire/msg/Wire.msg"])
+    outcome = compare(CHAPTER, WHAT[part], [*contenders(decode, plain, data, effort), *by_hand(*WORK[part], COUNT, effort)])
+    record(WHAT[part], added(outcome), AT_MOST, "x unmapped and the arithmetic by hand", f"{outcome.took(OURS).median:.0f} ns")
+    if part == "points":
+        record(f"{WHAT[part]}, against its bytes", outcome.ratio(OURS, MOVE), None, "x memmove", "each byte once")
+
+
+def test_joints(tmp_path, effort, compare, record):
+    data, what = specialised(24), "mapping, an iCub's 24 joints to radians"
+    decode = rj.Decoder(joints_mapping(24, tmp_path), encoding="yarp3")
+    plain = rj.Decoder.of("bench.joints24", encoding="yarp3", imports=["joints24.bottle-schema"], search_path=[tmp_path])
+    assert decode(data).angles == pytest.approx(np.radians([10.0 * index - 7.25 for index in range(24)]), rel=1e-6)
+    outcome = compare(CHAPTER, what, [*contenders(decode, plain, data, effort), *by_hand(*WORK["numbers"], 24, effort)])
+    record(what, added(outcome), AT_MOST, "x unmapped and the arithmetic by hand", f"{outcome.took(OURS).median:.0f} ns")
+
+
+def contenders(decode, plain, data, effort):
+    plain(data)
+    source, target = np.frombuffer(data, np.uint8), np.empty(len(data), np.uint8)
+    return [
+        Contender(OURS, "ours", "an object of another type, used again", effort.call(decode, data)),
+        Contender(PLAIN, "limit", "an object of the wire's type, used again", effort.call(plain, data)),
+        Contender(MOVE, "limit", "the message, elsewhere", effort.call(np.copyto, target, source)),
+    ]
+
+
+def by_hand(function, source, target, count, effort):
+    """The arithmetic alone, and the call that it takes from Python."""
+    compiled = numba.njit(function)
+    compiled(source, target, count)
+    return [
+        Contender(BY_HAND, "limit", "the numbers, from one array to another", effort.call(compiled, source, target, count)),
+        Contender(CALL, "limit", "nothing", effort.call(compiled, source, target, 0)),
+    ]
+
+
+def added(outcome):
+    """Ours over the unmapped decode and the arithmetic, round by round."""
+    rounds = outcome.rounds_ns
+    parts = zip(rounds[OURS], rounds[PLAIN], rounds[BY_HAND], rounds[CALL], strict=True)
+    return Spread.of([ours / (plain + max(0.0, work - call)) for ours, plain, work, call in parts])
