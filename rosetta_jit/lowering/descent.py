@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.kernel.ir import Block
-    from rosetta_jit.wire.codec import Codec
+    from rosetta_jit.wire.codec import Codec, Path
 
 ROW_WORD, STATE_WORD, LEFT_WORD, OPEN_WORD = range(4)
 """The hidden words of a row: the row around it, the state to go on with there, how many neighbours follow it; then those of `Delimited`."""
@@ -143,6 +143,8 @@ class Descent:
                 elements, count = begin_elements(self.writer, fields, codec)
                 assert isinstance(elements, HolderElements)
                 self.visit(elements, count, piece.then)
+            case Recursion(path):
+                self.visit(self.single(fields, path), index(1), piece.then)
             case Cases():
                 walk(codec.discriminator, fields, self.writer)
                 switch_cases(self.writer, fields, codec, lambda each: self.flow(each, fields, piece))
@@ -152,6 +154,14 @@ class Descent:
                 self.open(codec, fields, piece)
             case _:
                 raise AssertionError(codec)  # encodings refuse recursion elsewhere
+
+    def single(self, fields: HolderFields, path: Path) -> HolderElements:
+        """The row of a struct that is always there, and has one because it can contain itself."""
+        if self.writer.direction == "decode":
+            return fields.open(path, index(1))
+        stored = fields.stored(path)
+        self.writer.expect(Compare("eq", stored.size, index(1)), "missing", fields.where.members(path), "it is not set")
+        return fields.elements(path, stored)
 
     # --- sizes before what they are of -----------------------------------------------------------------------------------
 
