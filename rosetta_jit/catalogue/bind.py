@@ -86,6 +86,12 @@ def long_list(span: Span | None, most: int) -> Diagnostic:
     return error("many-cases", f"a list has at most {most} items", span)
 
 
+def many_items(span: Span | None, most: int) -> Diagnostic:
+    """More places that choose among more items than is compiled."""
+    help_ = "choose once and assign the item, or shorten the lists"
+    return error("many-cases", f"items of lists are chosen in too many places: more than {most} items in all", span, help_=help_)
+
+
 def needless(name: str) -> Diagnostic:
     """Parameters for a type without a mapping."""
     return error("unknown-parameter", f"there is no mapping that could have a parameter `{shorten(name)}`", None)

@@ -74,6 +74,10 @@ def _value(parameter: Parameter, given: Dictionary[str, object] | None, problems
     return found
 
 
+MAX_CHOSEN = 5000
+"""Items of all lists at all places where one of them is chosen."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Binder:
     """Puts values in place of names."""
@@ -81,6 +85,7 @@ class _Binder:
     values: dict[str, Expr]
     problems: list[Diagnostic]
     used: set[str] = field(default_factory=set[str])
+    compiled: list[int] = field(default_factory=list[int])
 
     def rules(self, rules: tuple[Rule, ...], variables: tuple[str, ...]) -> tuple[Rule, ...]:
         return tuple(found for rule in rules for found in self.rule(rule, variables))
@@ -126,11 +131,19 @@ class _Binder:
                 self.problems.append(words.no_such_item(index.span, number, len(values)))
             case Given(name, (), Array(element)), _:
                 return Given(name, (index,), element, item.span)
-            case List(), _:
-                return item
+            case List(values), _:
+                return self.chosen(item, len(values))
             case _:
                 self.problems.append(words.not_a_list(item.span))
         return Literal(0, item.span)
+
+    def chosen(self, item: Item, count: int) -> Expr:
+        """An item that is chosen when a message comes; each such place is compiled for every item of the list."""
+        before = self.compiled[-1] if self.compiled else 0
+        self.compiled.append(before + count)
+        if before <= MAX_CHOSEN < before + count:
+            self.problems.append(words.many_items(item.span, MAX_CHOSEN))
+        return item if before + count <= MAX_CHOSEN else Literal(0, item.span)
 
     def choice(self, choice: Choice) -> Expr:
         """A choice without the cases that are known not to be; their values are not looked at."""

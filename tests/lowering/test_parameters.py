@@ -278,3 +278,11 @@ def test_on_the_command_line(tmp_path, capsys):
     assert "missing-parameter" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main([*command, "--parameter", 'names={"a": 1}'])
+
+
+def test_places_that_choose_items_are_bounded():
+    """A line of text may name the same long list many times."""
+    rules = f"parameter xs: list of float64\nunpack-rules:\n{REST}  .scaled = {' + '.join(['xs[.n]'] * 30)}\n"
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("m.mapping", schema=files(rules), encoding="yarp3", backend="interpreter", parameters={"xs": [1.0] * 500})
+    assert [problem.code for problem in error.value.diagnostics if problem.severity == "error"] == ["many-cases"]
