@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Compare, If, Select, While, add, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, If, Select, While, add, index
 from rosetta_jit.lowering.views import (
     TRUE,
     View,
@@ -44,6 +44,20 @@ def compared(writer: Writer, left: View, right: View) -> Expr:
 
     (order,) = writer.call(f"compare_{left.memory}_{right.memory}", make, (left.first, left.after, right.first, right.after), MESSAGE)
     return order
+
+
+def has_at(writer: Writer, end: Literal["starts_with", "ends_with"], view: View, other: View) -> Local:
+    """Whether one text is the begin or the end of another."""
+    found = writer.var("found", Const("bool", value=False))
+    size = writer.let("size", other.size)
+    with writer.nested() as long_enough:
+        if end == "starts_with":
+            part_of_it = View(view.lane, view.first, Binary("add", view.first, size))
+        else:
+            part_of_it = View(view.lane, Binary("sub", view.after, size), view.after)
+        writer.assign(found, Compare("eq", compared(writer, sound(writer, part_of_it), other), index(0)))
+    writer.emit(If(Compare("le", size, view.size), block(long_enough)))
+    return found
 
 
 def find(writer: Writer, lane: int | None, first: Expr, after: Expr, pattern: bytes) -> Local:

@@ -1,4 +1,4 @@
-"""Typed expressions of texts as places in memory, and what is asked of texts as numbers."""
+"""Typed expressions of texts as places in memory."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, If, IsText, Place, Site, Unary, Used, Wire, add, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Place, Unary, Used, Wire, index
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
+from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, split, written_date
 from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.images import bytes_of
-from rosetta_jit.lowering.number_text import Read, read_float, read_integer
 from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
 from rosetta_jit.lowering.sides import HolderSide
 from rosetta_jit.lowering.text_making import padded, replaced, with_case
-from rosetta_jit.lowering.text_search import compared, find, part, parts, stripped
+from rosetta_jit.lowering.text_search import find, has_at, part, stripped
 from rosetta_jit.lowering.type_texts import BLANKS
 from rosetta_jit.lowering.views import LOST, TRUE, Quoted, Text, View, byte_at, joined, lane_of, lies_in, placed, sound
 from rosetta_jit.lowering.writer import block
@@ -26,9 +25,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.ir import Address, Expr, Local
     from rosetta_jit.lowering.values import Source, Values
-
-MAX_SHOWN = 100
-"""Bytes of a value in the text of a rejection."""
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
@@ -152,22 +148,22 @@ def _called(call: typed.TextCall, values: Values) -> Text:
         case "written":
             return _written(call, values)
         case "lower" | "upper" as case:
-            return with_case(writer, _placed(arguments[0], values), case)
+            return with_case(writer, placed_of(arguments[0], values), case)
         case "strip":
-            characters = next(map(_quoted, arguments[1:]), BLANKS.encode())
-            return stripped(writer, _placed(arguments[0], values), characters)
+            characters = next(map(quoted, arguments[1:]), BLANKS.encode())
+            return stripped(writer, placed_of(arguments[0], values), characters)
         case "replace":
-            return replaced(writer, _placed(arguments[0], values), _quoted(arguments[1]), _quoted(arguments[2]))
+            return replaced(writer, placed_of(arguments[0], values), quoted(arguments[1]), quoted(arguments[2]))
         case "slice":
             return _slice(call, values)
         case "part":
-            found, there = part(writer, _placed(arguments[0], values), _quoted(arguments[1]), values.of(arguments[2]))
-            _expect(values, there, "index", "the text has no such part")
+            found, there = part(writer, placed_of(arguments[0], values), quoted(arguments[1]), values.of(arguments[2]))
+            expect(values, there, "index", "the text has no such part")
             return found
         case "behind" | "before" as side:
-            return _without(side, _placed(arguments[0], values), _quoted(arguments[1]), values)
+            return _without(side, placed_of(arguments[0], values), quoted(arguments[1]), values)
         case "until_nul":
-            view = _placed(arguments[0], values)
+            view = placed_of(arguments[0], values)
             return sound(writer, replace(view, after=find(writer, view.lane, view.first, view.after, b"\0")))
         case "padded":
             return _padded(call, values)
@@ -189,7 +185,7 @@ def _written(call: typed.TextCall, values: Values) -> View:
         return written_float(values.writer, value, None)
     known = values.writer.let("number", value)
     fits = Compare("lt", Unary("abs", known), Const(known.type, 10.0 ** (LARGEST - places)))
-    _expect(values, Binary("or", fits, is_special(known)), "range", f"a number of more than {LARGEST} digits")
+    expect(values, Binary("or", fits, is_special(known)), "range", f"a number of more than {LARGEST} digits")
     return written_float(values.writer, known, places)
 
 
@@ -197,17 +193,17 @@ def _slice(call: typed.TextCall, values: Values) -> View:
     """A part by its first and last byte, where characters begin."""
     writer = values.writer
     text, start, stop = call.arguments
-    view = _placed(text, values)
+    view = placed_of(text, values)
     size = writer.let("size", view.size)
     low, high = writer.let("start", values.of(start)), writer.let("stop", values.of(stop))
     for within in (Compare("ge", low, index(0)), Compare("le", low, high), Compare("le", high, size)):
-        _expect(values, within, "index", "the text has no such bytes")
+        expect(values, within, "index", "the text has no such bytes")
     first, after = (writer.let(name, Binary("add", view.first, at)) for name, at in (("first", low), ("after", high)))
     found = sound(writer, View(view.lane, first, after, view.valid and isinstance(call.type, String)))
     for at in (first, after) if isinstance(call.type, String) else ():
         with writer.nested() as inside:
             begins = Compare("ne", Binary("and", byte_at(view.lane, at), Const("u8", 0xC0)), Const("u8", 0x80))
-            _expect(values, begins, "text", "a character is cut")
+            expect(values, begins, "text", "a character is cut")
         writer.emit(If(Binary("and", Compare("lt", at, view.after), lies_in(view.lane, at)), block(inside)))
     return found
 
@@ -215,8 +211,8 @@ def _slice(call: typed.TextCall, values: Values) -> View:
 def _without(side: Literal["behind", "before"], view: View, known: bytes, values: Values) -> View:
     """A text without the begin, or the end, that it must have."""
     end, where = ("starts_with", "begin") if side == "behind" else ("ends_with", "end")
-    there = _has_at(end, view, placed(values.writer, Quoted(known)), values)
-    _expect(values, there, "text", f"the text does not {where} as it must")
+    there = has_at(values.writer, end, view, placed(values.writer, Quoted(known)))
+    expect(values, there, "text", f"the text does not {where} as it must")
     size = index(len(known))
     if side == "behind":
         return sound(values.writer, replace(view, first=Binary("add", view.first, size)))
@@ -226,15 +222,15 @@ def _without(side: Literal["behind", "before"], view: View, known: bytes, values
 def _padded(call: typed.TextCall, values: Values) -> View:
     text, size = call.arguments
     assert isinstance(size, typed.Const)
-    view = _placed(text, values)
-    _expect(values, Compare("le", view.size, index(int(size.value))), "length", f"the text has more than {int(size.value)} bytes")
+    view = placed_of(text, values)
+    expect(values, Compare("le", view.size, index(int(size.value))), "length", f"the text has more than {int(size.value)} bytes")
     return padded(values.writer, view, int(size.value))
 
 
 def _recoded(call: typed.TextCall, values: Values) -> View:
     """Bytes read as text, or text as bytes of an encoding."""
-    writer, encoding = values.writer, _quoted(call.arguments[1]).decode()
-    view = _placed(call.arguments[0], values)
+    writer, encoding = values.writer, quoted(call.arguments[1]).decode()
+    view = placed_of(call.arguments[0], values)
     if call.function == "bytes" or encoding == "utf-8":
         view = checked(view, values)
     match encoding, call.function:
@@ -250,7 +246,7 @@ def _recoded(call: typed.TextCall, values: Values) -> View:
             made = from_utf16(writer, view, big=encoding.endswith("be"))
         case _:
             made = to_utf16(writer, view, big=encoding.endswith("be"))
-    _expect(values, made.good, "text", f"not valid {encoding}" if call.function == "decoded" else f"a character that {encoding} lacks")
+    expect(values, made.good, "text", f"not valid {encoding}" if call.function == "decoded" else f"a character that {encoding} lacks")
     return made.view
 
 
@@ -262,108 +258,31 @@ def _dated(call: typed.TextCall, values: Values) -> View:
     else:
         seconds, nanoseconds = (writer.let("time", values.of(each)) for each in call.arguments)
         within = Binary("and", Compare("ge", nanoseconds, index(0)), Compare("lt", nanoseconds, index(SECOND)))
-        _expect(values, within, "range", "the nanoseconds are not less than a second")
+        expect(values, within, "range", "the nanoseconds are not less than a second")
     years = Binary("and", Compare("ge", seconds, index(LEAST_SECONDS)), Compare("le", seconds, index(MOST_SECONDS)))
-    _expect(values, years, "range", "a time before the year 0 or after 9999")
+    expect(values, years, "range", "a time before the year 0 or after 9999")
     return written_date(writer, seconds, nanoseconds)
 
 
-def _placed(value: typed.Expr, values: Values) -> View:
+def placed_of(value: typed.Expr, values: Values) -> View:
+    """A text that lies somewhere, also where the mapping writes it down."""
     return placed(values.writer, text_of(value, values))
 
 
-def _quoted(value: typed.Expr) -> bytes:
+def quoted(value: typed.Expr) -> bytes:
+    """A text that must be written down."""
     assert isinstance(value, typed.Const)
     assert isinstance(value.value, str)
     return value.value.encode()
 
 
-# --- numbers of texts ----------------------------------------------------------------------------------------------------
-
-
-def number_of(call: typed.TextCall, values: Values) -> Expr:
-    """What a function of texts gives that gives no text."""
-    writer, arguments = values.writer, call.arguments
-    match call.function:
-        case "size":
-            return writer.let("size", _placed(arguments[0], values).size)
-        case "compared":
-            left, right = (_placed(each, values) for each in arguments)
-            return compared(writer, left, right)
-        case "starts_with" | "ends_with" as end:
-            return _has_at(end, _placed(arguments[0], values), _placed(arguments[1], values), values)
-        case "contains":
-            view = _placed(arguments[0], values)
-            return Compare("lt", find(writer, view.lane, view.first, view.after, _quoted(arguments[1])), view.after)
-        case "parts":
-            return parts(writer, _placed(arguments[0], values), _quoted(arguments[1]))
-        case "integer":
-            return _read(read_integer(writer, _placed(arguments[0], values)), "an integer", "int64", values)
-        case "number":
-            return _read(read_float(writer, _placed(arguments[0], values)), "a number", "float64", values)
-        case "seconds" | "fraction" | "nanoseconds":
-            return _time(call, values)
-        case _:
-            raise AssertionError(call)
-
-
-def _time(call: typed.TextCall, values: Values) -> Expr:
-    """What a date says, from 1970 on: whole seconds, the nanoseconds behind them, or all of it in nanoseconds."""
-    read = read_date(values.writer, _placed(call.arguments[0], values))
-    _expect(values, Unary("not", read.is_none), "text", "the text is no date with a time and its offset")
-    _expect(values, Unary("not", read.is_too_fine), "range", "the date is finer than nanoseconds")
-    if call.function != "nanoseconds":
-        return read.seconds if call.function == "seconds" else read.nanoseconds
-    whole = values.writer.checked("mul", read.seconds, index(SECOND), values.where, line=values.line)
-    return values.writer.checked("add", whole, read.nanoseconds, values.where, line=values.line)
-
-
-def _has_at(end: Literal["starts_with", "ends_with"], view: View, other: View, values: Values) -> Local:
-    """Whether one text is the begin or the end of another."""
-    writer = values.writer
-    found = writer.var("found", Const("bool", value=False))
-    size = writer.let("size", other.size)
-    with writer.nested() as long_enough:
-        if end == "starts_with":
-            part_of_it = View(view.lane, view.first, Binary("add", view.first, size))
-        else:
-            part_of_it = View(view.lane, Binary("sub", view.after, size), view.after)
-        writer.assign(found, Compare("eq", compared(writer, sound(writer, part_of_it), other), index(0)))
-    writer.emit(If(Compare("le", size, view.size), block(long_enough)))
-    return found
-
-
-def _read(read: Read, what: str, target: str, values: Values) -> Expr:
-    _expect(values, Unary("not", read.is_none), "text", f"the text is not {what}")
-    _expect(values, Unary("not", read.is_too_large), "range", f"the number does not fit {target}")
-    return read.value
-
-
-def _expect(values: Values, condition: Expr, kind: str, detail: str) -> None:
+def expect(values: Values, condition: Expr, kind: str, detail: str) -> None:
+    """Fail at the rule, unless something holds."""
     values.writer.expect(condition, kind, values.where, detail, line=values.line)
-
-
-def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Values) -> None:
-    """Refuse the message with a text that is put together where it is refused; long values are cut."""
-    writer = values.writer
-    with forgetting(values.source), writer.nested() as refused:
-        shown = joined(writer, [_cut(text_of(piece, values), values) for piece in pieces])
-        site = Site("rejected", values.where.path, reason, values.line, detail_lane=shown.lane)
-        number = writer.sites.setdefault(site, len(writer.sites))
-        indices = (*values.where.indices, shown.first, shown.size)
-        writer.emit(Expect(Const("bool", value=False), Failure(number, writer.position, indices)))
-    writer.emit(If(Const("bool", value=True) if when is None else when, block(refused)))
-
-
-def _cut(text: Text, values: Values) -> Text:
-    if isinstance(text, Quoted):
-        return text
-    after = values.writer.let("cut", Binary("min", text.after, add(text.first, MAX_SHOWN)))
-    return sound(values.writer, replace(text, after=after))
 
 
 def checked(view: View, values: Values) -> View:
     """A text that is UTF-8, or an error."""
     if not view.valid:
-        _expect(values, IsText(view.address, view.size), "text", "not valid UTF-8")
+        expect(values, IsText(view.address, view.size), "text", "not valid UTF-8")
     return view

@@ -14,7 +14,9 @@ from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided,
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.rebuild import rebuilt
-from rosetta_jit.lowering.text_values import forgetting, number_of, reject_with
+from rosetta_jit.lowering.rejections import reject_with
+from rosetta_jit.lowering.text_questions import number_of
+from rosetta_jit.lowering.text_values import forgetting
 from rosetta_jit.lowering.texts import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
