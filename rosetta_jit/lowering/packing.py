@@ -71,7 +71,7 @@ class Packing:
     @classmethod
     def of(cls, pack_rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Packing:
         """``pack_rules`` are those of the direction's own block."""
-        written = {rule.place: rule.value for rule in pack_rules if isinstance(rule, Assign)}
+        written: dict[Field, Expr] = {rule.place: rule.value for rule in pack_rules if isinstance(rule, Assign)}
         return cls(problems, frozenset(_set_by(pack_rules)), written=written)
 
     def block(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
