@@ -141,9 +141,17 @@ class Readers:
 
     def guesses(self, type_: str) -> Iterator[str]:
         """The files in which a type of that name is likely declared."""
+        return self._files(type_, self.likely)
+
+    def homes(self, type_: str) -> Iterator[str]:
+        """The same, whichever framework the request means: a mapping has types of two."""
+        return self._files(type_, tuple(self.frameworks.values()))
+
+    @staticmethod
+    def _files(type_: str, frameworks: tuple[Framework, ...]) -> Iterator[str]:
         parts = name_parts(type_)
         names = ("/".join((*parts[:-1], "msg", parts[-1])), "/".join(parts)) if len(parts) > 1 else parts
-        for framework in sorted(self.likely, key=lambda each: not any(each.claims(type_ + suffix) for suffix in each.idl)):
+        for framework in sorted(frameworks, key=lambda each: not any(each.claims(type_ + suffix) for suffix in each.idl)):
             for folder in ("", f"{framework.name}/"):
                 yield from (folder + name + suffix for name in names for suffix in framework.idl if suffix not in framework.several)
             yield from framework.files_of(parts)

@@ -31,6 +31,10 @@ class FrontEnds(Protocol):
         """The files in which a type of that name is likely declared."""
         ...
 
+    def homes(self, type_: str) -> Iterable[str]:
+        """The same, of all frameworks."""
+        ...
+
     def find(self, file: str) -> FrontEnd | None:
         """The front end of a file, None where its suffix is not known."""
         ...

@@ -42,7 +42,7 @@ class Imports:
 
     def has(self, type_: str) -> bool:
         """Whether there is a file that a type of this name is likely declared in."""
-        return any(not refusal(name) and self.search.find(name, self.importer) is not None for name in self.front_ends.guesses(type_))
+        return any(not refusal(name) and self.search.find(name, self.importer) is not None for name in self.front_ends.homes(type_))
 
     def read(self, statement: Import) -> Imported | Diagnostic:
         source = self.search.loader(self.reading, self.importer)(statement.path)
