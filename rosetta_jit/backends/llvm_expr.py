@@ -19,6 +19,7 @@ from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
     Binary,
+    Bits,
     Capacity,
     Compare,
     Const,
@@ -79,8 +80,10 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return _compare(frame, op, expression(frame, left), expression(frame, right), type_of(left))
         case Fits(op, left, right):
             return _fits(frame, op, expression(frame, left), expression(frame, right))
-        case Convert(type_, operand):
-            return _convert(frame, expression(frame, operand), type_of(operand), type_)
+        case Convert(type_, operand) | Bits(type_, operand):
+            value = expression(frame, operand)
+            is_bits = isinstance(expr, Bits)
+            return frame.builder.bitcast(value, LLVM_TYPES[type_]) if is_bits else _convert(frame, value, type_of(operand), type_)
         case Select(condition, then, otherwise):
             values = expression(frame, then), expression(frame, otherwise)
             return frame.builder.select(expression(frame, condition), *values)

@@ -61,7 +61,7 @@ IMPORTS = (
     "from numpy import float32, float64",
     "",
     "from rosetta_jit.backends.python_support import Failed, has_room, is_text, quotient, remainder, reserve, run_attempts",
-    "from rosetta_jit.kernel.arithmetic import binary, convert, fits, from_bytes, to_bytes, unary, wrapped",
+    "from rosetta_jit.kernel.arithmetic import binary, convert, fits, from_bytes, same_bits, to_bytes, unary, wrapped",
 )
 HOST_IMPORTS = ("from rosetta_jit.kernel.host import RefusedError",)
 """Of a kernel that calls functions of its host."""

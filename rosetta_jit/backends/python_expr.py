@@ -15,6 +15,7 @@ from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
     Binary,
+    Bits,
     Capacity,
     Compare,
     Const,
@@ -93,8 +94,9 @@ def expression(names: Names, expr: Expr) -> str:
             return f"bool{text}" if type_of(left) in FLOATS else text
         case Fits(op, left, right):
             return f'fits("{op}", {expression(names, left)}, {expression(names, right)})'
-        case Convert(type_, operand):
-            return _convert(type_, type_of(operand), expression(names, operand))
+        case Convert(type_, operand) | Bits(type_, operand):
+            source, text = type_of(operand), expression(names, operand)
+            return f'same_bits("{type_}", "{source}", {text})' if isinstance(expr, Bits) else _convert(type_, source, text)
         case Select(condition, then, otherwise):
             return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
         case IsText(address, size):

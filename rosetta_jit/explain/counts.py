@@ -67,7 +67,7 @@ def _text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str]
         case ir.Local(_, name):
             stem = re.sub(r"_[0-9]+$", "", name)
             return names.get(stem, stem)
-        case ir.Convert(_, operand):
+        case ir.Convert(_, operand) | ir.Bits(_, operand):
             return _text(operand, values, names, depth)
         case ir.Binary(op, left, right) if op in {"min", "max"}:
             return f"{op}({_text(left, values, names, depth)}, {_text(right, values, names, depth)})"

@@ -109,6 +109,8 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "generators"
         case typed.Has():
             yield "predicate assignment"
+        case typed.BytesCall():
+            yield "array reorder"
         case typed.Rescale() | typed.Call():
             yield "arithmetic"
         case typed.Convert(rule="exact"):

@@ -80,6 +80,11 @@ def to_bytes(type_: Scalar, value: Value, order: Order = "<") -> bytes:
     return int(value).to_bytes(WIDTH[type_], "little" if order == "<" else "big", signed=type_ in SIGNED)
 
 
+def same_bits(target: Scalar, source: Scalar, value: Value) -> Value:
+    """The bits of a scalar as another type."""
+    return from_bytes(target, to_bytes(source, value))
+
+
 def binary(type_: Scalar, op: Arithmetic, left: Value, right: Value) -> Value:
     """``left op right`` of two values of one type."""
     if isinstance(left, np.floating):

@@ -19,6 +19,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Bits,
     Call,
     Capacity,
     Compare,
@@ -340,8 +341,10 @@ def _value(machine: _Machine, expr: Expr) -> Value:
             return arithmetic.compare(op, _value(machine, left), _value(machine, right))
         case Fits(op, left, right):
             return arithmetic.fits(op, _integer(machine, left), _integer(machine, right))
-        case Convert(type_, operand):
-            return arithmetic.convert(type_, _value(machine, operand))
+        case Convert(type_, operand) | Bits(type_, operand):
+            value = _value(machine, operand)
+            is_bits = isinstance(expr, Bits)
+            return arithmetic.same_bits(type_, type_of(operand), value) if is_bits else arithmetic.convert(type_, value)
         case Select(condition, then, otherwise):
             chosen, other = _value(machine, then), _value(machine, otherwise)
             return chosen if _value(machine, condition) else other

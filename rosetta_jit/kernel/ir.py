@@ -11,7 +11,7 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
            | Call(routine, arguments, results) | HostCall(function, arguments, inputs, target, result)
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
     Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
-           | Unary | Binary | Compare | Fits | Convert | Select
+           | Unary | Binary | Compare | Fits | Convert | Bits | Select
            | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value)
     Place  = lane, row, offset                            a typed field of a row of a lane
     Address = Wire(at) | Place
@@ -200,6 +200,14 @@ class Convert:
 
 
 @dataclass(frozen=True, slots=True)
+class Bits:
+    """The bits of a number as another type of the same width."""
+
+    type: Scalar
+    operand: Expr
+
+
+@dataclass(frozen=True, slots=True)
 class Select:
     """Both values are computed."""
 
@@ -255,7 +263,7 @@ class Scale:
 
 
 Decimal = Nearest | Digits | Scale
-Expr = Const | Local | Load | Get | Used | Capacity | Told | Unary | Binary | Compare | Fits | Convert | Select | IsText | Decimal
+Expr = Const | Local | Load | Get | Used | Capacity | Told | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal
 
 # --- statements --------------------------------------------------------------------------------------------------------
 
@@ -537,7 +545,7 @@ def mul(left: Expr, right: Expr | int) -> Expr:
 def type_of(expr: Expr) -> Scalar:
     """The type of an expression."""
     match expr:
-        case Const(type_, _) | Local(type_, _) | Load(type_, _, _) | Get(type_, _) | Convert(type_, _):
+        case Const(type_, _) | Local(type_, _) | Load(type_, _, _) | Get(type_, _) | Convert(type_, _) | Bits(type_, _):
             return type_
         case Used() | Capacity() | Told():
             return "i64"

@@ -11,6 +11,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Bits,
     Call,
     Capacity,
     Compare,
@@ -131,8 +132,8 @@ def expression_text(expr: Expr) -> str:
             return f"({expression_text(left)} {SYMBOL[op]} {expression_text(right)})"
         case Fits(op, left, right):
             return f"fits({expression_text(left)} {SYMBOL[op]} {expression_text(right)})"
-        case Convert(type_, operand):
-            return f"{type_}({expression_text(operand)})"
+        case Convert(type_, operand) | Bits(type_, operand):
+            return f"{'bits ' * isinstance(expr, Bits)}{type_}({expression_text(operand)})"
         case Select(condition, then, otherwise):
             return f"({expression_text(then)} if {expression_text(condition)} else {expression_text(otherwise)})"
         case IsText(address, size):

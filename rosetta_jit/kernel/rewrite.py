@@ -10,6 +10,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Bits,
     Call,
     Capacity,
     Compare,
@@ -76,6 +77,8 @@ def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return Fits(op, change(left), change(right))
         case Convert(type_, operand):
             return Convert(type_, change(operand))
+        case Bits(type_, operand):
+            return Bits(type_, change(operand))
         case Select(condition, then, otherwise):
             return Select(change(condition), change(then), change(otherwise))
         case IsText(address, size):

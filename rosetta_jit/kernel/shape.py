@@ -11,6 +11,7 @@ from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
     Binary,
+    Bits,
     Call,
     Capacity,
     Compare,
@@ -133,7 +134,7 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
             return (at,)
         case Get(_, place):
             return (place.row,)
-        case Unary(_, operand) | Convert(_, operand):
+        case Unary(_, operand) | Convert(_, operand) | Bits(_, operand):
             return (operand,)
         case Binary(_, left, right) | Compare(_, left, right) | Fits(_, left, right):
             return (left, right)

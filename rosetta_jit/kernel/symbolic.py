@@ -16,6 +16,7 @@ from rosetta_jit.kernel.decimals import MAX_PLACES, MAX_SCALE, MOST_DIGITS
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Binary,
+    Bits,
     Capacity,
     Compare,
     Const,
@@ -210,8 +211,8 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Get(type_, place):
             check_field(scope, place, type_)
             return type_, unknown(scope, type_)
-        case Convert(type_, operand):
-            return type_, _convert(scope, type_, *evaluate(scope, operand))
+        case Convert() | Bits():
+            return _converted(scope, expr)
         case Compare(op, left, right):
             return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
         case Used(lane):
@@ -402,6 +403,15 @@ def _convert(scope: Scope, target: Scalar, source: Scalar, value: Value) -> Valu
     if limits(source)[0] >= low and limits(source)[1] <= high:
         return value
     return value if scope.facts.proves(same) else scope.facts.named(("low bits", target, value), low, high)
+
+
+def _converted(scope: Scope, expr: Convert | Bits) -> Typed:
+    source, value = evaluate(scope, expr.operand)
+    if isinstance(expr, Convert):
+        return expr.type, _convert(scope, expr.type, source, value)
+    same = WIDTH[source] == WIDTH[expr.type] and "bool" not in {source, expr.type}
+    demand(same, f"a {source} has not the bits of a {expr.type}")
+    return expr.type, unknown(scope, expr.type)
 
 
 def _select(scope: Scope, expr: Select) -> Typed:

@@ -1,6 +1,7 @@
 """Calls: conversions, named by the type that they give, and the functions of the language.
 
 now ()   counter ()   and what the mapping declares
+int8_at … float64_at (bytes, place [, big])   byte (x, n)
 int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate | saturate])     of a float
 float32 float64 (x [, exact])   bool (x)   enum.name (x)
@@ -21,6 +22,7 @@ from rosetta_jit.lowering import conversions
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
 from rosetta_jit.lowering.layouts import ARGUMENTS
 from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS, type_image_call
+from rosetta_jit.lowering.type_number_bytes import NUMBERS_AT, type_byte, type_number_at
 from rosetta_jit.lowering.type_texts import NAMES, type_length, type_text_call
 from rosetta_jit.lowering.typed import INT64, Call, Const, Convert, Told
 from rosetta_jit.lowering.units import check_arguments
@@ -77,8 +79,13 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         return type_text_call(expr, scope, type_expr)
     if expr.function in IMAGE_FUNCTIONS:
         return type_image_call(expr, scope, type_expr)
+    if expr.function == "byte":
+        return type_byte(expr, scope, type_expr)
+    if expr.function in NUMBERS_AT:
+        return type_number_at(expr, NUMBERS_AT[expr.function], scope, type_expr)
     if expr.function not in FUNCTIONS:
-        known = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, *NAMES, *IMAGE_FUNCTIONS, "bool", "has", "len", *scope.enums, *scope.functions}
+        own = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, *NAMES, *IMAGE_FUNCTIONS, *NUMBERS_AT, "bool", "byte", "has", "len"}
+        known = own | {*scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

@@ -17,6 +17,7 @@ from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import (
     Access,
     Binary,
+    BytesCall,
     Call,
     Choice,
     Const,
@@ -173,7 +174,7 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Convert(operand, _, rule):
             keeps = isinstance(operand.type, Int) and rule in {"widen", "exact"}
             return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
-        case Call(function, arguments) | TextCall(function, arguments):
+        case Call(function, arguments) | TextCall(function, arguments) | BytesCall(function, arguments):
             return atom(function, *map(polynomial_of, arguments))
         case Told() | HostCall() | ImageCall():
             return _asked(expr)

@@ -121,7 +121,7 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Binary(_, left, right):
             yield from _in(left)
             yield from _in(right)
-        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.TextCall(_, arguments):
+        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.TextCall(_, arguments) | typed.BytesCall(_, arguments):
             for argument in arguments:
                 yield from _in(argument)
         case typed.ImageCall(_, image, _, _, numbers):

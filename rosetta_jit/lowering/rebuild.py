@@ -10,6 +10,7 @@ from rosetta_jit.lowering.typed import (
     Access,
     Assign,
     Binary,
+    BytesCall,
     Call,
     Choice,
     Const,
@@ -45,7 +46,7 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, operand=change(operand))
         case Binary(left=left, right=right):
             return replace(expr, left=change(left), right=change(right))
-        case Call(arguments=arguments):
+        case Call(arguments=arguments) | BytesCall(arguments=arguments):
             return replace(expr, arguments=tuple(map(change, arguments)))
         case Choice(cases, otherwise):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)

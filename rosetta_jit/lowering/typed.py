@@ -1,7 +1,8 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Listed | Given | Asked
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Choice | Listed | Given | Calls
     each with `type`
+    Calls = Call | TextCall | BytesCall | Asked
     Asked = Told | HostCall | ImageCall
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
@@ -189,6 +190,16 @@ class Has:
 
 
 @dataclass(frozen=True, slots=True)
+class BytesCall:
+    """A number within a string or bytes field (`float32_at`: field, place, whether its high byte comes first), or a `byte` of a number."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Told:
     """When this message came, in ns since 1970, or how many came before it; int64."""
 
@@ -273,7 +284,8 @@ class Given:
 Asked = Told | HostCall | ImageCall
 """What the kernel's host answers."""
 
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Call | IsText | Has | TextCall | Choice | Listed | Given | Asked
+Calls = Call | TextCall | BytesCall | Asked
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Choice | Listed | Given | Calls
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.number_bytes import of_bytes
 from rosetta_jit.lowering.rebuild import rebuilt
 from rosetta_jit.lowering.rejections import reject_with
 from rosetta_jit.lowering.text_questions import number_of
@@ -96,8 +97,8 @@ class Values:
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
-            case typed.TextCall():
-                return number_of(value, self)
+            case typed.TextCall() | typed.BytesCall():
+                return number_of(value, self) if isinstance(value, typed.TextCall) else of_bytes(value, self)
             case typed.Has(place):
                 return self.source.present(place, self)
             case typed.Choice() | typed.Listed() | typed.Given():

@@ -11,6 +11,7 @@ from rosetta_jit.kernel import state
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,
+    ROW,
     WIDTH,
     Assign,
     Binary,
@@ -103,7 +104,7 @@ class Writer:
     position: Expr = BEGIN
     origin: Expr = BEGIN
     sites: dict[Site, int] = field(default_factory=lambda: {Site("grow", "", "a lane is too small"): 0})
-    names: set[str] = field(default_factory=set[str])
+    names: set[str] = field(default_factory=lambda: {parameter.name for parameter in (BEGIN, END, ROW)})
     stems: dict[str, int] = field(default_factory=dict[str, int])
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
     routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
@@ -206,7 +207,7 @@ class Writer:
     def call(self, name: str, make: Callable[[Writer], Contract], arguments: tuple[Expr, ...], where: Where) -> tuple[Local, ...]:
         """The results of a routine, which is made, with a writer of its own, where it is first called."""
         if name not in self.routines:
-            inner = Writer(self.direction, self.strides, self.hidden, routines=self.routines, names={BEGIN.name, END.name})
+            inner = Writer(self.direction, self.strides, self.hidden, routines=self.routines)
             made = make(inner)
             self.routines[name] = Routine(
                 name, made.parameters, made.results, block(inner.block), made.requires, made.ensures, tuple(inner.sites)
