@@ -114,10 +114,10 @@ def bind_call(target: Any, entry: int | None, context: Context) -> None:
         _write(id(target) + VECTORCALL, entry)
 
 
-def bind_state(holder: Any, state: Words) -> None:
-    """Tell the entries where the state of a holder, an instance of a subclass of a `holder_base`, lies. The holder must keep the array."""
+def bind_state(holder: Any, address: int) -> None:
+    """Tell the entries where the state of a holder, an instance of a subclass of a `holder_base`, lies. The holder must keep its memory."""
     if holder._is_native:  # noqa: SLF001 - the class is ours
-        _write(id(holder) + STATE, state.ctypes.data)
+        _write(id(holder) + STATE, address)
 
 
 @cache

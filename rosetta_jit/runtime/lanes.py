@@ -113,8 +113,8 @@ class Arrays(dict[int, Array]):
 class Plan:
     """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
 
-    ``template`` is the state with addresses counted from the arena's start, ``addressed`` has a 1 at each address. ``image`` is what lies
-    behind the state when the messages are born with ``births``, as far as it is not zero.
+    ``template`` is the state without its addresses, ``addresses`` are the words where each lane's stands. ``image`` is what lies behind
+    the state when the messages are born with ``births``, as far as it is not zero.
     """
 
     layout: Layout
@@ -125,7 +125,7 @@ class Plan:
     dtypes: tuple[np.dtype[Any], ...]
     size_bytes: int
     template: NDArray[np.int64]
-    addressed: NDArray[np.int64]
+    addresses: tuple[int, ...]
     births: tuple[Birth, ...] = ()
     image: NDArray[np.uint8] | None = None
 
@@ -136,7 +136,7 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = ()) -> Plan:
     _count(births, 1, needed)
     strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
     words = state_words(len(strides))
-    template, addressed = np.zeros(words, np.int64), np.zeros(words, np.int64)
+    template = np.zeros(words, np.int64)
     template[VALID] = CLEAN
     behind = _aligned(8 * words)
     offsets: list[int] = []
@@ -145,11 +145,11 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = ()) -> Plan:
         capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride, needed.get(lane, 0))
         offsets.append(behind)
         sizes.append(_aligned(capacity * stride, 8))
-        template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = behind, capacity, rows if lane == 0 else 0, stride
-        addressed[lane_word(lane, ADDRESS)] = 1
+        template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
         behind = _aligned(behind + sizes[-1])
+    addresses = tuple(lane_word(lane, ADDRESS) for lane in range(len(strides)))
     dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else _BYTES for lane in layout.lanes), _BYTES)
-    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addressed, births)
+    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addresses, births)
 
 
 def born(plan: Plan) -> Plan:
@@ -182,6 +182,8 @@ class Lanes:
     ----------
     state : ndarray of int64
         What kernels are given; its words are those of `rosetta_jit.kernel.state`. It never moves.
+    address : int
+        Where the state lies.
     words : memoryview
         The same words, quicker to read one at a time.
     buffers : list of ndarray of uint8
@@ -202,6 +204,7 @@ class Lanes:
 
     __slots__ = (
         "__weakref__",
+        "address",
         "arena",
         "arrays",
         "buffers",
@@ -222,12 +225,14 @@ class Lanes:
         address: int = arena.__array_interface__["data"][0]
         shift = -address % ALIGNMENT
         self.arena = arena[shift : shift + plan.size_bytes]
+        self.address = address + shift
         self.state: NDArray[np.int64] = self.arena[: plan.template.nbytes].view(np.int64)
-        np.multiply(plan.addressed, address + shift, out=self.state)
-        self.state += plan.template
+        self.state[:] = plan.template
         if plan.image is not None:
             self.arena[plan.template.nbytes :][: plan.image.size] = plan.image
         self.words = memoryview(cast("Any", self.state))
+        for word, offset in zip(plan.addresses, plan.offsets, strict=True):
+            self.words[word] = self.address + offset
         self.buffers = [self.arena[start : start + size] for start, size in zip(plan.offsets, plan.sizes, strict=True)]
         self.cells = Cells(self.buffers)
         self.arrays = Arrays(self.buffers, plan.dtypes, array_type)

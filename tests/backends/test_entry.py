@@ -40,7 +40,7 @@ class Program:
 class Holder(holder_base()):
     def __init__(self, memory):
         self.rows = memory
-        bind_state(self, memory.state)
+        bind_state(self, memory.state.ctypes.data)
 
 
 Native = callable_class(Program)

@@ -43,7 +43,7 @@ def test_the_fallback_calls_the_slow_path():
     bind_call(instance, 0, context(lambda *arguments, **named: (arguments, named)))
     assert instance(1, two=2) == ((1,), {"two": 2})
     holder = holder_base(native=False)()
-    bind_state(holder, np.zeros(16, np.int64))
+    bind_state(holder, np.zeros(16, np.int64).ctypes.data)
 
 
 @pytest.mark.skipif(not is_native(), reason="no native types")
@@ -60,7 +60,7 @@ def test_holders_carry_the_address_of_their_state():
         pass
 
     holder, state = Holder(), np.zeros(16, np.int64)
-    bind_state(holder, state)
+    bind_state(holder, state.ctypes.data)
     holder.more = 1
     assert ctypes.c_uint64.from_address(id(holder) + STATE).value == state.ctypes.data
 

@@ -62,6 +62,8 @@ class RosMessage(Holder):
 
     def __init__(self, *values: Any, **fields: Any) -> None:
         super().__init__()
+        if not values and not fields:
+            return
         names = [each.name for each in self.family_.struct.fields]
         if values and (fields or len(values) != len(names)):
             raise TypeError(f"Invalid number of arguments, args should be {names}")

@@ -39,7 +39,7 @@ class Holder(Message, Base):
         family = self.family_
         self.lanes_ = self.home_ = Lanes(family.plan, family.array_type)
         self.row_ = 0
-        bind_state(self, self.lanes_.state)
+        bind_state(self, self.lanes_.address)
 
     def new(self) -> Self:
         """An empty holder of the same type."""
