@@ -72,6 +72,9 @@ MAX_PROOFS = 256
 MAX_TERMS = 6
 """A longer sum gets a name: sums over many fields would cost more with each field."""
 
+MAX_USED_TERMS = 2
+"""A used length of more terms gets a name: what is known of it, and asked, would cost more with each text that is put together."""
+
 
 class VerificationError(AssertionError):
     """A kernel that could not be proven safe."""
@@ -308,9 +311,9 @@ def _rows(scope: Scope, stmt: Reserve | Advance) -> None:
         return
     oblige(scope, room, "rows that were not reserved")
     after = plus(used, count)
-    if len(after.terms) > MAX_TERMS:
-        atom = scope.facts.fresh(0, MAX_ROWS)
-        scope.facts.assume(All((equal(atom, after), minus(capacity, atom))))
+    if len(after.terms) > MAX_USED_TERMS:
+        atom = scope.facts.fresh(scope.facts.lower(used), MAX_ROWS)
+        scope.facts.assume(All((equal(atom, after), minus(capacity, atom), minus(atom, used))))
         after = atom
     scope.used[stmt.lane] = after
 
