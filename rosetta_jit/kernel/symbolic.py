@@ -63,13 +63,42 @@ class UnprovenError(AssertionError):
 
 @dataclass(slots=True)
 class Scope:
-    """What a place of a kernel can see: its locals, the lanes, and the facts about them."""
+    """What a place of a kernel can see: its locals, the lanes, and the facts about them.
+
+    Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
+    """
 
     strides: tuple[int, ...]
     facts: Facts = field(default_factory=Facts)
     locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
     used: list[Linear] = field(default_factory=list[Linear])
     capacity: list[Linear] = field(default_factory=list[Linear])
+    _trail: list[tuple[str, Typed | None]] = field(default_factory=list[tuple[str, "Typed | None"]])
+
+    def bind(self, name: str, typed: Typed) -> None:
+        """Give a local a value."""
+        self._trail.append((name, self.locals.get(name)))
+        self.locals[name] = typed
+
+    def mark(self) -> int:
+        """A point to roll back to."""
+        return len(self._trail)
+
+    def changed(self, mark: int) -> dict[str, Typed]:
+        """The locals that were there at a mark and have other values now, with their values then."""
+        first: dict[str, Typed | None] = {}
+        for name, old in self._trail[mark:]:
+            first.setdefault(name, old)
+        return {name: old for name, old in first.items() if old is not None and self.locals[name] is not old}
+
+    def rollback(self, mark: int) -> None:
+        """Give locals the values that they had at a mark."""
+        while len(self._trail) > mark:
+            name, old = self._trail.pop()
+            if old is None:
+                del self.locals[name]
+            else:
+                self.locals[name] = old
 
 
 def entry(strides: tuple[int, ...]) -> Scope:

@@ -187,14 +187,14 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             _failure(scope, failure)
             _check(walk, stmt, condition(scope, expr))
         case Let(name, value) | Var(name, value):
-            scope.locals[name] = _value(scope, value)
+            scope.bind(name, _value(scope, value))
             if isinstance(stmt, Var):
                 walk.variables.add(name)
         case Assign(name, value):
             demand(name in walk.variables and name in scope.locals, f"{name} is no variable")
             new = _value(scope, value)
             demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
-            scope.locals[name] = new
+            scope.bind(name, new)
         case Return(position):
             oblige(scope, integer(scope, position), "a position that may be negative")
             return True
@@ -293,7 +293,7 @@ def _host_call(scope: Scope, call: HostCall) -> None:
         if filled is not None and call.target is not None and _same_memory(extent.address, call.target.address):
             apart = Any((minus(minus(filled, begin), size), minus(minus(begin, filled), integer(scope, call.target.size))))
             oblige(scope, apart, "a function that fills what it reads")
-    scope.locals[call.result.name] = call.result.type, unknown(scope, call.result.type)
+    scope.bind(call.result.name, (call.result.type, unknown(scope, call.result.type)))
 
 
 def _same_memory(one: Place | Wire, other: Place | Wire) -> bool:
@@ -357,7 +357,7 @@ def _for(walk: _Walk, loop: For) -> None:
     def enter(_first_atom: int) -> None:
         index = scope.facts.fresh(0, max(0, scope.facts.upper(count) - 1))
         scope.facts.assume(shifted(minus(count, index), -1))
-        scope.locals[loop.variable] = "i64", index
+        scope.bind(loop.variable, ("i64", index))
 
     walk.loops += 1
     _rounds(walk, loop, enter, lambda: None)
