@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends import llvm_stmt
+from rosetta_jit.backends import llvm_checks, llvm_stmt
 from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm_expr import expression
 from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
@@ -142,7 +142,7 @@ def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kern
         decodes = kernel.direction == "decode"
         frame = Frame(entry.module, entry, builder, parameters, kernel.strides, kernel.lanes, loaded, done, failed, decodes, routines)
         frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
-        llvm_stmt.block(frame, body)
+        llvm_checks.body(frame, body)
         if not builder.block.is_terminated:
             builder.unreachable()  # verified: every path that gets here has ended in a Return before
         _finish(frame, counted_lanes(kernel, body))
