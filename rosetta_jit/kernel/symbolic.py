@@ -135,7 +135,8 @@ def demand(holds: bool, otherwise: str) -> None:
 def integer(scope: Scope, expr: Expr, type_: Scalar = "i64") -> Linear:
     """Value of an expression that must be an integer of a type."""
     found, value = evaluate(scope, expr)
-    demand(found == type_, f"{found} where {type_} belongs")
+    if found != type_:
+        raise UnprovenError(f"{found} where {type_} belongs")
     return linear(value)
 
 
@@ -226,9 +227,10 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
     """
     match expr:
         case Local(type_, name):
-            demand(name in scope.locals, f"{name} is not visible here")
-            demand(scope.locals[name][0] == type_, f"{name} is no {type_}")
-            return scope.locals[name]
+            found = scope.locals.get(name)
+            if found is None or found[0] != type_:
+                raise UnprovenError(f"{name} is not visible here" if found is None else f"{name} is no {type_}")
+            return found
         case Const(type_, value):
             return type_, _constant(type_, value)
         case Binary(op, left, right):
@@ -243,20 +245,15 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
             return type_, _convert(scope, type_, *evaluate(scope, operand))
         case Compare(op, left, right):
             return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
-        case Used(lane):
+        case Used(lane) | Capacity(lane):
             check_lane(scope, lane)
-            return "i64", scope.used[lane]
-        case Capacity(lane):
-            check_lane(scope, lane)
-            return "i64", scope.capacity[lane]
+            return "i64", (scope.used if isinstance(expr, Used) else scope.capacity)[lane]
         case Told(what):
             return "i64", scope.facts.named(("told", what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
-        case Fits(op, left, right):
-            low, high = limits("i64")
-            result = _integer_binary(scope, op, "i64", integer(scope, left), integer(scope, right))
-            return "bool", All((shifted(result, -low), shifted(times(result, -1), high)))
+        case Fits():
+            return "bool", _fits(scope, expr)
         case Select():
             return _select(scope, expr)
         case IsText(address, size):
@@ -266,6 +263,12 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
             return _decimal(scope, expr)
         case _:
             assert_never(expr)
+
+
+def _fits(scope: Scope, expr: Fits) -> Formula:
+    low, high = limits("i64")
+    result = _integer_binary(scope, expr.op, "i64", integer(scope, expr.left), integer(scope, expr.right))
+    return All((shifted(result, -low), shifted(times(result, -1), high)))
 
 
 def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:
@@ -291,7 +294,8 @@ def _constant(type_: Scalar, value: float) -> Value:
     if type_ == "bool":
         return bool(value)
     low, high = limits(type_)
-    demand(isinstance(value, int) and low <= value <= high, f"{value} is no {type_}")
+    if not isinstance(value, int) or not low <= value <= high:
+        raise UnprovenError(f"{value} is no {type_}")
     return Linear(int(value))
 
 
