@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends import llvm_stmt
+from rosetta_jit.backends import llvm_checks, llvm_stmt
 from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm_expr import expression
 from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
-from rosetta_jit.kernel.ir import GROW, Block, Call, Expect, HostCall, Kernel, Require
+from rosetta_jit.kernel.ir import GROW, Block, Call, Expect, For, HostCall, Kernel, Require, While
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
     ERROR_OFFSET,
@@ -40,6 +40,9 @@ SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
 MANY = 64
 """Calls of a routine from which on it stays a function: LLVM takes more than linear time on what it inlines."""
 
+SEVERAL = 4
+"""The same for a routine that loops whatever it is given: the rounds cost more than the call, and LLVM makes vectors of each loop."""
+
 SHORT = 24
 """Statements of a routine up to which it is part of its callers, if they are not many."""
 
@@ -53,7 +56,7 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
     routines: dict[str, ir.Function] = {}
     for routine in kernel.routines:
         routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
-        if calls[routine.name] >= MANY:
+        if calls[routine.name] >= (SEVERAL if any(isinstance(each, For | While) for each in routine.body) else MANY):
             routines[routine.name].attributes.add("noinline")
         elif sum(1 for _ in statements(routine.body)) <= SHORT:
             routines[routine.name].attributes.add("alwaysinline")
@@ -139,7 +142,7 @@ def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kern
         decodes = kernel.direction == "decode"
         frame = Frame(entry.module, entry, builder, parameters, kernel.strides, kernel.lanes, loaded, done, failed, decodes, routines)
         frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
-        llvm_stmt.block(frame, body)
+        llvm_checks.body(frame, body)
         if not builder.block.is_terminated:
             builder.unreachable()  # verified: every path that gets here has ended in a Return before
         _finish(frame, counted_lanes(kernel, body))

@@ -113,7 +113,7 @@ def _has_decimals(kernel: Kernel) -> bool:
     """Whether a kernel reads or writes floats in decimal."""
     blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
     expressions = (expr for block in blocks for stmt in statements(block) for expr in expressions_of(stmt))
-    return any(isinstance(part, Nearest | Digits | Scale) for expr in expressions for part, _ in subexpressions(expr))
+    return any(isinstance(part, Nearest | Digits | Scale) for expr in expressions for part in subexpressions(expr))
 
 
 def _reserved(kernel: Kernel) -> frozenset[str]:

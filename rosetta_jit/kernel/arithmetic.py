@@ -22,6 +22,13 @@ SIGNED = {"i8", "i16", "i32", "i64"}
 FLOATS = {"f32", "f64"}
 
 
+_LIMITS: dict[str, tuple[int, int]] = {
+    "bool": (0, 1),
+    **{f"i{bits}": (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) for bits in (8, 16, 32, 64)},
+    **{f"u{bits}": (0, (1 << bits) - 1) for bits in (8, 16, 32, 64)},
+}
+
+
 def demand(holds: bool, otherwise: str) -> None:
     """Assert what `verify` proves of every kernel."""
     if not holds:
@@ -30,10 +37,7 @@ def demand(holds: bool, otherwise: str) -> None:
 
 def limits(type_: Scalar) -> tuple[int, int]:
     """Least and greatest value of an integer type (or bool)."""
-    if type_ == "bool":
-        return 0, 1
-    bits = 8 * WIDTH[type_]
-    return (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if type_ in SIGNED else (0, (1 << bits) - 1)
+    return _LIMITS[type_]
 
 
 def constant(type_: Scalar, value: float) -> Value:
@@ -52,7 +56,8 @@ def constant(type_: Scalar, value: float) -> Value:
 def checked(type_: Scalar, value: int) -> int:
     """``value``, which must be in the range of its type."""
     low, high = limits(type_)
-    demand(low <= value <= high, f"{value} is no {type_}: an operation wrapped")
+    if not low <= value <= high:
+        raise AssertionError(f"{value} is no {type_}: an operation wrapped")
     return value
 
 

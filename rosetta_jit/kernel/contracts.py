@@ -51,4 +51,4 @@ def bind(scope: Scope, routine: Routine, call: Call) -> None:
     for ensured in routine.ensures:
         scope.facts.assume(condition(inner, ensured))
     for local, result in zip(call.results, routine.results, strict=True):
-        scope.locals[local.name] = inner.locals[result.name]
+        scope.bind(local.name, inner.locals[result.name])

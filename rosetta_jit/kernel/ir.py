@@ -545,8 +545,8 @@ def mul(left: Expr, right: Expr | int) -> Expr:
 def type_of(expr: Expr) -> Scalar:
     """The type of an expression."""
     match expr:
-        case Const(type_, _) | Local(type_, _) | Load(type_, _, _) | Get(type_, _) | Convert(type_, _) | Bits(type_, _):
-            return type_
+        case Const() | Local() | Load() | Get() | Convert() | Bits():
+            return expr.type
         case Used() | Capacity() | Told():
             return "i64"
         case Unary(_, operand):

@@ -12,7 +12,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Advance, Assign
 from rosetta_jit.kernel.linear import Linear, minus, plus, times
-from rosetta_jit.kernel.paths import anchors, from_begin, grown, restore, saved, variable
+from rosetta_jit.kernel.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.prove import All
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.symbolic import linear
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.kernel.prove import Formula
-    from rosetta_jit.kernel.symbolic import Scope
+    from rosetta_jit.kernel.symbolic import Scope, Typed
 
 MAX_ROUNDS = 1 << 20
 """A loop that neither the message nor a value bounds runs at most so often."""
@@ -47,31 +47,41 @@ class Loop:
     leave: Callable[[], None]
 
 
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """Where a loop begins: a mark to go back to, used lengths, and the variables that the loop changes."""
+
+    mark: int
+    used: list[Linear]
+    variables: dict[str, Typed]
+
+
 def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
-    at_entry = saved(scope)
     names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
+    at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
     kept = [guess for guess in guesses(scope, names) if guess not in dropped]
     while True:
         lost = _round(scope, loop, at_entry, kept)
-        restore(scope, at_entry)
+        scope.rollback(at_entry.mark)
+        scope.used = list(at_entry.used)
         if not lost:
             break
         dropped.update(lost)
         kept = [guess for guess in kept if guess not in dropped]
-    forget(scope, at_entry, names, lanes, kept)
+    forget(scope, at_entry, lanes, kept)
 
 
-def _round(scope: Scope, loop: Loop, at_entry: Scope, kept: list[Guess]) -> list[Guess]:
+def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list[Guess]:
     """Walk one round; returns the guesses that it breaks."""
     facts = scope.facts
     mark, first_atom = facts.mark(), len(facts.lows)
-    forget(scope, at_entry, changed_names(loop.body), advanced_lanes(loop.body), kept)
+    forget(scope, at_entry, advanced_lanes(loop.body), kept)
     loop.enter(first_atom)
     lost: list[Guess] = []
     if not loop.walk() and not facts.impossible:
         loop.leave()
-        lost = [guess for guess in kept if not facts.proves(instance(scope, guess, at_entry, linear(scope.locals[guess.name][1])))]
+        lost = [guess for guess in kept if not facts.proves(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)))]
     facts.rollback(mark)
     return lost
 
@@ -114,25 +124,28 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
         wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
         if type_ == "i64" and from_begin(value):
             wanted += [Guess(name, 0, 1), Guess(name, 1, -1)]
-        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, scope, value))]
+        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, (type_, value), value))]
     return found
 
 
-def instance(scope: Scope, guess: Guess, at_entry: Scope, value: Linear) -> Linear:
-    """A guess about a value, as a fact."""
-    marks = anchors(scope, at_entry.locals[guess.name])
+def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear) -> Linear:
+    """A guess about a value, as a fact; ``at_entry`` is the variable before the first round."""
+    marks = anchors(scope, at_entry)
     return times(minus(value, marks[guess.anchor]), guess.sign)
 
 
-def forget(scope: Scope, at_entry: Scope, names: set[str], lanes: set[int], kept: list[Guess]) -> None:
+def _now(scope: Scope, guess: Guess) -> Linear:
+    return linear(scope.locals[guess.name][1])
+
+
+def forget(scope: Scope, at_entry: Entry, lanes: set[int], kept: list[Guess]) -> None:
     """Go to the head of some round: what the loop changes is unknown but for the guesses."""
-    for name in sorted(names & scope.locals.keys()):
-        type_, old = at_entry.locals[name]
+    for name, (type_, old) in at_entry.variables.items():
         if type_ == "bool" or type_ in FLOATS:
-            scope.locals[name] = type_, None
+            scope.bind(name, (type_, None))
         else:
-            scope.locals[name] = type_, variable(scope, type_, relative=from_begin(linear(old)))
+            scope.bind(name, (type_, variable(scope, type_, relative=from_begin(linear(old)))))
     for guess in kept:
-        scope.facts.assume(instance(scope, guess, at_entry, linear(scope.locals[guess.name][1])))
+        scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)))
     for lane in sorted(lanes):
         scope.used[lane] = grown(scope, lane, at_entry.used[lane])

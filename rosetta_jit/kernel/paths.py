@@ -32,7 +32,7 @@ FAR = 1 << 32
 class Arrival:
     """What one path brings to a meeting point."""
 
-    locals: dict[str, Typed]
+    changed: dict[str, Typed]
     used: list[Linear]
     gained: dict[Terms, int]
     distances: dict[str, list[tuple[int, int]]]
@@ -40,7 +40,8 @@ class Arrival:
 
 def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool:
     """Walk each way under its condition, and go on with what all that arrive have in common; True where all have returned."""
-    before = saved(scope)
+    here, used = scope.mark(), list(scope.used)
+    before: dict[str, Typed] = {}
     arrivals: list[Arrival] = []
     returned = False
     for formula, walk in ways:
@@ -52,8 +53,11 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
         elif scope.facts.impossible:
             scope.facts.rollback(mark)
         else:
-            arrivals.append(_arrive(scope, before, mark))
-        restore(scope, before)
+            changed = scope.changed(here)
+            before.update(changed)
+            arrivals.append(_arrive(scope, changed, mark))
+        scope.rollback(here)
+        scope.used = list(used)
     if arrivals:
         _meet(scope, before, arrivals)
     elif not returned:
@@ -61,25 +65,14 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
     return returned and not arrivals
 
 
-def saved(scope: Scope) -> Scope:
-    """The scope as it is now, to be compared with and restored; facts are shared."""
-    return Scope(scope.strides, scope.facts, dict(scope.locals), list(scope.used), scope.capacity)
-
-
-def restore(scope: Scope, before: Scope) -> None:
-    """Go back to locals and used lengths as they were."""
-    scope.locals, scope.used = dict(before.locals), list(before.used)
-
-
-def _arrive(scope: Scope, before: Scope, mark: int) -> Arrival:
-    """End a path: give up its facts, and keep what a meeting point needs."""
+def _arrive(scope: Scope, before: dict[str, Typed], mark: int) -> Arrival:
+    """End a path: give up its facts, and keep what a meeting point needs. ``before`` is what it changed."""
+    changed = {name: scope.locals[name] for name in before}
     distances: dict[str, list[tuple[int, int]]] = {}
-    for name, old in before.locals.items():
-        new = scope.locals[name]
-        if new is not old and isinstance(new[1], Linear):
-            distances[name] = _distances(scope, new[1], anchors(before, old))
-    visible = {name: scope.locals[name] for name in before.locals}
-    return Arrival(visible, list(scope.used), scope.facts.rollback(mark), distances)
+    for name, (_, value) in changed.items():
+        if isinstance(value, Linear):
+            distances[name] = _distances(scope, value, anchors(scope, before[name]))
+    return Arrival(changed, list(scope.used), scope.facts.rollback(mark), distances)
 
 
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
@@ -107,28 +100,28 @@ def _least(scope: Scope, distance: Linear) -> int:
     return 0 if low < 0 and coefficient_of(distance, BEGIN_ATOM) == 0 and scope.facts.proves(distance) else low
 
 
-def _meet(scope: Scope, before: Scope, arrivals: list[Arrival]) -> None:
-    """Go on with what is true on all paths that arrive (at least one)."""
+def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> None:
+    """Go on with what is true on all paths that arrive (at least one); ``before`` is what any of them changed."""
     first = arrivals[0]
     for terms, bound in first.gained.items():
         shared = [arrival.gained.get(terms) for arrival in arrivals]
         scope.facts.assume(Linear(-min([bound, *(b for b in shared if b is not None)]), terms) if None not in shared else None)
-    scope.locals = {name: _met(scope, before, arrivals, name) for name in before.locals}
+    for name, old in before.items():
+        scope.bind(name, _met(scope, old, arrivals, name))
     scope.used = [
-        first.used[lane] if all(a.used[lane] == first.used[lane] for a in arrivals) else grown(scope, lane, before.used[lane])
-        for lane in range(len(scope.strides))
+        first.used[lane] if all(a.used[lane] == first.used[lane] for a in arrivals) else grown(scope, lane, used)
+        for lane, used in enumerate(scope.used)
     ]
 
 
-def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typed:
-    old = before.locals[name]
-    values = [arrival.locals[name] for arrival in arrivals]
+def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
+    values = [arrival.changed.get(name, old) for arrival in arrivals]
     if all(value[1] == values[0][1] for value in values):
         return values[0]
     if not isinstance(old[1], Linear):
         return old[0], None
     met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
-    marks = anchors(before, old)
+    marks = anchors(scope, old)
     unchanged = any(name not in arrival.distances for arrival in arrivals)
     own = _distances(scope, old[1], marks) if unchanged else []
     for k, mark in enumerate(marks):

@@ -355,9 +355,12 @@ class Facts:
         return False
 
     def _nearby(self, goal: Linear, most: int) -> list[Linear]:
-        """Facts that share atoms with a goal, and facts that share atoms with those."""
+        """Facts that share atoms with a goal, and facts that share atoms with those.
+
+        The youngest atom comes first: of an old one, such as a lane's capacity, very many facts may be known.
+        """
         sums: dict[Terms, None] = {}
-        atoms = dict.fromkeys(atom for atom, _ in goal.terms)
+        atoms = dict.fromkeys(atom for atom, _ in reversed(goal.terms))
         queue = list(atoms)
         while queue and len(sums) < most:
             for terms in reversed(self._about.get(queue.pop(0), ())):

@@ -1,8 +1,12 @@
-"""Rebuild expressions and statements with something in place of their parts. Nothing is changed in place."""
+"""Rebuild expressions and statements with something in place of their parts. Nothing is changed in place.
+
+What nothing changes in stays the object that it is: most of a kernel does so in most passes, and then is neither made nor compared again.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import is_
 from types import MappingProxyType
 from typing import TYPE_CHECKING, assert_never
 
@@ -48,18 +52,30 @@ from rosetta_jit.kernel.ir import (
     While,
     Wire,
 )
-from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.shape import blocks_of, expressions_of, operands, statements, subexpressions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Kernel, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Effect, Expr, Kernel, Stmt
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 
 
 def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
-    """An expression with each of its operands changed."""
+    """An expression with each of its operands changed, in order."""
+    old = operands(expr)
+    new = [change(operand) for operand in old]
+    return expr if all(map(is_, new, old)) else _rebuilt(expr, new)
+
+
+def _rebuilt(expr: Expr, parts: list[Expr]) -> Expr:
+    """An expression of the same kind with other operands."""
+    given = iter(parts)
+
+    def change(_: Expr) -> Expr:
+        return next(given)
+
     match expr:
         case Const() | Local() | Used() | Capacity() | Told():
             return expr
@@ -94,24 +110,30 @@ def with_operands(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
 
 
 def with_expressions(stmt: Stmt, change: Callable[[Expr], Expr]) -> Stmt:
-    """A statement with each expression that stands in it changed; the blocks inside stay as they are."""
+    """A statement with each expression that stands in it changed, in order; the blocks inside stay as they are."""
+    old = expressions_of(stmt)
+    new = [change(expr) for expr in old]
+    return stmt if all(map(is_, new, old)) else _restated(stmt, new)
+
+
+def _restated(stmt: Stmt, parts: list[Expr]) -> Stmt:
+    """A statement of the same kind with other expressions."""
+    given = iter(parts)
+
+    def change(_: Expr) -> Expr:
+        return next(given)
+
     match stmt:
         case Require(at, size, failure):
             return Require(change(at), change(size), _failure(failure, change))
         case Expect(condition, failure):
             return Expect(change(condition), _failure(failure, change))
         case Let() | Var() | Assign():
-            return replace(stmt, value=change(stmt.value))
-        case Store(at, value, order):
-            return Store(change(at), change(value), order)
-        case SetField(place, value):
-            return SetField(_place(place, change), change(value))
+            return type(stmt)(stmt.name, change(stmt.value))
+        case Store() | SetField() | Copy() | Fill():
+            return _moved(stmt, change)
         case Reserve() | Advance():
-            return replace(stmt, count=change(stmt.count))
-        case Copy(target, source, size):
-            return Copy(_address(target, change), _address(source, change), change(size))
-        case Fill(target, size, byte):
-            return Fill(_address(target, change), change(size), byte)
+            return type(stmt)(stmt.lane, change(stmt.count))
         case For(variable, count, body):
             return For(variable, change(count), body)
         case While(condition, body, invariant, measure):
@@ -124,23 +146,35 @@ def with_expressions(stmt: Stmt, change: Callable[[Expr], Expr]) -> Stmt:
             return Return(change(position))
         case Call():
             return replace(stmt, arguments=tuple(map(change, stmt.arguments)), indices=tuple(map(change, stmt.indices)))
-        case HostCall(function, arguments, result, failure, inputs, target):
-            read = tuple(_extent(extent, change) for extent in inputs)
-            written = None if target is None else _extent(target, change)
-            return HostCall(function, tuple(map(change, arguments)), result, _failure(failure, change), read, written)
+        case HostCall():
+            return _asked(stmt, change)
         case _:
             assert_never(stmt)
 
 
 def with_blocks(stmt: Stmt, change: Callable[[Block], Block]) -> Stmt:
-    """A statement with each block inside it changed."""
+    """A statement with each block inside it changed, in order."""
+    old = blocks_of(stmt)
+    if not old:
+        return stmt
+    new = [change(block) for block in old]
+    return stmt if all(map(_is_same, new, old)) else _refilled(stmt, new)
+
+
+def _is_same(block: Block, other: Block) -> bool:
+    """Whether two blocks are made of the same objects."""
+    return len(block) == len(other) and all(map(is_, block, other))
+
+
+def _refilled(stmt: Stmt, blocks: list[Block]) -> Stmt:
+    """A statement of the same kind with other blocks."""
     match stmt:
         case For() | While():
-            return replace(stmt, body=change(stmt.body))
-        case If(condition, then, otherwise):
-            return If(condition, change(then), change(otherwise))
-        case Switch(value, cases, default):
-            return Switch(value, tuple((number, change(block)) for number, block in cases), change(default))
+            return replace(stmt, body=blocks[0])
+        case If(condition, _, _):
+            return If(condition, blocks[0], blocks[1])
+        case Switch(value, cases, _):
+            return Switch(value, tuple((number, block) for (number, _), block in zip(cases, blocks[:-1], strict=True)), blocks[-1])
         case _:
             return stmt
 
@@ -153,13 +187,21 @@ def with_bodies(kernel: Kernel, bodies: tuple[Block, ...]) -> Kernel:
 def substituted(expr: Expr, values: Mapping[str, Expr], renamed: Mapping[str, str] = NO_NAMES) -> Expr:
     """An expression with values in place of some locals, and other names for some."""
     if isinstance(expr, Local):
-        return values.get(expr.name) or Local(expr.type, renamed.get(expr.name, expr.name))
+        return values.get(expr.name) or (Local(expr.type, renamed[expr.name]) if expr.name in renamed else expr)
     return with_operands(expr, lambda operand: substituted(operand, values, renamed))
 
 
 def locals_in(expr: Expr) -> set[str]:
     """Names of the locals that an expression reads."""
-    return {part.name for part, _ in subexpressions(expr) if isinstance(part, Local)}
+    names: set[str] = set()
+    stack = [expr]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Local):
+            names.add(part.name)
+        else:
+            stack.extend(operands(part))
+    return names
 
 
 def names_read(block: Block) -> set[str]:
@@ -169,7 +211,7 @@ def names_read(block: Block) -> set[str]:
 
 def reads_memory(expr: Expr) -> bool:
     """Whether an expression looks at the message or the holder."""
-    return any(isinstance(part, Load | Get | Used | IsText | Nearest) for part, _ in subexpressions(expr))
+    return any(isinstance(part, Load | Get | Used | IsText | Nearest) for part in subexpressions(expr))
 
 
 def ends(block: Block) -> bool:
@@ -188,6 +230,27 @@ def ends(block: Block) -> bool:
 def may_return(block: Block) -> bool:
     """Whether some path through a block returns."""
     return any(isinstance(stmt, Return) for stmt, _ in statements(block))
+
+
+def _moved(stmt: Effect, change: Callable[[Expr], Expr]) -> Effect:
+    match stmt:
+        case Store(at, value, order):
+            return Store(change(at), change(value), order)
+        case SetField(place, value):
+            return SetField(_place(place, change), change(value))
+        case Copy(target, source, size):
+            return Copy(_address(target, change), _address(source, change), change(size))
+        case Fill(target, size, byte):
+            return Fill(_address(target, change), change(size), byte)
+        case _:
+            assert_never(stmt)
+
+
+def _asked(call: HostCall, change: Callable[[Expr], Expr]) -> HostCall:
+    values = tuple(map(change, call.arguments))
+    read = tuple(_extent(extent, change) for extent in call.inputs)
+    written = None if call.target is None else _extent(call.target, change)
+    return HostCall(call.function, values, call.result, _failure(call.failure, change), read, written)
 
 
 def _failure(failure: Failure, change: Callable[[Expr], Expr]) -> Failure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
@@ -31,6 +32,7 @@ from rosetta_jit.kernel.ir import (
     Load,
     Local,
     Nearest,
+    Nest,
     Place,
     Require,
     Reserve,
@@ -76,12 +78,15 @@ def blocks_of(stmt: Stmt) -> tuple[Block, ...]:
 
 def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
     """Every statement of a block, of the blocks inside, and so on, each with its depth."""
-    stack = [(stmt, 1) for stmt in reversed(block)]
+    stack: list[Iterator[Stmt]] = [iter(block)]
     while stack:
-        stmt, depth = stack.pop()
-        yield stmt, depth
-        inner = [(s, depth + 1) for part in blocks_of(stmt) for s in part]
-        stack.extend(reversed(inner))
+        for stmt in stack[-1]:
+            yield stmt, len(stack)
+            if isinstance(stmt, Nest):
+                stack.append(chain.from_iterable(blocks_of(stmt)))
+                break
+        else:
+            stack.pop()
 
 
 def is_large(kernel: Kernel) -> bool:
@@ -126,9 +131,13 @@ def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
 
 
 def operands(expr: Expr) -> tuple[Expr, ...]:
-    """The expressions that stand in an expression itself."""
+    """The expressions that stand in an expression itself. The frequent kinds come first: no other function is called so often."""
     match expr:
-        case Const() | Local() | Used() | Capacity() | Told():
+        case Local() | Const():
+            return ()
+        case Binary() | Compare():
+            return (expr.left, expr.right)
+        case Used() | Capacity() | Told():
             return ()
         case Load(_, at, _):
             return (at,)
@@ -136,7 +145,7 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
             return (place.row,)
         case Unary(_, operand) | Convert(_, operand) | Bits(_, operand):
             return (operand,)
-        case Binary(_, left, right) | Compare(_, left, right) | Fits(_, left, right):
+        case Fits(_, left, right):
             return (left, right)
         case Select(condition, then, otherwise):
             return (condition, then, otherwise)
@@ -163,7 +172,7 @@ def our_functions(kernels: Iterable[Kernel]) -> list[str]:
 def is_told(kernels: Iterable[Kernel]) -> bool:
     """Whether kernels ask for what the host tells of a message."""
     stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
-    return any(isinstance(part, Told) for stmt in stmts for expr in expressions_of(stmt) for part, _ in subexpressions(expr))
+    return any(isinstance(part, Told) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
 
 
 def extents_of(call: HostCall) -> tuple[Extent, ...]:
@@ -171,13 +180,13 @@ def extents_of(call: HostCall) -> tuple[Extent, ...]:
     return call.inputs if call.target is None else (*call.inputs, call.target)
 
 
-def subexpressions(expr: Expr) -> Iterator[tuple[Expr, int]]:
-    """An expression and all inside it, each with its depth."""
-    stack = [(expr, 1)]
+def subexpressions(expr: Expr) -> Iterator[Expr]:
+    """An expression and all inside it."""
+    stack = [expr]
     while stack:
-        part, depth = stack.pop()
-        yield part, depth
-        stack.extend((operand, depth + 1) for operand in operands(part))
+        part = stack.pop()
+        yield part
+        stack.extend(operands(part))
 
 
 def bound_names(stmt: Stmt) -> tuple[str, ...]:
@@ -221,7 +230,7 @@ def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
 
 def _of_a_body(expr: Expr) -> bool:
     """Whether an expression asks for a used length, or what the host tells."""
-    return any(isinstance(part, Used | Told) for part, _ in subexpressions(expr))
+    return any(isinstance(part, Used | Told) for part in subexpressions(expr))
 
 
 def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[Routine, ...]) -> str | None:
@@ -266,9 +275,12 @@ def _failing_error(named: tuple[int, ...], indices: tuple[Expr, ...], sites: int
 
 
 def _too_deep(expr: Expr) -> bool:
-    if isinstance(expr, Const | Local):
-        return False
-    return any(depth > MAX_EXPRESSION for _, depth in subexpressions(expr))
+    level: tuple[Expr, ...] = (expr,)
+    for _ in range(MAX_EXPRESSION):
+        level = tuple(chain.from_iterable(map(operands, level)))
+        if not level:
+            return False
+    return True
 
 
 def _start(address: Address) -> Expr:

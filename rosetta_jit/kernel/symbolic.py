@@ -64,13 +64,42 @@ class UnprovenError(AssertionError):
 
 @dataclass(slots=True)
 class Scope:
-    """What a place of a kernel can see: its locals, the lanes, and the facts about them."""
+    """What a place of a kernel can see: its locals, the lanes, and the facts about them.
+
+    Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
+    """
 
     strides: tuple[int, ...]
     facts: Facts = field(default_factory=Facts)
     locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
     used: list[Linear] = field(default_factory=list[Linear])
     capacity: list[Linear] = field(default_factory=list[Linear])
+    _trail: list[tuple[str, Typed | None]] = field(default_factory=list[tuple[str, "Typed | None"]])
+
+    def bind(self, name: str, typed: Typed) -> None:
+        """Give a local a value."""
+        self._trail.append((name, self.locals.get(name)))
+        self.locals[name] = typed
+
+    def mark(self) -> int:
+        """A point to roll back to."""
+        return len(self._trail)
+
+    def changed(self, mark: int) -> dict[str, Typed]:
+        """The locals that were there at a mark and have other values now, with their values then."""
+        first: dict[str, Typed | None] = {}
+        for name, old in self._trail[mark:]:
+            first.setdefault(name, old)
+        return {name: old for name, old in first.items() if old is not None and self.locals[name] is not old}
+
+    def rollback(self, mark: int) -> None:
+        """Give locals the values that they had at a mark."""
+        while len(self._trail) > mark:
+            name, old = self._trail.pop()
+            if old is None:
+                del self.locals[name]
+            else:
+                self.locals[name] = old
 
 
 def entry(strides: tuple[int, ...]) -> Scope:
@@ -107,7 +136,8 @@ def demand(holds: bool, otherwise: str) -> None:
 def integer(scope: Scope, expr: Expr, type_: Scalar = "i64") -> Linear:
     """Value of an expression that must be an integer of a type."""
     found, value = evaluate(scope, expr)
-    demand(found == type_, f"{found} where {type_} belongs")
+    if found != type_:
+        raise UnprovenError(f"{found} where {type_} belongs")
     return linear(value)
 
 
@@ -198,9 +228,10 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
     """
     match expr:
         case Local(type_, name):
-            demand(name in scope.locals, f"{name} is not visible here")
-            demand(scope.locals[name][0] == type_, f"{name} is no {type_}")
-            return scope.locals[name]
+            found = scope.locals.get(name)
+            if found is None or found[0] != type_:
+                raise UnprovenError(f"{name} is not visible here" if found is None else f"{name} is no {type_}")
+            return found
         case Const(type_, value):
             return type_, _constant(type_, value)
         case Binary(op, left, right):
@@ -215,20 +246,15 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
             return _converted(scope, expr)
         case Compare(op, left, right):
             return "bool", _compare(op, evaluate(scope, left), evaluate(scope, right))
-        case Used(lane):
+        case Used(lane) | Capacity(lane):
             check_lane(scope, lane)
-            return "i64", scope.used[lane]
-        case Capacity(lane):
-            check_lane(scope, lane)
-            return "i64", scope.capacity[lane]
+            return "i64", (scope.used if isinstance(expr, Used) else scope.capacity)[lane]
         case Told(what):
             return "i64", scope.facts.named(("told", what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
-        case Fits(op, left, right):
-            low, high = limits("i64")
-            result = _integer_binary(scope, op, "i64", integer(scope, left), integer(scope, right))
-            return "bool", All((shifted(result, -low), shifted(times(result, -1), high)))
+        case Fits():
+            return "bool", _fits(scope, expr)
         case Select():
             return _select(scope, expr)
         case IsText(address, size):
@@ -238,6 +264,12 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
             return _decimal(scope, expr)
         case _:
             assert_never(expr)
+
+
+def _fits(scope: Scope, expr: Fits) -> Formula:
+    low, high = limits("i64")
+    result = _integer_binary(scope, expr.op, "i64", integer(scope, expr.left), integer(scope, expr.right))
+    return All((shifted(result, -low), shifted(times(result, -1), high)))
 
 
 def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:
@@ -263,7 +295,8 @@ def _constant(type_: Scalar, value: float) -> Value:
     if type_ == "bool":
         return bool(value)
     low, high = limits(type_)
-    demand(isinstance(value, int) and low <= value <= high, f"{value} is no {type_}")
+    if not isinstance(value, int) or not low <= value <= high:
+        raise UnprovenError(f"{value} is no {type_}")
     return Linear(int(value))
 
 

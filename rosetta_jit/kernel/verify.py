@@ -72,6 +72,9 @@ MAX_PROOFS = 256
 MAX_TERMS = 6
 """A longer sum gets a name: sums over many fields would cost more with each field."""
 
+MAX_USED_TERMS = 2
+"""A used length of more terms gets a name: what is known of it, and asked, would cost more with each text that is put together."""
+
 
 class VerificationError(AssertionError):
     """A kernel that could not be proven safe."""
@@ -184,14 +187,14 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             _failure(scope, failure)
             _check(walk, stmt, condition(scope, expr))
         case Let(name, value) | Var(name, value):
-            scope.locals[name] = _value(scope, value)
+            scope.bind(name, _value(scope, value))
             if isinstance(stmt, Var):
                 walk.variables.add(name)
         case Assign(name, value):
             demand(name in walk.variables and name in scope.locals, f"{name} is no variable")
             new = _value(scope, value)
             demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
-            scope.locals[name] = new
+            scope.bind(name, new)
         case Return(position):
             oblige(scope, integer(scope, position), "a position that may be negative")
             return True
@@ -290,7 +293,7 @@ def _host_call(scope: Scope, call: HostCall) -> None:
         if filled is not None and call.target is not None and _same_memory(extent.address, call.target.address):
             apart = Any((minus(minus(filled, begin), size), minus(minus(begin, filled), integer(scope, call.target.size))))
             oblige(scope, apart, "a function that fills what it reads")
-    scope.locals[call.result.name] = call.result.type, unknown(scope, call.result.type)
+    scope.bind(call.result.name, (call.result.type, unknown(scope, call.result.type)))
 
 
 def _same_memory(one: Place | Wire, other: Place | Wire) -> bool:
@@ -308,9 +311,9 @@ def _rows(scope: Scope, stmt: Reserve | Advance) -> None:
         return
     oblige(scope, room, "rows that were not reserved")
     after = plus(used, count)
-    if len(after.terms) > MAX_TERMS:
-        atom = scope.facts.fresh(0, MAX_ROWS)
-        scope.facts.assume(All((equal(atom, after), minus(capacity, atom))))
+    if len(after.terms) > MAX_USED_TERMS:
+        atom = scope.facts.fresh(scope.facts.lower(used), MAX_ROWS)
+        scope.facts.assume(All((equal(atom, after), minus(capacity, atom), minus(atom, used))))
         after = atom
     scope.used[stmt.lane] = after
 
@@ -354,7 +357,7 @@ def _for(walk: _Walk, loop: For) -> None:
     def enter(_first_atom: int) -> None:
         index = scope.facts.fresh(0, max(0, scope.facts.upper(count) - 1))
         scope.facts.assume(shifted(minus(count, index), -1))
-        scope.locals[loop.variable] = "i64", index
+        scope.bind(loop.variable, ("i64", index))
 
     walk.loops += 1
     _rounds(walk, loop, enter, lambda: None)

@@ -64,8 +64,21 @@ def write_varint(writer: Writer, value: Expr, where: Where) -> None:
 
 
 def _write(writer: Writer) -> Contract:
+    """One byte is the common case."""
     at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
-    after, rest, count = writer.var("next", at), writer.var("rest", value), writer.var("count", index(0))
+    after = writer.var("next", at)
+    with writer.nested() as one:
+        writer.position = at
+        writer.store(Convert("u8", value), MESSAGE)
+        writer.assign(after, writer.position)
+    with writer.nested() as several:
+        _write_several(writer, at, value, after)
+    writer.emit(If(Compare("lt", value, Const("u64", 128)), block(one), block(several)))
+    return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
+
+
+def _write_several(writer: Writer, at: Local, value: Local, after: Local) -> None:
+    rest, count = writer.var("rest", value), writer.var("count", index(0))
     with writer.nested() as body:
         writer.position = after
         writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), MESSAGE)
@@ -81,8 +94,7 @@ def _write(writer: Writer) -> Contract:
     writer.emit(While(_more(rest, count), block(body), invariant, count))
     writer.position = after
     writer.store(Convert("u8", rest), MESSAGE)
-    end = writer.let("end_of_varint", writer.position)
-    return Contract((at, value), (end,), writer.within(at), writer.behind(at, end))
+    writer.assign(after, writer.position)
 
 
 def _size(writer: Writer) -> Contract:
@@ -92,7 +104,8 @@ def _size(writer: Writer) -> Contract:
         writer.assign(rest, Binary("shr", rest, Const("u64", 7)))
         writer.assign(size, add(size, 1))
     bounds = Compare("ge", size, index(1)), Compare("le", size, index(MAX_BYTES))
-    writer.emit(While(_more(rest, add(size, -1)), block(body), bounds, size))
+    loop = While(_more(rest, add(size, -1)), block(body), bounds, size)
+    writer.emit(If(Compare("ge", value, Const("u64", 128)), (loop,)))
     return Contract((value,), (size,), (), bounds)
 
 

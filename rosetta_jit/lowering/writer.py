@@ -285,7 +285,7 @@ def is_new_each_time(expr: Expr) -> bool:
     """Whether the proof takes an expression for another number wherever it stands: it looks at memory, or rests on a float or a bool."""
     return any(
         isinstance(part, Load | Get | Select) or (isinstance(part, Convert) and type_of(part.operand) in ("bool", "f32", "f64"))
-        for part, _ in subexpressions(expr)
+        for part in subexpressions(expr)
     )
 
 

@@ -87,6 +87,8 @@ def _binary(expr: Binary) -> Expr:
             return _binary(Binary(op, right, left))
         case Binary("sub", left, Const("i64", value)) if value != limits("i64")[0]:
             return add(left, -int(value))
+        case Binary("add", Local(), Const("i64", value)) if value:
+            return expr
         case Binary("add", left, Const("i64", value)):
             return _sum(left, int(value))
         case Binary(op, left, Const(type_, value)) if type_ not in FLOATS:

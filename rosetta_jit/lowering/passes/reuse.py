@@ -58,7 +58,7 @@ def reuse(kernel: Kernel) -> Kernel:
 def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Block:
     names = _Names(changed_names(body), taken, written)
     named = _block(body, {}, names)
-    parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part, _ in subexpressions(expr))
+    parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part in subexpressions(expr))
     uses = Counter(part.name for part in parts if isinstance(part, Local))
     return _inlined(named, {name for name in names.made if uses[name] == 1}, {})
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
+from dataclasses import field
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
@@ -42,7 +43,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """What is known of a body's locals: how often each is still assigned, which are settled, their values, and what is computed already.
+    """What is known of a body's locals: how often each is still assigned, which are settled, their values, and what is computed already,
+    with the order in which it was.
 
     A variable is settled behind the last Assign to it in the text. In a loop that is true until the round's end, where what was computed
     in the round is forgotten.
@@ -52,6 +54,7 @@ class _Names:
     fixed: set[str]
     values: dict[str, Expr]
     computed: dict[Expr, Expr]
+    news: list[Expr] = field(default_factory=list["Expr"])
 
 
 def simplify(kernel: Kernel) -> Kernel:
@@ -129,17 +132,15 @@ def _let(name: str, value: Expr, names: _Names) -> Block:
             names.values[name] = names.computed[value]
             return ()
         names.computed[value] = Local(type_of(value), name)
+        names.news.append(value)
     return (Let(name, value),)
 
 
 def _nested(stmt: Stmt, names: _Names) -> Block:
     if isinstance(stmt, For):
         names.fixed.add(stmt.variable)
-    if isinstance(stmt, If):
-        then, otherwise = (_branch(block, names, {stmt.condition: way}) for block, way in ((stmt.then, TRUE), (stmt.otherwise, FALSE)))
-        simple: Stmt = If(stmt.condition, then, otherwise)
-    else:
-        simple = with_blocks(stmt, lambda block: _branch(block, names, {}))
+    known = iter([(stmt.condition, TRUE), (stmt.condition, FALSE)]) if isinstance(stmt, If) else repeat(None)
+    simple = with_blocks(stmt, lambda block: _branch(block, names, next(known)))
     match simple:
         case If(_, (), ()) | For(_, _, ()):
             return ()
@@ -147,15 +148,21 @@ def _nested(stmt: Stmt, names: _Names) -> Block:
             return (simple,)
 
 
-def _branch(block: Block, names: _Names, known: dict[Expr, Expr]) -> Block:
-    """A block that may run or not: what it computes is forgotten behind it."""
-    lasting = {expr: value for expr, value in known.items() if _is_settled(expr, names)}
-    return _block(block, replace(names, computed=names.computed | lasting))
+def _branch(block: Block, names: _Names, known: tuple[Expr, Expr] | None) -> Block:
+    """A block that may run or not, where an expression has a known value: what is computed in it is forgotten behind it."""
+    mark = len(names.news)
+    if known is not None and known[0] not in names.computed and _is_settled(known[0], names):
+        names.computed[known[0]] = known[1]
+        names.news.append(known[0])
+    result = _block(block, names)
+    while len(names.news) > mark:
+        del names.computed[names.news.pop()]
+    return result
 
 
 def _is_settled(expr: Expr, names: _Names) -> bool:
     """Whether an expression keeps its value, and another that is equal as text has the same: 0.0 and -0.0 are equal, not the same."""
-    for part, _ in subexpressions(expr):
+    for part in subexpressions(expr):
         match part:
             case Load() | Get() | Used() | IsText() | Nearest():
                 return False

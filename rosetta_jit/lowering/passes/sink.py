@@ -70,7 +70,7 @@ def _rows(stmt: Stmt, lane: int) -> Iterator[Expr | None]:
         case _:
             pass
     for whole in expressions_of(stmt):
-        for part, _ in subexpressions(whole):
+        for part in subexpressions(whole):
             match part:
                 case Get(_, place):
                     yield from _row(place, lane)
