@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +17,14 @@ import numpy as np
 
 if TYPE_CHECKING:
     import random
+    from collections.abc import Callable
 
 Fields = dict[str, Any]
 Value = Any
 
-INTEGERS = {f"{sign}int{bits}": (0 if sign else -(1 << bits - 1), (1 << bits - (not sign)) - 1) for sign in ("", "u") for bits in (8, 16, 32, 64)}
+INTEGERS = {
+    f"{sign}int{bits}": (0 if sign else -(1 << bits - 1), (1 << bits - (not sign)) - 1) for sign in ("", "u") for bits in (8, 16, 32, 64)
+}
 LEAVES = {
     "i8": "int8",
     "u8": "uint8",
@@ -44,7 +46,7 @@ NARROW = {"int8", "uint8", "int16", "uint16"}
 """Integers that a float32 holds."""
 
 
-class Refused(Exception):
+class Refused(Exception):  # noqa: N818  not an error of ours
     """The message is refused, with this kind; at the place of the rule, if no other is said."""
 
     def __init__(self, kind: str, place: str = "") -> None:
@@ -158,11 +160,11 @@ def element(values: list[Value], index: int, name: str = "") -> Value:
 
 
 def minimum(left: Value, right: Value) -> Value:
-    return left if left < right else right
+    return min(right, left)
 
 
 def maximum(left: Value, right: Value) -> Value:
-    return left if left > right else right
+    return max(right, left)
 
 
 INTEGER_OPERATIONS: dict[str, tuple[str, Callable[[int, int], int]]] = {
@@ -315,7 +317,12 @@ class Maker:
         kind = np.float32 if type_ == "float32" else np.float64
         with np.errstate(all="ignore"):
             value = kind(number)
-        return Made(f"{type_}({number!r})" if type_ == "float64" or number < 1e30 else "float32(1.5)", type_, lambda _: value if number < 1e30 or type_ == "float64" else np.float32(1.5), is_known=True)
+        return Made(
+            f"{type_}({number!r})" if type_ == "float64" or number < 1e30 else "float32(1.5)",
+            type_,
+            lambda _: value if number < 1e30 or type_ == "float64" else np.float32(1.5),
+            is_known=True,
+        )
 
     def pair(self, type_: str, depth: int) -> tuple[Made, Made]:
         """Two expressions of which one is no constant."""
@@ -385,7 +392,11 @@ class Maker:
                 name = self.rng.choice(["ks", "q"])
                 if index.is_known:
                     index = self.live("int64", 0)
-                return Made(f".{name}[{index.text}]", "int32" if name == "ks" else "int16", lambda fields: element(fields[name], index.evaluate(fields), name))
+                return Made(
+                    f".{name}[{index.text}]",
+                    "int32" if name == "ks" else "int16",
+                    lambda fields: element(fields[name], index.evaluate(fields), name),
+                )
             case 6:
                 text = self.of("string", depth - 1)
                 return Made(f"integer({text.text})", "int64", lambda fields: spelled(text.evaluate(fields)))
@@ -395,7 +406,9 @@ class Maker:
                 if right.is_known and (right.text == "0" or template in SHIFTS):
                     right = self.live("int64", 0)
                 return Made(
-                    template.format(left.text, right.text), "int64", lambda fields: both(function, left.evaluate(fields), right.evaluate(fields))
+                    template.format(left.text, right.text),
+                    "int64",
+                    lambda fields: both(function, left.evaluate(fields), right.evaluate(fields)),
                 )
 
     @staticmethod
@@ -467,14 +480,22 @@ class Maker:
                     _, function = FLOAT_OPERATIONS[operator]
                     if left.is_known:
                         left = field("f32" if type_ == "float32" else "f64", type_)
-                    return Made(f"({left.text} {operator} {narrow.text})", type_, lambda fields: function(left.evaluate(fields), kind(narrow.evaluate(fields))))
+                    return Made(
+                        f"({left.text} {operator} {narrow.text})",
+                        type_,
+                        lambda fields: function(left.evaluate(fields), kind(narrow.evaluate(fields))),
+                    )
                 return self.leaf(type_)
             case _:
                 template, function = FLOAT_OPERATIONS[self.rng.choice(list(FLOAT_OPERATIONS))]
                 left, right = self.pair(type_, depth - 1)
                 if right.is_known:
                     left, right = right, left
-                return Made(template.format(left.text, right.text), type_, lambda fields: both(function, left.evaluate(fields), right.evaluate(fields)))
+                return Made(
+                    template.format(left.text, right.text),
+                    type_,
+                    lambda fields: both(function, left.evaluate(fields), right.evaluate(fields)),
+                )
 
     def narrow(self) -> Made | None:
         names = [name for name, kind in self.leaves.items() if kind in NARROW]
@@ -511,7 +532,9 @@ class Maker:
                 operator = self.rng.choice(list(COMPARED))
                 compare = COMPARED[operator]
                 return Made(
-                    f"({left.text} {operator} {right.text})", "bool", lambda fields: bool(both(compare, left.evaluate(fields), right.evaluate(fields)))
+                    f"({left.text} {operator} {right.text})",
+                    "bool",
+                    lambda fields: bool(both(compare, left.evaluate(fields), right.evaluate(fields))),
                 )
 
     def string(self, depth: int) -> Made:
@@ -533,7 +556,9 @@ class Maker:
                 return Made(
                     f'part({text.text}, "/", {number.text})',
                     "string",
-                    lambda fields: both(lambda text, index: element(text.split("/"), index), text.evaluate(fields), number.evaluate(fields)),
+                    lambda fields: both(
+                        lambda text, index: element(text.split("/"), index), text.evaluate(fields), number.evaluate(fields)
+                    ),
                 )
             case 4:
                 text, start, stop = self.live("string", depth - 1), self.rng.randrange(3), self.rng.randrange(4)
@@ -588,7 +613,26 @@ def some_value(rng: random.Random, type_: str) -> Value:
 
 def some_float(rng: random.Random, type_: str) -> np.floating:
     kind = np.float32 if type_ == "float32" else np.float64
-    edges = [0.0, -0.0, 1.0, -1.0, 0.5, 1.5, 2.5, -2.5, 1e10, 127.5, 255.5, math.nan, math.inf, -math.inf, 2.0**31, -(2.0**63), 2.0**63, 2.0**64]
+    edges = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.5,
+        1.5,
+        2.5,
+        -2.5,
+        1e10,
+        127.5,
+        255.5,
+        math.nan,
+        math.inf,
+        -math.inf,
+        2.0**31,
+        -(2.0**63),
+        2.0**63,
+        2.0**64,
+    ]
     with np.errstate(all="ignore"):
         bits = np.frombuffer(rng.randbytes(8), "<f8")[0] if kind is np.float64 else np.frombuffer(rng.randbytes(4), "<f4")[0]
         return kind(rng.choice([*edges, round(rng.uniform(-100, 100), 2), bits]))

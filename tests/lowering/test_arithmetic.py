@@ -128,3 +128,17 @@ def test_the_greatest_integers_are_no_floats(scalar, aim, backend):
     with pytest.raises(rj.DecodeError) as error:
         decode(write(write.holder_type.from_dict({"n": 2**bits - 1})))
     assert (error.value.kind, error.value.path) == ("range", ".x")
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_two_conditions_that_nothing_is_known_of(backend):
+    """That one of them holds does not say that the other does."""
+    files = {
+        "t/In.msg": "float64 x\nbool b\nbool c\n",
+        "t/Out.msg": "float32 x\nint32 n\n",
+        "m.mapping": HEAD + "  .x = float32(.x, exact)\n  .n = 1 if .b or .c else 2\n",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="ros1", backend=backend)
+    write = rj.Encoder.of("t/In", schema=files, imports=["t/In.msg"], encoding="ros1", backend="interpreter")
+    for b, c in ((False, False), (True, False), (False, True)):
+        assert decode(write(write.holder_type.from_dict({"x": 0.5, "b": b, "c": c}))).to_dict() == {"x": 0.5, "n": 1 if b or c else 2}

@@ -1,4 +1,4 @@
-"""Random mappings: what every backend makes of random values is what plain Python makes of them, or the same kind of error at the same place."""
+"""Random mappings: each backend makes of random values what plain Python makes of them, or fails alike at the same place."""
 
 from __future__ import annotations
 
