@@ -107,12 +107,8 @@ class Values:
                 return Unary("not", self.of(operand))
             case typed.Unary(_, operand):
                 return self.negative(self.of(operand))
-            case typed.Binary("and" | "or" as operator, left, right):
-                return self.joined(operator, left, right)
-            case typed.Binary(operator, left, right) if operator in COMPARISONS:
-                return Compare(COMPARISONS[operator], self.of(left), self.of(right))
             case typed.Binary(operator, left, right):
-                return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+                return self.operation(operator, left, right)
             case typed.Convert(operand, type_, rule):
                 return self.convert(self.of(operand), scalar_type(type_), rule)
             case typed.Call(function, arguments, _):
@@ -129,6 +125,13 @@ class Values:
                 return asked(value, self)
             case _:
                 assert_never(value)
+
+    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+        if operator in ("and", "or"):
+            return self.joined(operator, left, right)
+        if operator in COMPARISONS:
+            return Compare(COMPARISONS[operator], self.of(left), self.of(right))
+        return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
 
     def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
         """``left and right``, ``left or right``: where the left one decides, the right one may have no value."""
