@@ -12,7 +12,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Advance, Assign
 from rosetta_jit.kernel.linear import Linear, minus, plus, times
-from rosetta_jit.kernel.paths import anchors, from_begin, grown, is_number, restore, saved, variable
+from rosetta_jit.kernel.paths import anchors, from_begin, grown, restore, saved, variable
 from rosetta_jit.kernel.prove import All
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.symbolic import linear
@@ -109,7 +109,7 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
     found: list[Guess] = []
     for name in sorted(names & scope.locals.keys()):
         type_, value = scope.locals[name]
-        if not isinstance(value, Linear) or not is_number((type_, value)):
+        if type_ == "bool" or not isinstance(value, Linear):
             continue
         wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
         if type_ == "i64" and from_begin(value):

@@ -76,7 +76,7 @@ def _arrive(scope: Scope, before: Scope, mark: int) -> Arrival:
     distances: dict[str, list[tuple[int, int]]] = {}
     for name, old in before.locals.items():
         new = scope.locals[name]
-        if new is not old and is_number(new):
+        if new is not old and new[0] != "bool" and isinstance(new[1], Linear):
             distances[name] = _distances(scope, new[1], anchors(before, old))
     visible = {name: scope.locals[name] for name in before.locals}
     return Arrival(visible, list(scope.used), scope.facts.rollback(mark), distances)
@@ -125,7 +125,7 @@ def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typ
     values = [arrival.locals[name] for arrival in arrivals]
     if all(value[1] == values[0][1] for value in values):
         return values[0]
-    if not is_number(old):
+    if old[0] == "bool" or not isinstance(old[1], Linear):  # what is known of a bool can be a sum too, which says something else
         return old[0], None
     met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
     marks = anchors(before, old)
@@ -136,11 +136,6 @@ def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typ
         learn_distance(scope, minus(met, mark), min(way[0] for way in ways))
         learn_distance(scope, minus(mark, met), min(way[1] for way in ways))
     return old[0], met
-
-
-def is_number(value: Typed) -> bool:
-    """Whether a value is an integer that is known; what is known of a bool can be a sum too, which says something else."""
-    return value[0] != "bool" and isinstance(value[1], Linear)
 
 
 def learn_distance(scope: Scope, distance: Linear, least: int) -> None:

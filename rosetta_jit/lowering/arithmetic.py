@@ -84,8 +84,6 @@ def floored(writer: Writer, function: str, left: Expr, right: Expr, where: Where
     is_between = Binary("and", Compare("ne", over, index(0)), signs)
     if function == "modulo":
         return binary(writer, "+", over, writer.let("missing", Select(is_between, right, index(0))), where, line)
-    if right == index(-1):
-        return binary(writer, "/", left, right, where, line)
     quotient, more = writer.let("quotient", Binary("div", left, right)), writer.let("more", Select(is_between, index(1), index(0)))
     return binary(writer, "-", quotient, more, where, line)
 
