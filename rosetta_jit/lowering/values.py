@@ -100,7 +100,7 @@ class Values:
                 return self.variables[name]
             case typed.Access(place, type_):
                 number = self.source.number(place, self)
-                return converted(number, "bool") if isinstance(type_, Bool) else number
+                return converted(number, scalar_type(type_)) if isinstance(type_, Bool | Enum) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
