@@ -187,6 +187,11 @@ def zero_division(span: Span | None) -> Diagnostic:
     return error("zero-division", "division by zero", span, "this is zero", help_="divide by something else")
 
 
+def shift_range(span: Span | None, bits: int, most: int) -> Diagnostic:
+    """A shift that is known to be by less than nothing, or by more than all bits."""
+    return error("shift-range", f"a shift by {bits} bits", span, f"0 to {most} can be", help_="correct the number of bits")
+
+
 def index_range(span: Span | None, index: int, length: int | None) -> Diagnostic:
     """An index that is known to be out of range."""
     has = "indices count from 0" if length is None else f"there are {length} elements, counted from 0"

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 FACTS_TO_MULTIPLY = 8
 
+WORD = 64
+"""Bits of the widest integer: by more nothing is shifted where a kernel runs, but a mapping may say so."""
+
 Range = tuple[int, int]
 
 
@@ -168,7 +171,7 @@ def bits_or(facts: Facts, left: Linear, right: Linear, limits: Range, *, exclusi
 
 def shift_left(facts: Facts, left: Linear, right: Linear, limits: Range) -> Linear:
     """``left << right``, high bits dropped."""
-    if not right.terms:
+    if not right.terms and 0 <= right.constant < WORD:
         whole = times(left, 1 << right.constant)
         if limits[0] <= facts.lower(whole) and facts.upper(whole) <= limits[1]:
             return whole
@@ -181,7 +184,7 @@ def shift_right(facts: Facts, left: Linear, right: Linear, limits: Range) -> Lin
     if facts.lower(left) >= 0:
         facts.assume(result)
         facts.assume(minus(left, result))
-    if not right.terms:
+    if not right.terms and 0 <= right.constant < WORD:
         rest = minus(left, times(result, 1 << right.constant))
         facts.assume(rest)
         facts.assume(shifted(times(rest, -1), (1 << right.constant) - 1))

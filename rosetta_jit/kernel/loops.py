@@ -119,7 +119,7 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
     found: list[Guess] = []
     for name in sorted(names & scope.locals.keys()):
         type_, value = scope.locals[name]
-        if not isinstance(value, Linear):
+        if type_ == "bool" or not isinstance(value, Linear):
             continue
         wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
         if type_ == "i64" and from_begin(value):

@@ -69,8 +69,8 @@ def _arrive(scope: Scope, before: dict[str, Typed], mark: int) -> Arrival:
     """End a path: give up its facts, and keep what a meeting point needs. ``before`` is what it changed."""
     changed = {name: scope.locals[name] for name in before}
     distances: dict[str, list[tuple[int, int]]] = {}
-    for name, (_, value) in changed.items():
-        if isinstance(value, Linear):
+    for name, (type_, value) in changed.items():
+        if type_ != "bool" and isinstance(value, Linear):
             distances[name] = _distances(scope, value, anchors(scope, before[name]))
     return Arrival(changed, list(scope.used), scope.facts.rollback(mark), distances)
 
@@ -118,7 +118,7 @@ def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
     values = [arrival.changed.get(name, old) for arrival in arrivals]
     if all(value[1] == values[0][1] for value in values):
         return values[0]
-    if not isinstance(old[1], Linear):
+    if old[0] == "bool" or not isinstance(old[1], Linear):  # what is known of a bool can be a sum too, which says something else
         return old[0], None
     met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
     marks = anchors(scope, old)

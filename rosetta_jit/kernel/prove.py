@@ -44,6 +44,18 @@ class Any:
 Formula = bool | None | Linear | All | Any
 
 
+def said(formula: Formula) -> Formula:
+    """What a formula says without its parts of which nothing is known: those of two formulas look alike, and are not."""
+    match formula:
+        case All(parts):
+            return All(tuple(part for each in parts if (part := said(each)) is not None))
+        case Any(parts):
+            found = tuple(map(said, parts))
+            return None if None in found else Any(found)
+        case _:
+            return formula
+
+
 def negated(formula: Formula) -> Formula:
     """The opposite; over integers ``not (l >= 0)`` is ``-l - 1 >= 0``."""
     match formula:
@@ -167,6 +179,8 @@ class Facts:
             case All(parts):
                 for part in parts:
                     self.assume(part)
+            case Any() if is_vague(formula):
+                self.assume(said(formula))
             case Any(parts):
                 # Without looking at cases: a case may have alternatives of its own, and theirs again.
                 open_parts = [part for part in parts if not self._proves(negated(part), 0, QUICK)]

@@ -16,6 +16,9 @@ _BITS: dict[str, Arithmetic] = {"&": "and", "|": "or", "^": "xor", "and": "and",
 WORD = 64
 """Bits of an int64."""
 
+LEAST = -(1 << 63)
+"""The least int64."""
+
 COMPARISONS: dict[str, Comparison] = {"==": "eq", "!=": "ne", "<": "lt", "<=": "le", ">": "gt", ">=": "ge"}
 
 
@@ -52,10 +55,14 @@ def _shift(writer: Writer, operator: str, left: Expr, right: Expr, where: Where,
 
 
 def _division(writer: Writer, operator: str, left: Expr, right: Expr, where: Where, line: str) -> Expr:
-    """Divisors 0 and -1 are refused: the one has no quotient, the other none that always fits."""
-    if not (isinstance(right, Const) and right.value not in (0, -1)):
-        usable = Binary("or", Compare("gt", right, index(0)), Compare("lt", right, index(-1)))
-        writer.expect(usable, "range", where, "division by 0 or -1", line=line)
+    """By 0 nothing is divided, and by -1 the least int64 is not: its quotient is none."""
+    if isinstance(right, Const) and right.value == -1:
+        return writer.checked("sub", index(0), left, where, line=line) if operator == "/" else index(0)
+    if not (isinstance(right, Const) and right.value != 0):
+        left, right = writer.once(left), writer.once(right)
+        writer.expect(Compare("ne", right, index(0)), "range", where, "division by 0", line=line)
+        bounded = Binary("or", Compare("ne", left, index(LEAST)), Compare("ne", right, index(-1)))  # as the proof asks for it
+        writer.expect(bounded, "range", where, "a number grows beyond 64 bits", line=line)
     return Binary("div" if operator == "/" else "rem", left, right)
 
 
@@ -63,9 +70,10 @@ def divided(writer: Writer, left: Expr, right: Expr, where: Where, line: str = "
     """``left / right``; of integers only where nothing remains."""
     if type_of(left) in ("f32", "f64"):
         return Binary("div", left, right)
+    left, right = writer.once(left), writer.once(right)
     over = binary(writer, "%", left, right, where, line)
     writer.expect(Compare("eq", over, index(0)), "range", where, "the division leaves a remainder", line=line)
-    return Binary("div", left, right)
+    return binary(writer, "/", left, right, where, line) if right == index(-1) else Binary("div", left, right)
 
 
 def floored(writer: Writer, function: str, left: Expr, right: Expr, where: Where, line: str = "") -> Expr:

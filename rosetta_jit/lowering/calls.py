@@ -44,7 +44,6 @@ INTEGERS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uin
 FLOATS = ("float32", "float64")
 ANGULAR = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
 TOLD: dict[str, Literal["now", "number"]] = {"now": "now", "counter": "number"}
-DIVISIONS = ("divide", "floor_divide", "modulo")
 FUNCTIONS = (
     *TOLD,
     "radians",
@@ -222,21 +221,29 @@ def _narrows(arguments: list[Expr], target: Int | Float, targets: tuple[Int | Fl
 def _folded(expr: model.Call, arguments: list[Expr], target: Int | Float) -> Expr:
     function = cast("Function", expr.function)
     numbers = [argument.value for argument in arguments if isinstance(argument, Const) and isinstance(argument.value, int)]
-    if isinstance(target, Int) and len(numbers) == len(arguments) and function not in DIVISIONS:
+    if isinstance(target, Int) and len(numbers) == len(arguments):
         known = _of_integers(function, numbers)
-        if conversions.holds(target, known):
+        if known is not None and conversions.holds(target, known):
             return Const(known, target, expr.span)
     return Call(function, tuple(arguments), target, expr.span)
 
 
-def _of_integers(function: Function, numbers: list[int]) -> int:
-    match function:
-        case "align":
-            number, quantum = numbers
+def _of_integers(function: Function, numbers: list[int]) -> int | None:
+    """What a function of integers gives; None where it refuses them."""
+    match function, numbers:
+        case "align", [number, quantum]:
             return number if quantum <= 1 else -(-number // quantum) * quantum
-        case "min":
+        case "min", _:
             return reduce(min, numbers)
-        case "max":
+        case "max", _:
             return reduce(max, numbers)
+        case ("divide" | "floor_divide" | "modulo"), [_, 0]:
+            return None
+        case "divide", [number, divisor]:
+            return None if number % divisor else number // divisor
+        case "floor_divide", [number, divisor]:
+            return number // divisor
+        case "modulo", [number, divisor]:
+            return number % divisor
         case _:
             return abs(numbers[0])

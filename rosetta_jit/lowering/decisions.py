@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, same
 from rosetta_jit.lowering.type_texts import comparison, type_pieces
-from rosetta_jit.lowering.typed import BOOL, Access, Binary, Choice, Const, IsText, Unary
+from rosetta_jit.lowering.typed import BOOL, INT64, Access, Binary, Choice, Const, IsText, Unary
 from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
 
@@ -133,7 +133,8 @@ def type_choice(expr: model.Choice, scope: Scope, type_expr: TypeExpr) -> Expr |
 
 def unified(values: list[Expr]) -> list[Expr] | None:
     """Values as one type: the first that all fit without a word."""
-    targets = [value.type for value in values if not isinstance(value, Const)] + [values[0].type, FLOAT64]
+    whole = [INT64] if all(isinstance(value.type, Int) for value in values) else []
+    targets = [*(value.type for value in values if not isinstance(value, Const)), values[0].type, *whole, FLOAT64]
     for target in targets:
         found = [convert(value, target) for value in values]
         known = [value for value in found if value is not None]

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 CONSTANTS = {"pi": math.pi}
 SUMS = frozenset("+-%")
+SHIFTS = frozenset(("<<", ">>"))
+MOST_BITS = 63
+"""By which an int64 is shifted."""
 
 
 def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
@@ -157,6 +160,9 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
         return concatenation(left, right, expr.span, scope)
     if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
         scope.problems.append(words.zero_division(right.span))
+        return None
+    if expr.operator in SHIFTS and isinstance(right, Const) and isinstance(right.value, int) and not 0 <= right.value <= MOST_BITS:
+        scope.problems.append(words.shift_range(right.span, right.value, MOST_BITS))
         return None
     match left, right:
         case Const(value=int() | float() as x, type=Int() | Float()), Const(value=int() | float() as y, type=Int() | Float()):

@@ -30,6 +30,7 @@ from rosetta_jit.lowering.typed import (
     Assign,
     Choice,
     Const,
+    Convert,
     Default,
     FieldStep,
     For,
@@ -347,6 +348,8 @@ def _adapted(value: Choice, target: Type) -> Choice:
 
 
 def _adapted_to(value: Expr, target: Type) -> Expr | None:
+    if isinstance(value, Convert) and value.rule == "widen":  # as its choice needed it, not as the place does
+        value = value.operand
     return convert(_adapted(value, target) if isinstance(value, Choice) else value, target)
 
 

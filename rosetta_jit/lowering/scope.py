@@ -78,15 +78,18 @@ def enums_of(*schemas: Schema) -> dict[str, Enum]:
 
 
 def constants_of(enums: Mapping[str, Enum]) -> dict[str, tuple[Enum, int]]:
-    """Enum constants by qualified name, within their enum and, as protobuf scopes them, beside it."""
+    """Enum constants by qualified name: within their enum and, as protobuf and OMG IDL scope them, beside it."""
     beside = {_scope(name) + value: (enum, number) for name, enum in enums.items() for value, number in enum.values}
+    scoped = {f"{name}::{value}": (enum, number) for name, enum in enums.items() if "::" in name for value, number in enum.values}
     within = {f"{name}.{value}": (enum, number) for name, enum in enums.items() for value, number in enum.values}
-    return beside | within
+    return beside | scoped | within
 
 
 def _scope(name: str) -> str:
-    outer = name.rpartition(".")[0]
-    return f"{outer}." if outer else ""
+    """What stands before the name of an enum, and before its constants beside it."""
+    between = "::" if "::" in name else "."
+    outer = name.rpartition(between)[0]
+    return f"{outer}{between}" if outer else ""
 
 
 @dataclass(frozen=True, slots=True)

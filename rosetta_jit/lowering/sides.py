@@ -132,7 +132,7 @@ class HolderSide:
                     path, last = (*path, each.name), each
                 case IndexStep(at):
                     elements, count = self.array(_prefix(place, done), values)
-                    number = values.of(at)
+                    number = self.writer.once(values.of(at))
                     where = fields.where.members(path).element(number)
                     self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
                     fields, path, last = elements.at(number), (), None
@@ -225,7 +225,7 @@ class WireSide:
         if len(indices) != 1 or key not in self.root.found.regions:
             raise NotInPlaceError(key)
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
-        number = values.of(indices[0])
+        number = self.writer.once(values.of(indices[0]))
         where = Where().members(array).element(number)
         self.writer.expect(inside(number, self.root.size_of(array)), "index", where, "no such element", line=values.line)
         at = Binary("add", region.first, mul(number, region.step))

@@ -8,7 +8,27 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Protocol, assert_never
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Switch, Unary, index, type_of
+from rosetta_jit.kernel.ir import (
+    Address,
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Const,
+    Convert,
+    Expect,
+    Expr,
+    HostCall,
+    If,
+    Local,
+    Require,
+    Scalar,
+    Switch,
+    Unary,
+    index,
+    type_of,
+)
+from rosetta_jit.kernel.shape import statements
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
@@ -27,6 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.kernel.ir import Block, Stmt
+    from rosetta_jit.model.expr import Operator
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -80,17 +101,15 @@ class Values:
                 return self.variables[name]
             case typed.Access(place, type_):
                 number = self.source.number(place, self)
-                return converted(number, "bool") if isinstance(type_, Bool) else number
+                return converted(number, scalar_type(type_)) if isinstance(type_, Bool | Enum) else number
             case typed.LenOf(place):
                 return self.source.count(place, self)
             case typed.Unary("not", operand):
                 return Unary("not", self.of(operand))
             case typed.Unary(_, operand):
                 return self.negative(self.of(operand))
-            case typed.Binary(operator, left, right) if operator in COMPARISONS:
-                return Compare(COMPARISONS[operator], self.of(left), self.of(right))
             case typed.Binary(operator, left, right):
-                return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+                return self.operation(operator, left, right)
             case typed.Convert(operand, type_, rule):
                 return self.convert(self.of(operand), scalar_type(type_), rule)
             case typed.Call(function, arguments, _):
@@ -107,6 +126,26 @@ class Values:
                 return asked(value, self)
             case _:
                 assert_never(value)
+
+    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+        if operator in ("and", "or"):
+            return self.joined(operator, left, right)
+        if operator in COMPARISONS:
+            return Compare(COMPARISONS[operator], self.of(left), self.of(right))
+        return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+
+    def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+        """``left and right``, ``left or right``: where the left one decides, the right one may have no value."""
+        writer, first = self.writer, self.of(left)
+        with forgetting(self.source), writer.nested() as step:
+            second = self.of(right)
+        if not any(isinstance(stmt, FAILING) for stmt, _ in statements(block(step))):
+            writer.emit(*step)
+            return binary(writer, operator, first, second, self.where, self.line)
+        found = writer.var("joined", first)
+        step.append(Assign(found.name, second))
+        writer.emit(If(found, block(step)) if operator == "and" else If(found, (), block(step)))
+        return found
 
     def choice(self, choice: typed.Choice) -> Expr:
         """Only the value that is chosen is computed, and only the conditions before it: others may not have one."""
@@ -237,7 +276,7 @@ class Values:
         same: Expr = Compare("eq", Convert(source, made), value)
         if source in ("f32", "f64"):
             same = Binary("or", same, Compare("ne", value, value))
-        elif RANGES[source][1] >= 1 << 62:  # what is rounded up beyond the integers comes back as the last of them
+        else:  # what is rounded up beyond the integers comes back as the last of them
             same = Binary("and", same, Compare("lt", made, Const(target, float(RANGES[source][1]))))
         self.expect(same, target)
         return made
@@ -274,6 +313,9 @@ class Values:
     def expect(self, condition: Expr, target: str) -> None:
         self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES[target]}", line=self.line)
 
+
+FAILING = (Require, Expect, HostCall, Call)
+"""Statements that may refuse a message."""
 
 RANGES: dict[str, tuple[int, int]] = {
     "i8": (-(1 << 7), 1 << 7),

@@ -278,3 +278,18 @@ def test_choices_of_which_nothing_is_known_are_not_one():
     _, second = evaluate(scope, Select(Local("bool", "other"), index(0), index(1)))
     assert not scope.facts.proves_thoroughly(minus(first, second))
     assert scope.facts.proves(first)
+
+
+def test_what_is_unknown_is_not_known_again():
+    """Two formulas of which nothing is known are alike, and do not follow from each other."""
+    facts = Facts()
+    n = facts.fresh(0, 10)
+    high = shifted(n, -5)
+    for vague in (Any((None, None)), Any((high, All((high, None)), None)), Any((Any((None, high)), All((high, shifted(n, -7)))))):
+        facts.assume(vague)
+        assert not facts.proves(vague)
+        assert not facts.shows(vague)
+    half = Any((All((shifted(n, -9), None)), shifted(times(n, -1), 1)))
+    facts.assume(half)
+    assert facts.proves(Any((shifted(n, -9), shifted(times(n, -1), 1))))
+    assert not facts.proves(half)

@@ -193,6 +193,24 @@ def test_paths():
     refused(match="without Return")
 
 
+def test_bools_that_change():
+    """What is known of a bool is no number: behind a branch that changes it, both of its values may be."""
+    load = (need(BEGIN, 16), Let("n", Load("i64", BEGIN)), Let("m", Load("i64", add(BEGIN, 8))))
+    ok = Local("bool", "ok")
+    change = kernels.Assign("ok", compare("ge", i64("m"), 5))
+    for changed in (
+        If(compare("ge", i64("m"), 0), (change,)),
+        For("k", Binary("min", Binary("max", i64("m"), index(0)), index(9)), (change,)),
+    ):
+        start = (*load, Var("ok", compare("ge", i64("n"), 0)), changed)
+        wild = Let("x", Binary("div", index(1), Binary("sub", BEGIN, BEGIN)))
+        refused(*start, If(ok, (), (wild,)), DONE, match="by zero")
+        refused(*start, If(ok, (wild,), ()), DONE, match="by zero")
+        verify(kernel((*start, If(ok, (), ()), DONE)))
+    compared = Binary("or", compare("lt", i64("n"), 0), compare("gt", i64("m"), 3))
+    verify(kernel((*load, Var("ok", compare("ge", i64("n"), 0)), If(ok, (kernels.Assign("ok", compared),)), DONE)))
+
+
 def test_sites():
     refused(need(BEGIN, 4, 99), DONE, match="no site 99")
     refused(need(BEGIN, 4, 0), DONE, match="no site 0")

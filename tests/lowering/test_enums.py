@@ -1,0 +1,45 @@
+"""Enums of several frameworks in one mapping: their constants by name, compared and chosen, where a wire holds them in any width."""
+
+from __future__ import annotations
+
+import pytest
+
+import rosetta_jit as rj
+
+BACKENDS = ["numba", "python", "interpreter"]
+FILES = {
+    "rtc.idl": "module RTC { enum Power { OFF, ON, AUTO }; struct Command { Power state; double level; }; };",
+    "lab.proto": """syntax = "proto3"; package lab;
+message Command { enum Mode { IDLE = 0; ACTIVE = 3; } Mode mode = 1; double level = 2; bool on = 3; }""",
+}
+HEAD = 'import "rtc.idl"\nimport "lab.proto"\ndata-holder: lab.Command\nwire-schema: RTC::Command\n'
+RULES = """rules:
+  .mode <-> table(.state) { RTC::OFF = lab.Command.Mode.IDLE, RTC::Power::ON = lab.Command.ACTIVE }
+  .level <-> .level
+unpack-rules:
+  reject "unlikely" when .state == RTC::Power.AUTO
+  .on = .state != RTC::OFF
+pack-rules:
+  ignore .on
+"""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_constants_of_omg_idl(backend):
+    options = {"schema": {**FILES, "m.mapping": HEAD + RULES}, "encoding": "cdr", "backend": backend, "byte_order": "little"}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    for mode in ("IDLE", "ACTIVE"):
+        held = {"mode": mode, "level": 0.5, "on": mode == "ACTIVE"}
+        assert decode(encode(encode.holder_type.from_dict(held))).to_dict() == held
+    write = rj.Encoder.of("RTC::Command", imports=["rtc.idl"], **{**options, "backend": "interpreter"})
+    with pytest.raises(rj.DecodeError) as error:
+        decode(write(write.holder_type.from_dict({"state": "AUTO", "level": 0.5})))
+    assert error.value.kind == "rejected"
+
+
+def test_names_that_are_suggested_can_be_written():
+    wrong = RULES.replace("RTC::OFF =", "RTC.OFF =").replace("lab.Command.ACTIVE", "lab.Command.ACTIV")
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("m.mapping", schema={**FILES, "m.mapping": HEAD + wrong}, encoding="cdr", backend="interpreter")
+    assert "did you mean `RTC::OFF`?" in str(error.value)
+    assert "did you mean `lab.Command.ACTIVE`?" in str(error.value)
