@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from bench import ros_wire
 from bench.contest import Contender
 from bench.figures import Spread
 from bench.messages import joints_mapping, specialised
@@ -141,3 +142,32 @@ def added(outcome):
     rounds = outcome.rounds_ns
     parts = zip(rounds[OURS], rounds[PLAIN], rounds[BY_HAND], rounds[CALL], strict=True)
     return Spread.of([ours / (plain + max(0.0, work - call)) for ours, plain, work, call in parts])
+
+
+def test_cloud(effort, compare, record):
+    """Coordinates among the bytes of a cloud, against numpy's copy of three strided columns, which asks nothing."""
+    what, points = "mapping, 100,000 points out of the bytes of a cloud", ros_wire.POINTS
+    data = ros_wire.written(ros_wire.Ros1(), ros_wire.point_cloud)
+    decode = rj.Decoder("ros1/point_cloud2.mapping", encoding="ros1")
+    stride = 16
+    body = np.frombuffer(data, np.uint8)[len(data) - 1 - stride * points : -1]
+    columns = body.view(np.dtype({"names": ["x", "y", "z"], "formats": ["<f4"] * 3, "offsets": [0, 4, 8], "itemsize": stride}))
+    held = np.empty((points, 3), np.float32)
+    found = decode(data).points
+    assert [(found[number].x, found[number].z) for number in (0, points - 1)] == [
+        (columns["x"][number], columns["z"][number]) for number in (0, -1)
+    ]
+
+    def by_numpy():
+        for number, name in enumerate("xyz"):
+            held[:, number] = columns[name]
+
+    outcome = compare(
+        CHAPTER,
+        what,
+        [
+            Contender(OURS, "ours", "an RST cloud, used again", effort.call(decode, data)),
+            Contender("numpy, unchecked", "peer", "an array, used again", effort.call(by_numpy)),
+        ],
+    )
+    record(what, outcome.ratio(OURS, "numpy, unchecked"), None, "x numpy, unchecked", f"{outcome.took(OURS).median / 1000:.0f} µs")
