@@ -7,7 +7,6 @@ the digest is another one, because the grammar was changed or lark is of another
 from __future__ import annotations
 
 import json
-from hashlib import sha256
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, cast
 
@@ -15,6 +14,8 @@ import lark
 from lark import Lark
 from lark.grammar import Rule
 from lark.lexer import TerminalDef
+
+from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Callable
