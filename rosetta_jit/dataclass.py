@@ -1,8 +1,8 @@
 """`dataclass` as the standard library's, made in a sixth of the time: processes that start quickly cannot spend theirs on making classes.
 
 The standard one compiles six methods for each class, half a millisecond a class. Here `__init__` alone is compiled; comparison, hash,
-repr and the refusal to be changed are the same few functions for all, over the fields' values. What is asked for beyond ``frozen`` and
-``slots``, and classes that inherit fields or bring such methods themselves, are left to the standard library.
+repr and the refusal to be changed are the same few functions for all, over the fields' values. What is asked for beyond the `OPTIONS`,
+classes without slots, and those that inherit fields or bring such methods themselves, are left to the standard library.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from dataclasses import dataclass as dataclass  # noqa: PLC0414 - what others import from here
     from typing import Any
 
+OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
 _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__", "__getstate__", "__setstate__"))
 
 
@@ -23,28 +24,31 @@ if not TYPE_CHECKING:
 
     def dataclass(cls=None, /, **options):
         """As `dataclasses.dataclass`."""
-        if cls is not None or not options.keys() <= {"frozen", "slots"} or not options.get("slots"):
+        if cls is not None or not options.keys() <= OPTIONS or not options.get("slots"):
             return dataclasses.dataclass(cls, **options)
-        return lambda plain: _made(plain, frozen=options.get("frozen", False))
+        return lambda plain: _made(plain, options)
 
 
-def _made(plain: type[Any], *, frozen: bool) -> type[Any]:
+def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
     inherits = any(dataclasses.is_dataclass(base) for base in plain.__mro__[1:])
     if inherits or not _OWN.isdisjoint(vars(plain)) or any("InitVar" in str(each) for each in plain.__annotations__.values()):
-        return dataclasses.dataclass(frozen=frozen, slots=True)(plain)
+        return dataclasses.dataclass(**options)(plain)
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
-    made: Any = dataclasses.dataclass(plain, init=False, repr=False, eq=False, slots=True)
+    frozen, eq, weak = options.get("frozen", False), options.get("eq", True), options.get("weakref_slot", False)
+    made: Any = dataclasses.dataclass(plain, init=False, repr=False, eq=False, slots=True, weakref_slot=weak)
     fields = dataclasses.fields(made)
     made.__init__ = _init(fields, has_post_init=hasattr(made, "__post_init__"))
-    made.__repr__ = _repr(tuple(each.name for each in fields if each.repr))
-    values = _values(tuple(each.name for each in fields if each.compare))
-    made.__eq__ = _eq(values)
-    made.__hash__ = _hash(values) if frozen else None
+    if options.get("repr", True):
+        made.__repr__ = _repr(tuple(each.name for each in fields if each.repr))
+    if eq:
+        values = _values(tuple(each.name for each in fields if each.compare))
+        made.__eq__ = _eq(values)
+        made.__hash__ = _hash(values) if frozen else None
     if frozen:
         made.__setattr__, made.__delattr__ = _refuse_to_set, _refuse_to_delete
         made.__getstate__, made.__setstate__ = _state, _set_state
-    made.__dataclass_params__.frozen, made.__dataclass_params__.eq = frozen, True
+    made.__dataclass_params__.frozen, made.__dataclass_params__.eq = frozen, eq
     return made
 
 

@@ -7,6 +7,7 @@ import dataclasses
 import inspect
 import math
 import pickle
+import weakref
 from dataclasses import field
 from pathlib import Path
 from typing import ClassVar
@@ -169,3 +170,30 @@ def test_every_module_takes_it():
         if line.startswith("from dataclasses import") and "dataclass" in line.partition("import")[2].replace(",", " ").split()
     ]
     assert not wrong, "import it from rosetta_jit.dataclass"
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Apart:
+    """Of each object only itself is equal to it."""
+
+    value: int = 1
+
+
+@dataclass(frozen=True, slots=True, weakref_slot=True)
+class Watched:
+    value: int
+
+
+def test_objects_may_be_equal_to_themselves_alone():
+    one, other = Apart(), Apart()
+    assert one != other
+    assert len({one, other, one}) == 2
+    assert "Apart object" in repr(one)
+    one.value = 2
+    assert one.value == 2
+
+
+def test_objects_may_be_watched():
+    one = Watched(3)
+    assert weakref.ref(one)() is one
+    assert {one: 1}[Watched(3)] == 1

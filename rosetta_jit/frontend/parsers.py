@@ -7,7 +7,7 @@ the digest is another one, because the grammar was changed or lark is of another
 from __future__ import annotations
 
 import json
-from hashlib import sha256
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, cast
 
 import lark
@@ -15,7 +15,10 @@ from lark import Lark
 from lark.grammar import Rule
 from lark.lexer import TerminalDef
 
+from rosetta_jit.sha import sha256
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from lark.lark import PostLex
@@ -39,7 +42,22 @@ def parser_of(grammar: Path, *, start: str = "start", postlex: PostLex | None = 
     """
     text = grammar.read_text("utf-8")
     made = _read(grammar.with_suffix(SUFFIX), digest(text, start, positions=positions), postlex)
-    return made or _make(text, start, postlex, positions=positions)
+    return _quick(made or _make(text, start, postlex, positions=positions))
+
+
+def _quick(parser: Lark) -> Lark:
+    """The parser, without work for rules that stand for their one part alone: each level of precedence is one for most expressions.
+
+    Lark would look for positions, and find those that the part has.
+    """
+    callbacks: dict[Rule | str, Callable[[list[Any]], Any]] = cast("Any", parser).parser.parser.parser.callbacks
+    for rule in callbacks:
+        # Terminals are callbacks' names too.
+        if isinstance(rule, Rule) and rule.options.expand1 and rule.alias is None and len(rule.expansion) == 1:
+            (part,) = rule.expansion
+            if not part.is_term and not part.name.startswith("_"):
+                callbacks[rule] = itemgetter(0)
+    return parser
 
 
 def tables_of(grammar: Path, *, start: str = "start", postlex: PostLex | None = None, positions: bool = False) -> str:

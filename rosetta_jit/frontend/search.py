@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import field
-from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.sha import sha256
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:

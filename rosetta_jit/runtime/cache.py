@@ -12,7 +12,6 @@ from __future__ import annotations
 import os
 import warnings
 from functools import lru_cache
-from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -20,6 +19,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import CacheWarning
 from rosetta_jit.runtime.sealed import DamagedError, Entry, seal, unseal
 from rosetta_jit.runtime.stores import FolderStore, MemoryStore, Store, Stored, UntrustedError
+from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,10 +10,11 @@ import json
 import os
 import sys
 from functools import cache
-from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import ctypes
 import sys
-import sysconfig
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -69,7 +68,15 @@ class Context:
 def is_native() -> bool:
     """Whether objects of this Python lie in memory as the entries expect: CPython 3.11 to 3.14, 64 bits, with the interpreter lock."""
     known = sys.implementation.name == "cpython" and (3, 11) <= sys.version_info < (3, 15)
-    return known and sys.maxsize == 2**63 - 1 and not sysconfig.get_config_var("Py_GIL_DISABLED")
+    return known and sys.maxsize == 2**63 - 1 and not _is_free_threaded()
+
+
+def _is_free_threaded() -> bool:
+    if sys.version_info < (3, 13):
+        return False
+    import sysconfig  # slow
+
+    return bool(sysconfig.get_config_var("Py_GIL_DISABLED"))
 
 
 def callable_class(base: type, *, native: bool | None = None) -> type:

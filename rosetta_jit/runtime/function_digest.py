@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import field
-from hashlib import sha256
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, cast
 
 import numpy as np
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.sha import sha256
 
 PLAIN = (type(None), bool, int, float, complex, str, bytes, type(...))
 MAX_FUNCTIONS = 1000

@@ -12,7 +12,6 @@ from importlib.util import find_spec
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.catalogue.images import no_library
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 
@@ -76,6 +75,8 @@ def image_functions() -> Mapping[str, Callable[..., int]]:
         Pillow is not installed.
     """
     if find_spec("PIL") is None:
+        from rosetta_jit.catalogue.images import no_library
+
         raise MappingError((no_library(),))
     images = Images()
     return {

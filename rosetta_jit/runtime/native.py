@@ -8,13 +8,13 @@ from __future__ import annotations
 import struct
 import sys
 from functools import cache
-from hashlib import sha256
 from typing import TYPE_CHECKING
 from weakref import WeakValueDictionary, finalize
 
 from llvmlite import binding
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

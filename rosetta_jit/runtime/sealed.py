@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import json
 import struct
-from hashlib import sha256
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
