@@ -230,7 +230,7 @@ def _of_integers(function: Function, numbers: list[int]) -> int | None:
             return reduce(min, numbers)
         case "max", _:
             return reduce(max, numbers)
-        case ("divide" | "floor_divide" | "modulo"), [_, 0]:
+        case (("divide" | "floor_divide" | "modulo"), [_, 0]):
             return None
         case "divide", [number, divisor]:
             return None if number % divisor else number // divisor
