@@ -9,7 +9,8 @@ import rosetta_jit as rj
 BACKENDS = ["numba", "python", "interpreter"]
 FILES = {
     "w.bottle-schema": '"w" (("options" (:dict :double)) ("inner" (:bottle ("more" (:dict :string)))))',
-    "h.proto": 'syntax = "proto3"; message H { map<string, double> options = 1; message Inner { map<string, string> more = 1; } Inner inner = 2; }',
+    "h.proto": """syntax = "proto3";
+message H { map<string, double> options = 1; message Inner { map<string, string> more = 1; } Inner inner = 2; }""",
     "t/Entries.msg": "t/Entry[] options\n",
     "t/Entry.msg": "string key\nfloat64 value\n",
 }
