@@ -169,10 +169,19 @@ def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
     return error("constant-range", f"{shorten(value)} does not fit {target}", span, "known to be out of range", help_=help_)
 
 
+OF_FLOATS = {
+    "modulo": "of floats, `x % y` is what remains, with the sign of `x`; with that of `y` it is `x - floor(x / y) * y`",
+    "floor_divide": "of floats, it is `floor(x / y)`",
+}
+"""What does for floats what a function does for integers alone."""
+
+
 def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
     """Arithmetic with something that is not a number."""
     convertible = found.startswith(("uint", "float", "enum", "bool"))
     hint = f"convert it first: `int64({_written(span)})`" if convertible else "only numbers can be computed with"
+    if found.startswith("float"):
+        hint = OF_FLOATS.get(operator, hint)
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
 
 

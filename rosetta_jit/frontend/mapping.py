@@ -66,7 +66,8 @@ def parse(source: Source) -> Mapping:
     """
     if len(source.text) > MAX_CHARACTERS:
         raise MappingError((words.file_too_large(source.name, MAX_CHARACTERS),))
-    tokens: list[Token] = list(islice(cast("Any", _grammar()).lex(source.text), MAX_TOKENS + 1))  # lark types it in part only
+    text = " " + source.text[1:] if source.text.startswith("\ufeff") else source.text  # a byte order mark, as some editors write it
+    tokens: list[Token] = list(islice(cast("Any", _grammar()).lex(text), MAX_TOKENS + 1))  # lark types it in part only
     refused = _too_many(tokens, source) or _too_deep(tokens, source)
     if refused is not None:
         raise MappingError((refused,))

@@ -18,7 +18,7 @@ from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.lowering.file_name import misnamed
 from rosetta_jit.lowering.hand_factors import wrong_factors
-from rosetta_jit.lowering.imports import Imports, merge, read_imports
+from rosetta_jit.lowering.imports import Imports, merge, reached, read_imports
 from rosetta_jit.lowering.other_lengths import other_lengths
 from rosetta_jit.lowering.others import read_others
 from rosetta_jit.lowering.reads import left_out
@@ -132,7 +132,7 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
 
 
 def _unused(imported: list[Imported], resolved: Resolved) -> list[Diagnostic]:
-    used = {resolved.holder.root.name, resolved.wire.root.name, *resolved.enums}
+    used = {*reached(resolved.holder.root, resolved.holder.schema), *reached(resolved.wire.root, resolved.wire.schema), *resolved.enums}
     known = {name_parts(name) for name in resolved.holder.schema.types}
     return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
 

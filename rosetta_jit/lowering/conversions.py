@@ -44,8 +44,8 @@ def describe(type_: Type) -> str:
             return name
         case Optional(value):
             return describe(value)
-        case Map():
-            return "a map"
+        case Map(key, value):
+            return f"a map of {describe(key)} to {describe(value)}"
 
 
 def same(left: Type, right: Type) -> bool:
@@ -155,6 +155,8 @@ def word_for(source: Type, target: Type) -> str:
 def other_way(source: Type, target: Type) -> str:
     """What to do where a whole value has another type; empty where nothing helps."""
     match source, target:
+        case ((Map() | Array()), (Map() | Array())) if Map in (type(source), type(target)):
+            return "set the `key` and the `value` of each entry: `.a[].key = .b[].key` and `.a[].value = .b[].value`"
         case Array(), Array():
             return "assign its elements in a loop, and convert each"
         case Struct(), Struct():

@@ -22,7 +22,7 @@ from rosetta_jit.lowering.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Bytes, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Map, Struct, Union
 from rosetta_jit.model.walk import parts
 
 if TYPE_CHECKING:
@@ -83,6 +83,8 @@ class _Expansion:
                 return (rule,)
 
     def assign(self, rule: Assign, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        if rule.via is None and isinstance(rule.value, Path) and self.are_unlike_maps(rule.place, rule.value):
+            return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
         if not any(is_many(part) for side in (rule.place, rule.value) for part in parts(side)):
             return (rule,)
         is_each = any(has_each(part) for side in (rule.place, rule.value) for part in parts(side))
@@ -152,6 +154,16 @@ class _Expansion:
         return lengths.get(target.array) if fixed is None else Literal(fixed)
 
     def fixed_length(self, path: Path) -> int | None:
+        type_ = self.type_of(path)
+        return type_.fixed if isinstance(type_, Array) else None
+
+    def are_unlike_maps(self, one: Path, other: Path) -> bool:
+        """Whether two places are maps of different types, which are copied entry by entry."""
+        types = self.type_of(one), self.type_of(other)
+        return isinstance(types[0], Map) and isinstance(types[1], Map) and types[0] != types[1]
+
+    def type_of(self, path: Path) -> Type | None:
+        """The type of a place without slices; None where there is none, which others report."""
         message = self.scope.messages[path.side]
         type_: Type = message.root
         for step in path.steps:
@@ -165,7 +177,7 @@ class _Expansion:
                     type_ = message.value_type(element_type(type_))
                 case _:
                     return None
-        return type_.fixed if isinstance(type_, Array) else None
+        return type_
 
     def variable(self, level: int) -> str:
         """The name of the loop at a level, which no rule of the mapping uses."""
@@ -173,6 +185,15 @@ class _Expansion:
         while name in self.names:
             name += "_"
         return name
+
+
+def _entries(rule: Assign, value: Path) -> list[Assign]:
+    """Rules for the keys and for the values of a map."""
+    steps = [(Each(rule.span), Member(name, rule.span)) for name in ("key", "value")]
+    return [
+        replace(rule, place=replace(rule.place, steps=(*rule.place.steps, *each)), value=replace(value, steps=(*value.steps, *each)))
+        for each in steps
+    ]
 
 
 def _unless_equal(total: Expr, count: Expr, span: Span | None) -> list[Rule]:

@@ -10,7 +10,7 @@ from rosetta_jit.errors import MappingError, ReportError
 from rosetta_jit.frontend import unit_file
 from rosetta_jit.frontend.search import refusal
 from rosetta_jit.lowering.others import MAPPING_SUFFIX
-from rosetta_jit.model.types import Schema
+from rosetta_jit.model.types import Array, Enum, Map, Optional, Ref, Schema, Struct, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.search import Reading, SearchPath
     from rosetta_jit.frontend.unit_file import UnitFile
     from rosetta_jit.model.mapping import Import, Mapping
-    from rosetta_jit.model.types import Declaration
+    from rosetta_jit.model.types import Declaration, Type
     from rosetta_jit.source import Source
 
 
@@ -93,3 +93,25 @@ def merge(imported: list[Imported], problems: list[Diagnostic]) -> Schema:
                 problems.append(words.conflicting_type(one.statement.span, name, owners[name], one.statement.path))
             owners.setdefault(name, one.statement.path)
     return Schema(types, tuple(dict.fromkeys(source for one in imported for source in one.schema.sources)))
+
+
+def reached(root: Struct, schema: Schema) -> set[str]:
+    """The names of a message's type and of all types within it."""
+    names: set[str] = set()
+    pending: list[Type] = [root]
+    while pending:
+        match pending.pop():
+            case Struct(name, fields) | Union(name, fields) if name not in names:
+                names.add(name)
+                pending += [field.type for field in fields]
+            case Enum(name):
+                names.add(name)
+            case Ref(name) if name not in names:
+                pending.append(schema.types[name])
+            case Array(inner) | Optional(inner):
+                pending.append(inner)
+            case Map(key, value):
+                pending += [key, value]
+            case _:
+                pass
+    return names

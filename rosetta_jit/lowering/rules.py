@@ -20,10 +20,10 @@ from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
 from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
-from rosetta_jit.lowering.supplies import shown
+from rosetta_jit.lowering.supplies import place_of
 from rosetta_jit.lowering.text_values import checked, text_of
 from rosetta_jit.lowering.views import placed
-from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Runner:
 
     def run(self, rules: tuple[typed.Rule, ...], values: Values) -> None:
         for rule in rules:
-            here = replace(values, where=Where(shown(rule))).at_rule(rule.span)
+            here = replace(values, where=place_of(rule, values)).at_rule(rule.span)
             match rule:
                 case typed.Assign(place, value):
                     self.assign(place, value, here, rule.change)

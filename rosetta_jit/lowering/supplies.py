@@ -99,7 +99,7 @@ class Supplies:
                 return None
 
     def here(self, rule: typed.Rule) -> Values:
-        return replace(self.values, where=Where(shown(rule))).at_rule(rule.span)
+        return replace(self.values, where=place_of(rule, self.values)).at_rule(rule.span)
 
 
 def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
@@ -201,11 +201,18 @@ def _indexed(place: typed.Place) -> list[typed.Place]:
     return []
 
 
-def shown(rule: typed.Rule) -> str:
-    """The field that a rule sets, as the path of its errors."""
-    if not isinstance(rule, typed.Assign | typed.SetLength):
-        return ""
-    text = ""
-    for step in rule.place.steps:
-        text += f".{step.field.name}" if isinstance(step, typed.FieldStep) else "[]"
-    return text.replace("{", "{{").replace("}", "}}")
+def place_of(rule: typed.Rule, values: Values) -> Where:
+    """The field that a rule sets, for its errors. Of the indices those are known that are loop variables, or written down."""
+    where = Where()
+    if isinstance(rule, typed.Assign | typed.SetLength):
+        for step in rule.place.steps:
+            match step:
+                case typed.FieldStep(each):
+                    where = where.member(each.name)
+                case typed.IndexStep(typed.Local(name)) if name in values.variables:
+                    where = where.element(values.variables[name])
+                case typed.IndexStep(typed.Const(int(number))):
+                    where = replace(where, path=f"{where.path}[{number}]")
+                case _:
+                    where = replace(where, path=f"{where.path}[]")
+    return where

@@ -212,11 +212,15 @@ def _without(side: Literal["behind", "before"], view: View, known: bytes, values
     """A text without the begin, or the end, that it must have."""
     end, where = ("starts_with", "begin") if side == "behind" else ("ends_with", "end")
     there = has_at(values.writer, end, view, placed(values.writer, Quoted(known)))
-    expect(values, there, "text", f"the text does not {where} as it must")
+
+    def must(condition: Expr) -> None:
+        expect(values, condition, "text", f"the text does not {where} as it must")
+
+    must(there)
     size = index(len(known))
     if side == "behind":
-        return sound(values.writer, replace(view, first=Binary("add", view.first, size)))
-    return sound(values.writer, replace(view, after=Binary("sub", view.after, size)))
+        return sound(values.writer, replace(view, first=Binary("add", view.first, size)), must)
+    return sound(values.writer, replace(view, after=Binary("sub", view.after, size)), must)
 
 
 def _padded(call: typed.TextCall, values: Values) -> View:

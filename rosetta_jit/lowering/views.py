@@ -114,15 +114,21 @@ def kept(writer: Writer, start: Expr, first: Expr, after: Expr, *, valid: bool) 
     return sound(writer, View(lane, first, end, valid))
 
 
-def sound(writer: Writer, view: View) -> View:
-    """A view that lies where it says. That follows from how it was made; written down, each use of it is proven at a glance."""
+def sound(writer: Writer, view: View, expect: Callable[[Expr], None] | None = None) -> View:
+    """A view that lies where it says. That follows from how it was made; written down, each use of it is proven at a glance.
+
+    Where it follows from a check before, ``expect`` is that check: in a loop, this one may be made before it.
+    """
     known = [Compare("le", view.first, view.after)]
     if view.lane is None:
         known += [Compare("ge", view.first, BEGIN), Compare("le", view.after, END)]
     else:
         known += [Compare("ge", view.first, index(0)), Compare("le", view.after, Capacity(view.lane))]
     for each in known:
-        writer.expect(each, "length", MESSAGE, LOST)
+        if expect is None:
+            writer.expect(each, "length", MESSAGE, LOST)
+        else:
+            expect(each)
     return view
 
 

@@ -18,8 +18,20 @@ INITIAL_BYTES = 256
 """What a hidden lane has room for before it grows."""
 
 
+MOST_BYTES = 1 << 62
+"""More than any address space has."""
+
+
 def aligned_bytes(size: int) -> NDArray[np.uint8]:
-    """Bytes that begin at a multiple of `ALIGNMENT`."""
+    """Bytes that begin at a multiple of `ALIGNMENT`.
+
+    Raises
+    ------
+    MemoryError
+        If there is no such memory.
+    """
+    if size > MOST_BYTES:  # numpy says this in other words
+        raise MemoryError(f"no memory has {size} bytes")
     memory = np.empty(size + ALIGNMENT, np.uint8)
     shift = -memory.__array_interface__["data"][0] % ALIGNMENT
     return memory[shift : shift + size]

@@ -154,7 +154,8 @@ class DecoderBase(Program):
             result = run.result_of(lanes)
             if result != run.GROW:
                 raise self._many_error(result, data, places, done, batch)
-            _grow_for_all(batch, done, count)
+            with run.decoding():
+                _grow_for_all(batch, done, count)
             done = self._many(data, places, done, batch)
         lanes.words[VALID] = CLEAN
         lanes.source[0] = buffer if self._loaded.borrow else None
@@ -204,7 +205,8 @@ class DecoderBase(Program):
         data = run.readable(message)
         lanes.words[VALID] = 0
         self._tell(lanes)
-        result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0)
+        with run.decoding():
+            result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0)
         if result < 0:
             raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
         self._count(1)
@@ -260,7 +262,8 @@ class EncoderBase(Program):
         self._count(count)
         offsets = np.zeros(count + 1, np.int64)
         self._all(batch, lambda first: self._sizes(batch, offsets, first))
-        buffer = np.empty(int(offsets[-1]), np.uint8)
+        with run.encoding():
+            buffer = np.empty(int(offsets[-1]), np.uint8)
         self._all(batch, lambda first: self._written(batch, buffer, offsets, first))
         return buffer, offsets
 
@@ -273,7 +276,8 @@ class EncoderBase(Program):
                 sites = self._loaded.sites if -1 - result < len(self._loaded.sites) else self._loaded.size_sites
                 error = run.encode_error(sites[-1 - result], batch.lanes)
                 raise EncodeError(error.kind, f"[{done}]{error.path}", error.detail)
-            run.grow(batch.lanes)
+            with run.encoding():
+                run.grow(batch.lanes)
             done = step(done)
 
     def _sizes(self, batch: Batch, offsets: NDArray[np.int64], first: int) -> int:
@@ -306,7 +310,8 @@ class EncoderBase(Program):
 
     def _measured(self, holder: Holder) -> int:
         assert self._loaded.size is not None
-        size = run.run_growing(self._loaded.size, None, 0, run.ANY_SIZE, holder.lanes_, 0)
+        with run.encoding():
+            size = run.run_growing(self._loaded.size, None, 0, run.ANY_SIZE, holder.lanes_, 0)
         if size < 0:
             raise run.encode_error(self._loaded.size_sites[-1 - size], holder.lanes_)
         return size
@@ -321,7 +326,8 @@ class EncoderBase(Program):
         self._tell(holder.lanes_)
         size = self._measured(holder)
         if len(arguments) == 1:
-            written = np.empty(size, np.uint8)
+            with run.encoding():
+                written = np.empty(size, np.uint8)
             self._write(holder, written, 0, size)
             return written.tobytes()
         target, offset = run.writable(arguments[1]), arguments[2]
@@ -332,7 +338,8 @@ class EncoderBase(Program):
         return self._write(holder, target, offset, offset + size)
 
     def _write(self, holder: Holder, target: NDArray[np.uint8], begin: int, end: int) -> int:
-        result = run.run_growing(self._loaded.kernel, target, begin, end, holder.lanes_, 0)
+        with run.encoding():
+            result = run.run_growing(self._loaded.kernel, target, begin, end, holder.lanes_, 0)
         if result < 0:
             raise run.encode_error(self._loaded.sites[-1 - result], holder.lanes_)
         self._count(1)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -16,7 +17,7 @@ from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW_LANE, GROW_ROWS, RESULT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Generator, Sequence
 
     from numpy.typing import NDArray
 
@@ -64,8 +65,36 @@ def run_growing(run: Run, buffer: NDArray[np.uint8] | None, begin: int, end: int
 
 
 def grow(lanes: Lanes) -> None:
-    """Make the room that the last run lacked."""
+    """Make the room that the last run lacked.
+
+    Raises
+    ------
+    MemoryError
+        If there is none.
+    """
     lanes.grow(*missing(lanes))
+
+
+NO_MEMORY = "it asks for more elements than there is memory for"
+"""A mapping may take a length from what a message says, and not from how much it holds."""
+
+
+@contextmanager
+def decoding() -> Generator[None]:
+    """Around what makes room for a message: none may ask for more than there is."""
+    try:
+        yield
+    except MemoryError as error:
+        raise DecodeError("count", "", NO_MEMORY, 0) from error
+
+
+@contextmanager
+def encoding() -> Generator[None]:
+    """The same of a holder."""
+    try:
+        yield
+    except MemoryError as error:
+        raise EncodeError("count", "", NO_MEMORY) from error
 
 
 def readable(message: object) -> NDArray[np.uint8]:

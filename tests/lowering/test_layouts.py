@@ -210,3 +210,26 @@ def test_what_lies_end_to_end_is_one_copy(tmp_path, value):
     copies = [stmt for stmt, _ in statements(body) if isinstance(stmt, Copy)]
     assert len([stmt for stmt in copies if stmt not in in_loops]) == 1
     assert not any(isinstance(stmt, SetField) for stmt in in_loops)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_array_of_fixed_length(backend):
+    """How many groups there are follows from the type."""
+    files = {
+        "t/W.msg": "float64[4] q\nint32[6] k\n",
+        "t/H.msg": "float64[4] q\nint32[6] k\n",
+        "m.mapping": """import "t/W.msg"
+import "t/H.msg"
+data-holder: t/H
+wire-schema: t/W
+rules:
+  .q <-> permuted(.q, [1, 2, 3, 0])
+  .k <-> planar(.k, 3)
+""",
+    }
+    options = {"schema": files, "encoding": "ros1", "backend": backend}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    write = rj.Encoder.of("t/W", imports=["t/W.msg"], **{**options, "backend": "interpreter"})
+    data = write(write.holder_type.from_dict({"q": [0.0, 1.0, 2.0, 3.0], "k": list(range(6))}))
+    assert decode(data).to_dict() == {"q": [1.0, 2.0, 3.0, 0.0], "k": [0, 3, 1, 4, 2, 5]}
+    assert encode(decode(data)) == data

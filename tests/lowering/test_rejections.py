@@ -117,3 +117,38 @@ def test_mistakes(text, code):
     (problem,) = error.value.diagnostics
     assert problem.code == code
     assert problem.span.source.line_column(problem.span.start)[0] == 6
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+def test_errors_in_loops_name_the_element(backend):
+    """With what was wrong first, also where a check does not change from round to round."""
+    files = {
+        "t/In.msg": "int64[] ks\nstring prefix\n",
+        "t/Out.msg": "int32[] a\nt/Row[] rows\nint64[] n\n",
+        "t/Row.msg": "int32[2] b\n",
+        "m.mapping": """import "t/In.msg"
+import "t/Out.msg"
+data-holder: t/Out
+wire-schema: t/In
+unpack-rules:
+  .a[] = int32(.ks[])
+  len(.rows) = 2
+  for i from 0 to 2
+    .rows[i].b[0] = 0
+    .rows[i].b[1] = int32(.ks[i] * 2)
+  end
+  .n[] = .ks[] + len(behind(.prefix, "/"))
+""",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="ros1", backend=backend)
+    write = rj.Encoder.of("t/In", schema=files, imports=["t/In.msg"], encoding="ros1", backend="interpreter")
+
+    def failure(**values):
+        with pytest.raises(rj.DecodeError) as error:
+            decode(write(write.holder_type.from_dict({"prefix": "/x", **values})))
+        return error.value.kind, error.value.path
+
+    assert failure(ks=[0, 0, 2**31]) == ("range", ".a[2]")
+    assert failure(ks=[0, 2**30]) == ("range", ".rows[1].b[1]")
+    assert failure(ks=[0, 0], prefix="x") == ("text", ".n[0]")
+    assert failure(ks=[0, 0], prefix="") == ("text", ".n[0]")
