@@ -124,7 +124,7 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
 
 def arguments(span: Span | None, function: str, expected: str, found: int) -> Diagnostic:
     """A wrong number of arguments."""
-    return error("arguments", f"`{function}` takes {expected}, not {found}", span, help_="docs/mappings.md shows each function")
+    return error("arguments", f"`{function}` takes {expected}, not {found}", span, help_="docs/language.md shows each function")
 
 
 def conversion_rule(span: Span | None, function: str, allowed: Collection[str]) -> Diagnostic:
@@ -149,6 +149,12 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
         f"this is {source}",
         help_=f"say how: {how.replace('...', _written(span))}",
     )
+
+
+def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
+    """A bool or an enum where a number belongs."""
+    help_ = f"say that its number is meant: {how.replace('...', _written(span))}"
+    return error("lossy-conversion", f"{source} is no {target} by itself", span, f"this is {source}", help_=help_)
 
 
 def _written(span: Span | None) -> str:

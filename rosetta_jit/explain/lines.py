@@ -8,6 +8,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.inverse_texts import as_written
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -83,6 +84,8 @@ class Lines:
                 yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
             case Ignore(place) | Default(place):
                 yield self.line(rule, f"{'ignore' if isinstance(rule, Ignore) else 'default'} {show_expr(place)}", depth)
+            case Reject(text):
+                yield self.line(rule, self.text(rule.span) or f'reject "{text}"', depth)
             case _:
                 yield self.line(rule, self.text(rule.span), depth)
 
@@ -111,7 +114,7 @@ class Lines:
 
 def _expr(value: Expr) -> str:
     """An expression without brackets around the whole."""
-    text = show_expr(value)
+    text = show_expr(as_written(value))
     return text[1:-1] if text.startswith("(") and _closes_last(text) else text
 
 

@@ -76,8 +76,8 @@ def _arrive(scope: Scope, before: Scope, mark: int) -> Arrival:
     distances: dict[str, list[tuple[int, int]]] = {}
     for name, old in before.locals.items():
         new = scope.locals[name]
-        if new is not old and isinstance(new[1], Linear):
-            distances[name] = _distances(scope, new[1], anchors(before, old))
+        if new is not old and _is_number(new):
+            distances[name] = _distances(scope, linear(new[1]), anchors(before, old))
     visible = {name: scope.locals[name] for name in before.locals}
     return Arrival(visible, list(scope.used), scope.facts.rollback(mark), distances)
 
@@ -85,6 +85,11 @@ def _arrive(scope: Scope, before: Scope, mark: int) -> Arrival:
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
     """What the values of a variable are compared with."""
     return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1]), Linear(0)]
+
+
+def _is_number(value: Typed) -> bool:
+    """Whether something is known of an integer; what is known of a bool may look like one."""
+    return value[0] != "bool" and isinstance(value[1], Linear)
 
 
 def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[int, int]]:
@@ -125,12 +130,12 @@ def _met(scope: Scope, before: Scope, arrivals: list[Arrival], name: str) -> Typ
     values = [arrival.locals[name] for arrival in arrivals]
     if all(value[1] == values[0][1] for value in values):
         return values[0]
-    if not isinstance(old[1], Linear):
+    if not _is_number(old):
         return old[0], None
     met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
     marks = anchors(before, old)
     unchanged = any(name not in arrival.distances for arrival in arrivals)
-    own = _distances(scope, old[1], marks) if unchanged else []
+    own = _distances(scope, linear(old[1]), marks) if unchanged else []
     for k, mark in enumerate(marks):
         ways = [arrival.distances.get(name, own)[k] for arrival in arrivals]
         learn_distance(scope, minus(met, mark), min(way[0] for way in ways))

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import field, replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Protocol, assert_never
+from typing import TYPE_CHECKING, Literal, Protocol, assert_never
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Switch, Unary, index, type_of
+from rosetta_jit.kernel.ir import Address, Assign, Binary, Compare, Const, Convert, Expr, If, Local, Scalar, Switch, Unary, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
+from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.rebuild import rebuilt
 from rosetta_jit.lowering.rejections import reject_with
@@ -24,6 +25,7 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from typing import TypeGuard
 
     from rosetta_jit.kernel.ir import Block, Stmt
     from rosetta_jit.model.types import Type
@@ -86,12 +88,15 @@ class Values:
                 return Unary("not", self.of(operand))
             case typed.Unary(_, operand):
                 return self.negative(self.of(operand))
-            case typed.Binary(operator, left, right) if operator in COMPARISONS:
-                return Compare(COMPARISONS[operator], self.of(left), self.of(right))
-            case typed.Binary(operator, left, right):
-                return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+            case typed.Binary():
+                return self.binary(value)
             case typed.Convert(operand, type_, rule):
-                return self.convert(self.of(operand), scalar_type(type_), rule)
+                number = self.of(operand)
+                return (
+                    self.named(number, type_)
+                    if rule == "exact" and is_named(type_, number)
+                    else self.convert(number, scalar_type(type_), rule)
+                )
             case typed.Call(function, arguments, _):
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
@@ -106,6 +111,27 @@ class Values:
                 return asked(value, self)
             case _:
                 assert_never(value)
+
+    def binary(self, value: typed.Binary) -> Expr:
+        match value:
+            case typed.Binary("and" | "or" as operator, left, right):
+                return self.logic(operator, left, right)
+            case typed.Binary(operator, left, right) if operator in COMPARISONS:
+                return Compare(COMPARISONS[operator], self.of(left), self.of(right))
+            case typed.Binary(operator, left, right):
+                return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+
+    def logic(self, operator: Literal["and", "or"], left: typed.Expr, right: typed.Expr) -> Expr:
+        """What the left operand decides alone has no right one: that may need what the left one asks for."""
+        writer, known = self.writer, self.of(left)
+        with forgetting(self.source), writer.nested() as then:
+            found = self.of(right)
+        if not then:
+            return Binary(operator, known, found)
+        decided = writer.var("decided", Const("bool", value=operator == "or"))
+        then.append(Assign(decided.name, found))
+        writer.emit(If(known if operator == "and" else Unary("not", known), block(then)))
+        return decided
 
     def choice(self, choice: typed.Choice) -> Expr:
         """Only the value that is chosen is computed, and only the conditions before it: others may not have one."""
@@ -216,6 +242,16 @@ class Values:
             case _:
                 assert_never(rule)
 
+    def named(self, value: Expr, type_: Bool | Enum) -> Expr:
+        """A number as one of the few that a type has."""
+        known = (0, 1) if isinstance(type_, Bool) else sorted({number for _, number in type_.values})
+        number = self.writer.let("number", value)
+        self.in_range(number, scalar_type(type_))
+        with self.writer.nested() as other:
+            self.expect(Const("bool", value=False), describe(type_))
+        self.writer.emit(Switch(Convert("i64", number), tuple((each, ()) for each in known), block(other)))
+        return self.convert(number, scalar_type(type_), "wrap")
+
     def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
@@ -271,7 +307,7 @@ class Values:
         return Convert(target, value)
 
     def expect(self, condition: Expr, target: str) -> None:
-        self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES[target]}", line=self.line)
+        self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES.get(target, target)}", line=self.line)
 
 
 RANGES: dict[str, tuple[int, int]] = {
@@ -296,6 +332,11 @@ def scalar_type(type_: Type) -> Scalar:
             return scalar_name(scalar_of(type_))
         case _:
             raise AssertionError(type_)
+
+
+def is_named(type_: Type, number: Expr) -> TypeGuard[Bool | Enum]:
+    """Whether a type has some numbers alone, and it is not known which one comes."""
+    return isinstance(type_, Bool | Enum) and not isinstance(number, Const) and type_of(number) != "bool"
 
 
 def constant(number: float | str, scalar: Scalar) -> Const:
