@@ -147,17 +147,21 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
         f"{source} does not always fit {target}",
         span,
         f"this is {source}",
-        help_=f"say how: {how.replace('...', _written(span))}",
+        help_=f"say how: {how.replace('...', written_at(span))}",
     )
 
 
 def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
     """A bool or an enum where a number belongs."""
-    help_ = f"say that its number is meant: {how.replace('...', _written(span))}"
+    help_ = f"say that its number is meant: {how.replace('...', written_at(span))}"
     return error("lossy-conversion", f"{source} is no {target} by itself", span, f"this is {source}", help_=help_)
 
 
-def _written(span: Span | None) -> str:
+CALLED = {"double": "float64", "float": "float32", "int": "int32", "long": "int64", "byte": "uint8", "boolean": "bool", "text": "string"}
+"""What other languages call the types of numbers."""
+
+
+def written_at(span: Span | None) -> str:
     """The text of an expression, where it is short enough to be shown again."""
     text = "" if span is None else span.source.text[span.start : span.end]
     return text if 0 < len(text) <= MAX_QUOTED and text.isprintable() else "..."
@@ -178,13 +182,13 @@ def constant_range(span: Span | None, value: str, target: str) -> Diagnostic:
 def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
     """Arithmetic with something that is not a number."""
     convertible = found.startswith(("uint", "float", "enum", "bool"))
-    hint = f"convert it first: `int64({_written(span)})`" if convertible else "only numbers can be computed with"
+    hint = f"convert it first: `int64({written_at(span)})`" if convertible else "only numbers can be computed with"
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
 
 
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     """A length, index or loop bound that is not an integer."""
-    hint = f"convert it: `int64({_written(span)})`" if found in {"uint64", "float32", "float64"} else ""
+    hint = f"convert it: `int64({written_at(span)})`" if found in {"uint64", "float32", "float64"} else ""
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
@@ -206,7 +210,7 @@ def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
 
 def condition_needed(span: Span | None, found: str) -> Diagnostic:
     """A number or a text where true or false is meant."""
-    hint = "compare it: `" + _written(span) + (' == "..."`' if found == "text" else " != 0`")
+    hint = "compare it: `" + written_at(span) + (' == "..."`' if found == "text" else " != 0`")
     return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_=hint)
 
 

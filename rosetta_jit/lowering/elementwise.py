@@ -22,7 +22,7 @@ from rosetta_jit.lowering.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Bytes, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Struct, Union
 from rosetta_jit.model.walk import parts
 
 if TYPE_CHECKING:
@@ -113,6 +113,8 @@ class _Expansion:
         views = {source: view_of(source) for source in sources}
         place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
         target = view_of(place)
+        if isinstance(self.type_at(target.array), Bool | Enum | Float | Int | Struct):
+            raise LayoutError(words.one_value(rule.place.span))
         given = [times(padding[0], padding[2])] if padding else [view.total for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
         before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
@@ -152,6 +154,10 @@ class _Expansion:
         return lengths.get(target.array) if fixed is None else Literal(fixed)
 
     def fixed_length(self, path: Path) -> int | None:
+        type_ = self.type_at(path)
+        return type_.fixed if isinstance(type_, Array) else None
+
+    def type_at(self, path: Path) -> Type | None:
         message = self.scope.messages[path.side]
         type_: Type = message.root
         for step in path.steps:
@@ -165,7 +171,7 @@ class _Expansion:
                     type_ = message.value_type(element_type(type_))
                 case _:
                     return None
-        return type_.fixed if isinstance(type_, Array) else None
+        return type_
 
     def variable(self, level: int) -> str:
         """The name of the loop at a level, which no rule of the mapping uses."""

@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import texts
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
@@ -304,8 +305,12 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return value
     if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
-    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
-        return value
+    if isinstance(value, TextCall) and is_textual(value.type):
+        if is_textual(target):
+            return value
+        if isinstance(target, String):
+            scope.problems.append(texts.text_length(value.span))
+            return None
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None
     if fitting is None:

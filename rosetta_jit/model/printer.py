@@ -69,7 +69,7 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Binary(operator, left, right):
             return f"({show_expr(left)} {operator} {show_expr(right)})"
         case expr.Call(function, arguments):
-            return f"{function}({', '.join(map(show_expr, arguments))})"
+            return f"{function}({', '.join(map(_argument, arguments))})"
         case expr.Choice() if (subject := _subject(value)) is not None:
             entries = [f"{show_expr(key.right)} = {show_expr(each)}" for key, each in value.cases if isinstance(key, expr.Binary)]
             return f"table({show_expr(subject)}) {{ {', '.join([*entries, _last(value)])} }}"
@@ -86,6 +86,12 @@ def show_expr(value: expr.Expr) -> str:
             return show_expr(held)
         case _:
             assert_never(value)
+
+
+def _argument(value: expr.Expr) -> str:
+    """An expression that stands in brackets already."""
+    text = show_expr(value)
+    return text[1:-1] if isinstance(value, expr.Binary) else text
 
 
 def _literal(value: bool | float | str) -> str:

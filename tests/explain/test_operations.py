@@ -62,7 +62,7 @@ def test_the_table(capsys):
     mappings = ["ros1/image.mapping", "ros1/time_reference.mapping", "yarp/icub/torso_state.mapping"]
     assert main(["operations", *mappings]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[2].split() == ["ros1/image.mapping", "both", "unpack", "both", "-", "both", "unpack", "both", "both", "-"]
+    assert lines[2].split() == ["ros1/image.mapping", "both", "both", "both", "-", "both", "both", "both", "pack", "-"]
     assert lines[5].split() == ["of", "3", "3", "2", "1", "0", "1", "1", "3", "2", "1"]
 
 
