@@ -80,7 +80,7 @@ class MessageError(RosettaError, ValueError):
         super().__init__(self.describe())
 
     def describe(self) -> str:
-        return f"{self.kind}: {self.detail} - at `{self.path or '.'}`"
+        return _placed(f"{self.kind}: {self.detail}", self.path)
 
 
 class DecodeError(MessageError):
@@ -97,7 +97,7 @@ class DecodeError(MessageError):
         super().__init__(kind, path, detail)
 
     def describe(self) -> str:
-        return f"{super().describe()}, byte {self.offset}"
+        return _placed(f"{self.kind}: {self.detail}", self.path, f"byte {self.offset}")
 
 
 class EncodeError(MessageError):
@@ -122,7 +122,13 @@ class ValuesError(RosettaError, ValueError):
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
         self.detail = detail
-        super().__init__(f"{detail} - at `{path or '.'}`")
+        super().__init__(_placed(detail, path))
+
+
+def _placed(text: str, path: str, *more: str) -> str:
+    """A sentence, and where it is about: of the message as a whole there is no path."""
+    places = [*([f"`{path}`"] if path else []), *more]
+    return f"{text} - at {', '.join(places)}" if places else text
 
 
 class InvalidHolder(RosettaError):  # noqa: N818  the holder is what is wrong

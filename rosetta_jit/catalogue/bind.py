@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten, warning
-from rosetta_jit.catalogue.resolve import nearest
+from rosetta_jit.catalogue.resolve import CALLED, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -30,7 +30,8 @@ def unknown(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
 
 def unfit(span: Span | None, name: str, why: str) -> Diagnostic:
     """A value that is not what the parameter was declared to be."""
-    return error("parameter", f"`{shorten(name)}` cannot be this: {why}", span, "declared here")
+    help_ = "give it a value of the type that it is declared with"
+    return error("parameter", f"`{shorten(name)}` cannot be this: {why}", span, "here", help_=help_)
 
 
 def repeated(span: Span | None, name: str) -> Diagnostic:
@@ -42,7 +43,7 @@ def repeated(span: Span | None, name: str) -> Diagnostic:
 
 def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
     """A type that parameters cannot have."""
-    found = nearest(name, known)
+    found = CALLED.get(name) or nearest(name, known)
     notes = (f"types: {', '.join(known)}, and `list of` these",)
     help_ = f"did you mean `{found}`?" if found else ""
     return error("parameter-type", f"a parameter cannot be `{shorten(name)}`", span, notes=notes, help_=help_)
@@ -60,7 +61,8 @@ def unused(span: Span | None, name: str) -> Diagnostic:
 
 def no_such_item(span: Span | None, number: int, count: int) -> Diagnostic:
     """An item that a list does not have."""
-    return error("index-range", f"there is no item {number}", span, f"there are {count} items, counted from 0")
+    help_ = f"{count} item{'' if count == 1 else 's'}, counted from 0"
+    return error("index-range", f"there is no item {number}", span, "beyond the list", help_=f"correct the index: the list has {help_}")
 
 
 def not_a_list(span: Span | None) -> Diagnostic:

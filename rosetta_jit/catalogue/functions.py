@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
-from rosetta_jit.catalogue.resolve import nearest
+from rosetta_jit.catalogue.resolve import CALLED, nearest, written_at
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def no_scalar(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
     """A type that a function cannot take or give."""
-    found = nearest(name, known)
+    found = CALLED.get(name) or nearest(name, known)
     help_ = f"did you mean `{found}`?" if found else f"functions take and give {', '.join(known)}"
     return error("no-scalar", f"`{shorten(name)}` is no type of numbers", span, "not a number's type", help_=help_)
 
@@ -34,7 +34,7 @@ def repeated(span: Span | None, name: str, first: Span | None) -> Diagnostic:
 
 def many_parameters(span: Span | None, most: int) -> Diagnostic:
     """A function of too many numbers."""
-    return error("many-parameters", f"a function takes at most {most} numbers", span)
+    return error("many-parameters", f"a function takes at most {most} numbers", span, help_="make several functions of it")
 
 
 def arguments(span: Span | None, name: str, wanted: int, found: int, declared: Span | None) -> Diagnostic:
@@ -47,7 +47,8 @@ def argument(span: Span | None, name: str, types: tuple[str, str], how: str, dec
     """An argument of another type than the declared one."""
     found, wanted = types
     message = f"`{shorten(name)}` takes {wanted} here, not {found}"
-    return error("argument-type", message, span, f"this is {found}", notes=_declared(declared), help_=how)
+    help_ = f"say how: {how.replace('...', written_at(span))}" if how else ""
+    return error("argument-type", message, span, f"this is {found}", notes=_declared(declared), help_=help_)
 
 
 def not_given(span: Span | None, name: str) -> Diagnostic:

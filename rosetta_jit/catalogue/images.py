@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.resolve import written_at
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ def unknown_format(span: Span | None, found: str | None, known: Sequence[str]) -
 
 def no_integer(span: Span | None, found: str) -> Diagnostic:
     """A width, height, number of channels or quality that is no integer."""
-    return error("integer", f"the size of an image is in integers, not {found}", span, f"this is {found}")
+    help_ = f"convert it: `int64({written_at(span)})`"
+    return error("integer", f"the size of an image is in integers, not {found}", span, f"this is {found}", help_=help_)
 
 
 def no_library() -> Diagnostic:

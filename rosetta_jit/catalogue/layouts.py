@@ -11,6 +11,18 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
+FORMS = {
+    "reversed": "`reversed(array)` or `reversed(array, group)`",
+    "permuted": "`permuted(array, [2, 1, 0])`",
+    "transposed": "`transposed(array, rows, columns)`, and behind it the elements of each",
+    "planar": "`planar(array, channels)`, and behind it the elements of each",
+    "interleaved": "`interleaved(array, channels)`, and behind it the elements of each",
+    "rows": "`rows(array, count, size, stride)`",
+    "padded_rows": "`padded_rows(array, count, size, stride)`",
+}
+"""What a function of arrays takes."""
+
+
 def not_an_array(span: Span | None) -> Diagnostic:
     """A value that is not an array in some order."""
     help_ = "give it a field: `.a`, `.a[0 to 3]`, `reversed(.a)`; to compute with each element, write `[]` behind both arrays"
@@ -36,12 +48,14 @@ def out_of_place(span: Span | None) -> Diagnostic:
 def arguments(span: Span | None, function: str, least: int, most: int, found: int) -> Diagnostic:
     """A wrong number of arguments."""
     expected = str(least) if least == most else f"{least} or {most}"
-    return error("arguments", f"`{function}` takes an array and numbers, {expected} in all, not {found}", span)
+    message = f"`{function}` takes an array and numbers, {expected} in all, not {found}"
+    return error("arguments", message, span, help_=f"write {FORMS[function]}")
 
 
 def no_size(span: Span | None) -> Diagnostic:
     """A count that is none."""
-    return error("layout-size", "a count or a size must be an integer above 0", span)
+    help_ = "write how many elements, rows or channels there are, or a field that says it"
+    return error("layout-size", "a count or a size must be an integer above 0", span, help_=help_)
 
 
 def slice_step(span: Span | None) -> Diagnostic:
@@ -77,7 +91,8 @@ def no_permutation(span: Span | None) -> Diagnostic:
 
 def no_divisor(span: Span | None, total: int, size: int) -> Diagnostic:
     """Groups that do not come out even."""
-    return error("layout-size", f"{total} elements are no groups of {size}", span)
+    help_ = f"take as many elements as groups of {size} have: {total - total % size}" if total >= size else "take more elements"
+    return error("layout-size", f"{total} elements are no groups of {size}", span, help_=help_)
 
 
 def not_flat(span: Span | None, function: str) -> Diagnostic:
@@ -94,7 +109,8 @@ def padded_inside(span: Span | None) -> Diagnostic:
 
 def two_orders(span: Span | None) -> Diagnostic:
     """Several arrays in a rule, one of them in rows or planes."""
-    return error("layout-order", "a rule reads one array in rows or planes, and no other besides", span)
+    help_ = "write two rules: put the array in its order in one, and compute with its elements in another"
+    return error("layout-order", "a rule reads one array in rows or planes, and no other besides", span, help_=help_)
 
 
 def no_count(span: Span | None, path: str) -> Diagnostic:
@@ -113,9 +129,22 @@ def several_layouts(span: Span | None) -> Diagnostic:
     return error("several-layouts", "a rule for one direction takes one case", span, help_=help_)
 
 
-def same_layout(span: Span | None) -> Diagnostic:
-    """Two flags for one order, or one flag twice."""
-    return error("same-layout", "two cases with the same flag, or with the same elements in the same order", span, "one of them is wrong")
+def same_flag(span: Span | None) -> Diagnostic:
+    """One flag for two orders."""
+    return error(
+        "same-layout", "two cases have the same flag", span, "again here", help_="each flag tells one order: correct it, or remove the case"
+    )
+
+
+def same_order(span: Span | None) -> Diagnostic:
+    """Two flags for one order: the pixels of one of them are not as its flag says."""
+    help_ = "write how the elements lie where the holder has this flag: `planar(.a, 3)`, `.a`"
+    return error("same-layout", "two cases have the same elements in the same order", span, "again here", help_=help_)
+
+
+def one_value(span: Span | None) -> Diagnostic:
+    """Many elements for a place that holds one value."""
+    return error("many-elements", "many elements are assigned to one value", span, "no array", help_="take one of them: `.n = .a[0]`")
 
 
 UNKNOWN_FLAG = "the mapping has no layout for this"

@@ -14,8 +14,16 @@ if TYPE_CHECKING:
 
 def no_such_mapping(span: Span | None, name: str, folders: Iterable[str]) -> Diagnostic:
     """A mapping that is on no search path."""
-    note = f"looked beside this file, in {', '.join(folders) or 'no folder'}"
-    return Diagnostic("error", "no-such-mapping", f"there is no mapping `{name}`", span, "here", notes=(note,), help="check its name")
+    note = f"looked {', '.join(['beside this file', *folders])}"
+    return Diagnostic(
+        "error",
+        "no-such-mapping",
+        f"there is no mapping `{name}`",
+        span,
+        "here",
+        notes=(note,),
+        help="correct its name, or add its folder: ROSETTA_JIT_PATH",
+    )
 
 
 def many_mappings(span: Span | None, most: int) -> Diagnostic:

@@ -124,7 +124,7 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
 
 def arguments(span: Span | None, function: str, expected: str, found: int) -> Diagnostic:
     """A wrong number of arguments."""
-    return error("arguments", f"`{function}` takes {expected}, not {found}", span, help_="docs/mappings.md shows each function")
+    return error("arguments", f"`{function}` takes {expected}, not {found}", span, help_="docs/language.md shows each function")
 
 
 def conversion_rule(span: Span | None, function: str, allowed: Collection[str]) -> Diagnostic:
@@ -147,11 +147,21 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
         f"{source} does not always fit {target}",
         span,
         f"this is {source}",
-        help_=f"say how: {how.replace('...', _written(span))}",
+        help_=f"say how: {how.replace('...', written_at(span))}",
     )
 
 
-def _written(span: Span | None) -> str:
+def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
+    """A bool or an enum where a number belongs."""
+    help_ = f"say that its number is meant: {how.replace('...', written_at(span))}"
+    return error("lossy-conversion", f"{source} is no {target} by itself", span, f"this is {source}", help_=help_)
+
+
+CALLED = {"double": "float64", "float": "float32", "int": "int32", "long": "int64", "byte": "uint8", "boolean": "bool", "text": "string"}
+"""What other languages call the types of numbers."""
+
+
+def written_at(span: Span | None) -> str:
     """The text of an expression, where it is short enough to be shown again."""
     text = "" if span is None else span.source.text[span.start : span.end]
     return text if 0 < len(text) <= MAX_QUOTED and text.isprintable() else "..."
@@ -179,7 +189,7 @@ OF_FLOATS = {
 def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
     """Arithmetic with something that is not a number."""
     convertible = found.startswith(("uint", "float", "enum", "bool"))
-    hint = f"convert it first: `int64({_written(span)})`" if convertible else "only numbers can be computed with"
+    hint = f"convert it first: `int64({written_at(span)})`" if convertible else "only numbers can be computed with"
     if found.startswith("float"):
         hint = OF_FLOATS.get(operator, hint)
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
@@ -187,7 +197,7 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
 
 def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
     """A length, index or loop bound that is not an integer."""
-    hint = f"convert it: `int64({_written(span)})`" if found in {"uint64", "float32", "float64"} else ""
+    hint = f"convert it: `int64({written_at(span)})`" if found in {"uint64", "float32", "float64"} else ""
     return error("integer-needed", f"{what} is an integer, not {found}", span, f"this is {found}", help_=hint)
 
 
@@ -214,7 +224,7 @@ def loop_range(span: Span | None, start: int, stop: int) -> Diagnostic:
 
 def condition_needed(span: Span | None, found: str) -> Diagnostic:
     """A number or a text where true or false is meant."""
-    hint = "compare it: `" + _written(span) + (' == "..."`' if found == "text" else " != 0`")
+    hint = "compare it: `" + written_at(span) + (' == "..."`' if found == "text" else " != 0`")
     return error("condition", f"a condition is true or false, this is {found}", span, f"this is {found}", help_=hint)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.resolve import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,14 +26,18 @@ KINDS = {
 
 def listed(kinds: Sequence[str], optional: int) -> str:
     """What a function takes, in words."""
-    needed, extra = kinds[: len(kinds) - optional], kinds[len(kinds) - optional :]
-    return ", ".join(KINDS[kind] for kind in needed) + "".join(f" [, {KINDS[kind]}]" for kind in extra)
+    count = f"{len(kinds) - optional} or {len(kinds)}" if optional else str(len(kinds))
+    return f"{count} value{'' if count == '1' else 's'} ({', '.join(KINDS[kind] for kind in kinds)})"
 
 
 def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
     """A number where a text is meant."""
     is_number = found.startswith(("int", "uint", "float", "bool"))
-    hint = "`text(...)` writes a number, `integer(...)` and `number(...)` read one" if is_number else ""
+    hint = (
+        "`text(...)` writes a number, `integer(...)` and `number(...)` read one"
+        if is_number
+        else "name a text, bytes, or an array of 8-bit integers"
+    )
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
 
 
@@ -44,38 +49,50 @@ def wide_text(span: Span | None) -> Diagnostic:
 def text_and_bytes(span: Span | None) -> Diagnostic:
     """Text and bytes in one."""
     hint = 'say which: `text(..., "utf-8")` or `bytes(..., "utf-8")`'
-    return error("text-and-bytes", "text and bytes cannot be joined", span, "neither text nor bytes", help_=hint)
+    return error("text-and-bytes", "text and bytes cannot be joined", span, "one is text, the other bytes", help_=hint)
 
 
 def quoted_needed(span: Span | None, function: str) -> Diagnostic:
     """A field where only a text that is known will do."""
-    return error("quoted-text", f"`{function}` takes a text in quotes here", span, "not known before messages come")
+    help_ = "write it in quotes: what is looked for must be known when the mapping is compiled"
+    return error("quoted-text", f"`{function}` takes a text in quotes here", span, "not known before messages come", help_=help_)
 
 
 def empty_pattern(span: Span | None, function: str) -> Diagnostic:
     """A search for nothing."""
-    return error("empty-text", f"`{function}` cannot look for an empty text", span, "empty")
+    return error("empty-text", f"`{function}` cannot look for an empty text", span, "empty", help_="write at least one character")
 
 
 def long_quoted(span: Span | None, most: int) -> Diagnostic:
     """A text in quotes that is too long."""
-    return error("long-text", f"a text in quotes has at most {most} bytes here", span)
+    return error("long-text", f"a text in quotes has at most {most} bytes here", span, help_="shorten it")
 
 
 def not_ascii(span: Span | None, function: str) -> Diagnostic:
     """Characters of several bytes where bytes are looked at."""
-    return error("not-ascii", f"`{function}` takes off ASCII characters only", span)
+    help_ = f'leave out the others; `replace(..., {_first_wide(span)}, "")` removes them everywhere'
+    return error("not-ascii", f"`{function}` takes off ASCII characters only", span, help_=help_)
+
+
+def _first_wide(span: Span | None) -> str:
+    """The first character that is no ASCII, in quotes."""
+    text = "" if span is None else span.source.text[span.start : span.end]
+    found = next((char for char in text if not char.isascii() and char.isprintable()), "")
+    return f'"{found}"' if found else "..."
 
 
 def written_size(span: Span | None, function: str, most: int) -> Diagnostic:
     """A size that is not known, or too large."""
-    return error("written-size", f"`{function}` takes a size that is written down, at most {most}", span)
+    help_ = f"write the size as a number: `{function}(..., 16)`"
+    return error("written-size", f"`{function}` takes a size that is written down, at most {most}", span, help_=help_)
 
 
 def unknown_encoding(span: Span | None, found: str | None, known: Sequence[str]) -> Diagnostic:
     """No encoding, or none that is known."""
     message = "an encoding is written in quotes" if found is None else f"there is no encoding `{shorten(found)}`"
-    return error("unknown-encoding", message, span, notes=(f"encodings: {', '.join(known)}",))
+    near = None if found is None else nearest(found, known)
+    help_ = f'did you mean `"{near}"`?' if near else ""
+    return error("unknown-encoding", message, span, notes=(f"encodings: {', '.join(known)}",), help_=help_)
 
 
 def not_written(span: Span | None, found: Sequence[str], most: int) -> Diagnostic:
@@ -86,4 +103,5 @@ def not_written(span: Span | None, found: Sequence[str], most: int) -> Diagnosti
 
 def text_length(span: Span | None) -> Diagnostic:
     """A target that no computed text can be assigned to."""
-    return error("wide-text", "a computed text cannot be assigned to text of 16-bit units", span, "here")
+    help_ = "assign a field as a whole"
+    return error("wide-text", "a computed text cannot be assigned to text of 16-bit units", span, "here", help_=help_)

@@ -69,7 +69,7 @@ def no_numbers(span: Span, found: str) -> Diagnostic:
 
 def not_several(span: Span, found: str) -> Diagnostic:
     """Several units of one value."""
-    return error("unit", f"{shorten(found)} has one unit, not several", span, "this is a second one")
+    return error("unit", f"{shorten(found)} has one unit, not several", span, "this is a second one", help_="leave one of them")
 
 
 def unknown_unit(span: Span, unit: str, known: Collection[str]) -> Diagnostic:
@@ -88,4 +88,6 @@ def contradicts(span: Span, unit: str, other: str, first: Span | None) -> Diagno
 
 def too_many_parts(span: Span, limit: int) -> Diagnostic:
     """A field with too many parts of different units."""
-    return error("too-many-units", f"a field has at most {limit} parts with units of their own", span, "one too many")
+    return error(
+        "too-many-units", f"a field has at most {limit} parts with units of their own", span, "one too many", help_="leave some out"
+    )

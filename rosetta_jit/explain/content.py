@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
-from rosetta_jit.explain.lines import Line, Lines
+from rosetta_jit.explain.lines import MAX_LINES, Line, Lines
 from rosetta_jit.explain.nodes import names_of, nodes
 from rosetta_jit.explain.rows import Row, rows
 from rosetta_jit.frameworks.base import Readers, installed
@@ -121,7 +122,7 @@ def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Check
     if not rules or not derived:
         return None
     source, target = (checked.wire, checked.holder) if name == "unpack" else (checked.holder, checked.wire)
-    lines = tuple(Lines.of(written, name, rules).lines(derived))
+    lines = tuple(islice(Lines.of(written, name, rules, checked.uses).lines(derived), MAX_LINES))
     refusals = [node.text for node in nodes(rules) if isinstance(node, typed.Reject)]
     refusals += [node.reason for node in nodes(rules) if isinstance(node, typed.Choice) and node.otherwise is None]
     losses = tuple(_losses(rules, lines, source, target))

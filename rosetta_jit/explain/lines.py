@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.lowering import typed
-from rosetta_jit.model.expr import Member, Path
+from rosetta_jit.lowering.inverse_texts import as_written
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 
@@ -16,7 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.explain.nodes import Key
-    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.lowering.others import Use
+    from rosetta_jit.lowering.typed import Place, Rule
     from rosetta_jit.model.expr import Expr, Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.mapping import Rule as Untyped
@@ -32,7 +35,8 @@ MAX_LINES = 2_000
 class Line:
     """A rule, or the head of a block of rules.
 
-    ``block`` is where it is written: ``rules`` has been turned into this direction. ``sets`` and ``reads`` are fields, without indices.
+    ``block`` is where it is written: ``rules`` has been turned into this direction; ``file`` is the mapping where that is another one.
+    ``sets`` and ``reads`` are fields, without indices.
     """
 
     text: str
@@ -42,24 +46,60 @@ class Line:
     sets: tuple[Names, ...]
     reads: tuple[Names, ...]
     notes: tuple[Note, ...]
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    """Makes lines of one direction; ``written`` is the mapping as its text says, before anything was derived."""
+    """Makes lines of one direction; ``written`` is the mapping as its text says, before anything was derived.
+
+    ``uses`` are those of other mappings, whose rules stand below the rule that uses them. Within one, ``inside`` is what it is used
+    for, and ``around`` are the files of the mappings around: a mapping is not opened again within itself.
+    """
 
     written: Mapping
     direction: str
     target: Side
     typed: dict[Key, list[Rule]]
+    uses: dict[Key, list[Use]]
+    inside: Use | None = None
+    around: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, written: Mapping, direction: str, rules: tuple[Rule, ...]) -> Lines:
-        return cls(written, direction, "holder" if direction == "unpack" else "wire", by_span(rules))
+    def of(cls, written: Mapping, direction: str, rules: tuple[Rule, ...], uses: tuple[Use, ...] = ()) -> Lines:
+        target: Side = "holder" if direction == "unpack" else "wire"
+        used: dict[Key, list[Use]] = {}
+        for use in uses:
+            if use.place.side == target:
+                used.setdefault(span_of(use.span), []).append(use)
+        return cls(written, direction, target, by_span(rules), used, around=(written.source.name,))
 
     def lines(self, rules: tuple[Untyped, ...], depth: int = 0) -> Iterator[Line]:
         for rule in rules:
             yield from self.rule(rule, depth)
+
+    def of_used(self, rule: Untyped, depth: int) -> Iterator[Line]:
+        """The rules of the mapping by which a rule is made, below it."""
+        for use in self.used(rule)[:1]:
+            yield from self.opened(use, depth)
+
+    def used(self, rule: Untyped) -> list[Use]:
+        """The uses that a rule makes here, one for each place."""
+        found = [use for use in self.uses.get(span_of(rule.span), ()) if self.is_inside(use.place)]
+        return list({names_of(use.place): use for use in reversed(found)}.values())[::-1]
+
+    def opened(self, use: Use, depth: int) -> Iterator[Line]:
+        name = use.mapping.source.name
+        if name in self.around:
+            return
+        unpacks = use.side == "holder"
+        inner = replace(self, written=use.mapping, direction="unpack" if unpacks else "pack", inside=use, around=(*self.around, name))
+        yield from inner.lines((use.mapping.unpack_rules if unpacks else use.mapping.pack_rules) or (), depth + 1)
+
+    def is_inside(self, place: Place) -> bool:
+        """Whether a place is within that which the mapping is used for."""
+        outer = () if self.inside is None else names_of(self.inside.place)
+        return names_of(place)[: len(outer)] == outer
 
     def rule(self, rule: Untyped, depth: int) -> Iterator[Line]:
         match rule:
@@ -75,26 +115,42 @@ class Lines:
                     yield Line("else", depth, None, self.block(rule.span), (), (), ())
                     yield from self.lines(otherwise, depth + 1)
             case SameNames():
-                yield from (self.line(rule, _same_name(each), depth, [each]) for each in self.typed.get(span_of(rule.span), ()))
+                used = self.used(rule)
+                others = [each for each in self.typed.get(span_of(rule.span), ()) if not any(_sets(each, use) for use in used)]
+                yield from (self.line(rule, _same_name(each), depth, [each]) for each in others)
+                for use in used:
+                    yield self.line(rule, _by_type(use), depth, [], use)
+                    yield from self.opened(use, depth)
             case Assign(place, value, via=via):
-                by = "" if via is None else f' via "{via.mapping}"'
+                by = "" if via is None else f' via "{via.mapping}"' + ("" if via.depth is None else f" to depth {via.depth}")
                 yield self.line(rule, self.text(rule.span) or f"{show_expr(place)} = {_expr(value)}{by}", depth)
+                yield from self.of_used(rule, depth)
             case SetLength(place, value):
                 yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
             case Ignore(place) | Default(place):
                 yield self.line(rule, f"{'ignore' if isinstance(rule, Ignore) else 'default'} {show_expr(place)}", depth)
+            case Reject(text):
+                yield self.line(rule, self.text(rule.span) or f'reject "{text}"', depth)
             case _:
                 yield self.line(rule, self.text(rule.span), depth)
 
-    def line(self, rule: Untyped, text: str, depth: int, found: list[Rule] | None = None) -> Line:
-        rules = self.typed.get(span_of(rule.span), []) if found is None else found
+    def line(self, rule: Untyped, text: str, depth: int, found: list[Rule] | None = None, use: Use | None = None) -> Line:
+        rules = [each for each in self.typed.get(span_of(rule.span), []) if self.is_here(each)] if found is None else found
         heads = tuple(_head(each) for each in rules)
         origin: Side = "wire" if self.target == "holder" else "holder"
         number = None if rule.span is None else rule.span.source.line_column(rule.span.start)[0]
         sets, reads = _names(heads, self.target), _names(heads, origin)
-        if not rules and isinstance(rule, Assign):  # the rules of another mapping stand for it, which are written there
-            sets, reads = _members(rule.place), _members(rule.value)
-        return Line(text, depth, number, self.block(rule.span), sets, reads, notes(rules))
+        for each in [use] if use is not None else self.used(rule)[:1]:  # the rules of another mapping stand for it, which are below
+            sets, reads = (names_of(each.place),), (names_of(each.origin),)
+        file = "" if self.inside is None else PurePath(self.written.source.name).name
+        return Line(text, depth, number, self.block(rule.span), sets, reads, notes(rules), file)
+
+    def is_here(self, rule: Rule) -> bool:
+        """Whether a typed rule was made for this use of its mapping."""
+        if self.inside is None:
+            return True
+        found = places(rule, self.target)
+        return any(map(self.is_inside, found)) if found else True
 
     def block(self, span: Span | None) -> str:
         return "rules" if _within(span, self.written.rules) else f"{self.direction}-rules"
@@ -111,7 +167,7 @@ class Lines:
 
 def _expr(value: Expr) -> str:
     """An expression without brackets around the whole."""
-    text = show_expr(value)
+    text = show_expr(as_written(value))
     return text[1:-1] if text.startswith("(") and _closes_last(text) else text
 
 
@@ -146,9 +202,16 @@ def _names(roots: tuple[object, ...], side: Side) -> tuple[Names, ...]:
     return tuple(dict.fromkeys(names_of(place) for place in places(roots, side)))
 
 
-def _members(path: Expr) -> tuple[Names, ...]:
-    """The fields that a path names."""
-    return (tuple(step.name for step in path.steps if isinstance(step, Member)),) if isinstance(path, Path) else ()
+def _sets(rule: Rule, use: Use) -> bool:
+    """Whether a typed rule is one of those that a mapping is used for."""
+    place = names_of(use.place)
+    return any(names[: len(place)] == place for names in _names((rule,), use.place.side))
+
+
+def _by_type(use: Use) -> str:
+    """A field that `same names` maps by another mapping."""
+    target, origin = ("".join(f".{name}" for name in names_of(each)[-1:]) for each in (use.place, use.origin))
+    return f"{target} = {origin}"
 
 
 def _same_name(rule: Rule) -> str:

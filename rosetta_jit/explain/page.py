@@ -98,7 +98,7 @@ def _direction(direction: Direction, explanation: Explanation) -> str:
 def _rule(line: Line) -> str:
     notes = _safe("; ".join(note.text for note in line.notes))
     return (
-        f'<tr><td class="number">{line.line or ""}</td><td class="block">{line.block}</td>'
+        f'<tr><td class="number">{line.line or ""}</td><td class="block">{_safe(line.file) or line.block}</td>'
         f'<td class="rule" style="padding-left: {line.depth * 1.4:.1f}rem">{_safe(line.text)}</td><td class="notes">{notes}</td></tr>'
     )
 

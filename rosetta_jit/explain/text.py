@@ -62,7 +62,7 @@ def _direction(direction: Direction, explanation: Explanation, width: int) -> It
 
 def _rules(lines: tuple[Line, ...], width: int) -> Iterator[str]:
     """A rule: its number in the file, its block, its text; what is done to values below it where it does not fit beside."""
-    heads = columns([(f"  {line.line or ''}", line.block) for line in lines])
+    heads = columns([(f"  {line.line or ''}", shown(line.file) or line.block) for line in lines])
     room = max(map(cells, heads), default=0)
     for line, head in zip(lines, heads, strict=True):
         before, below = padded(head, room + 2) + "  " * line.depth, " " * (room + 4 + 2 * line.depth)

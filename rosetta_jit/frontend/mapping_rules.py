@@ -168,8 +168,6 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
             return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
         case "group":
             return _expr(_trees(tree)[0], context)
-        case "list":
-            return List(tuple(_expr(item, context) for item in _trees(tree)), span)
         case _:
             arguments = tuple(_expr(argument, context) for argument in _trees(tree))
             return Call(str(_tokens(tree)[0]), arguments, span)

@@ -69,15 +69,20 @@ def _arrive(scope: Scope, before: dict[str, Typed], mark: int) -> Arrival:
     """End a path: give up its facts, and keep what a meeting point needs. ``before`` is what it changed."""
     changed = {name: scope.locals[name] for name in before}
     distances: dict[str, list[tuple[int, int]]] = {}
-    for name, (type_, value) in changed.items():
-        if type_ != "bool" and isinstance(value, Linear):
-            distances[name] = _distances(scope, value, anchors(scope, before[name]))
+    for name, now in changed.items():
+        if _is_number(now):
+            distances[name] = _distances(scope, linear(now[1]), anchors(scope, before[name]))
     return Arrival(changed, list(scope.used), scope.facts.rollback(mark), distances)
 
 
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
     """What the values of a variable are compared with."""
     return [linear(scope.locals["begin"][1]), linear(scope.locals["end"][1]), linear(old[1]), Linear(0)]
+
+
+def _is_number(value: Typed) -> bool:
+    """Whether something is known of an integer; what is known of a bool may look like one."""
+    return value[0] != "bool" and isinstance(value[1], Linear)
 
 
 def _distances(scope: Scope, value: Linear, marks: list[Linear]) -> list[tuple[int, int]]:
@@ -118,12 +123,12 @@ def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
     values = [arrival.changed.get(name, old) for arrival in arrivals]
     if all(value[1] == values[0][1] for value in values):
         return values[0]
-    if old[0] == "bool" or not isinstance(old[1], Linear):  # what is known of a bool can be a sum too, which says something else
+    if not _is_number(old):
         return old[0], None
     met = variable(scope, old[0], relative=all(from_begin(linear(value[1])) for value in values))
     marks = anchors(scope, old)
     unchanged = any(name not in arrival.distances for arrival in arrivals)
-    own = _distances(scope, old[1], marks) if unchanged else []
+    own = _distances(scope, linear(old[1]), marks) if unchanged else []
     for k, mark in enumerate(marks):
         ways = [arrival.distances.get(name, own)[k] for arrival in arrivals]
         learn_distance(scope, minus(met, mark), min(way[0] for way in ways))

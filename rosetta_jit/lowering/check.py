@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.search import SearchPath
     from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.imports import Imported
+    from rosetta_jit.lowering.others import Use
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.mapping import Mapping
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 class Checked:
     """A mapping without errors. None as rules means that the direction has no block, ``()`` that it is empty.
 
-    ``holder`` and ``wire`` are the message types with the schema of all imports.
+    ``holder`` and ``wire`` are the message types with the schema of all imports; ``uses`` are those of other mappings.
     """
 
     mapping: Mapping
@@ -53,6 +54,7 @@ class Checked:
     pack: tuple[Rule, ...] | None
     functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
+    uses: tuple[Use, ...] = ()
 
 
 def check(
@@ -101,7 +103,8 @@ def check(
         raise MappingError(_sorted(problems))
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, dict(resolved.functions), _sorted(problems))
+    functions, uses = dict(resolved.functions), tuple(others.uses)
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(problems), uses)
 
 
 def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Diagnostic]:

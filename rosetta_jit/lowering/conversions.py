@@ -138,7 +138,9 @@ def word_for(source: Type, target: Type) -> str:
     """How a mapping says that a value may change; empty where no word can say it."""
     name = describe(target)
     match source, target:
-        case Int() | Bool() | Enum(), Int():
+        case Bool() | Enum(), Int():
+            return f"`{name}(...)`"
+        case Int(), Int():
             return f"`{name}(...)` refuses what does not fit; `{name}(..., saturate)` and `{name}(..., wrap)` do not"
         case Float(), Int():
             return f"`{name}(...)` refuses fractions; `{name}(..., round)`, `{name}(..., truncate)` and `{name}(..., saturate)` do not"

@@ -22,7 +22,7 @@ from rosetta_jit.lowering.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Bytes, Map, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Struct, Union
 from rosetta_jit.model.walk import parts
 
 if TYPE_CHECKING:
@@ -115,6 +115,8 @@ class _Expansion:
         views = {source: view_of(source) for source in sources}
         place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
         target = view_of(place)
+        if isinstance(self.type_of(target.array), Bool | Enum | Float | Int | Struct):
+            raise LayoutError(words.one_value(rule.place.span))
         given = [times(padding[0], padding[2])] if padding else [view.total for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
         before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]

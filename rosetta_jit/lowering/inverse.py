@@ -24,9 +24,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.calls import FUNCTIONS
 from rosetta_jit.lowering.folding import folded, is_constant
 from rosetta_jit.lowering.inverse_texts import opposite, without
 from rosetta_jit.lowering.layouts import ARGUMENTS, put_back
+from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS
+from rosetta_jit.lowering.type_texts import NAMES
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Path, Unary
 from rosetta_jit.model.walk import rebuilt, side_of
 
@@ -37,6 +40,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.walk import Field
 
 CONVERSIONS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float32", "float64", "bool")
+BUILT_IN = frozenset((*FUNCTIONS, *NAMES, *IMAGE_FUNCTIONS, "has", "len"))
 OPPOSITE = {"radians": "degrees", "degrees": "radians"}
 
 
@@ -104,8 +108,10 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return array, put_back(expr, value)
         case Call() if (found := opposite(expr, value)) is not None:
             return found
-        case Call(function):
+        case Call(function) if function in BUILT_IN:
             raise NoInverseError(expr, f"`{function}` gives the same for several values")
+        case Call(function):
+            raise NoInverseError(expr, f"nothing says what the opposite of `{function}` is")
         case Choice():
             return _table(expr, value)
         case _:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.model.expr import Binary, Call, Literal, Unary
 from rosetta_jit.model.types import Array, Bytes, Float
+from rosetta_jit.model.walk import rebuilt
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 
 WRITTEN, FILLED = "(written)", "(filled)"
 """The number that a text spells; a text as large as its field. No mapping can write such names."""
+
+SHOWN = {WRITTEN: "number", FILLED: "padded"}
+"""What they are called where the type of the field does not matter."""
 
 
 def opposite(call: Call, value: Expr) -> tuple[Expr, Expr] | None:
@@ -74,6 +78,16 @@ def without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:
 def for_comparison(call: Call) -> Call:
     """A call that was turned round where no field asks for a type: what it is compared with may be any number."""
     return Call("number", call.arguments, call.span) if call.function == WRITTEN else call
+
+
+def as_written(expr: Expr) -> Expr:
+    """An expression that was turned round, as a person reads it."""
+    inner = rebuilt(expr, as_written)
+    match inner:
+        case Call(name, arguments, span) if name in SHOWN:
+            return Call(SHOWN[name], arguments, span)
+        case _:
+            return inner
 
 
 def for_type(expr: Expr, type_: Type) -> Expr:

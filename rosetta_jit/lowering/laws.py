@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.chain import Lost, Rounding, come_back
+from rosetta_jit.lowering.chain import UNSHOWN, Lost, Rounding, come_back
 from rosetta_jit.lowering.matching import reads_other, same_number
+from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
-from rosetta_jit.lowering.resolve import field_names
 from rosetta_jit.lowering.roundtrip import Result, Trip, UnfollowedError, Way, ways
 from rosetta_jit.lowering.typed import Access, Const, FieldStep, For, IndexStep, LenOf, Local, When
 
@@ -159,7 +159,8 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
         case Local("?"):
             return Lost("it cannot be shown by which block of a `when` it comes back")
         case Access(other) | LenOf(other) if other.side != place.side:
-            return None if value in trip.equal_to(goal) else Lost("nothing of it is kept")
+            is_element = any(isinstance(step, IndexStep) for step in other.steps)
+            return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
         case _ if value == goal or any(value == other for other in trip.equal_to(goal)):
             return None
         case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
+from rosetta_jit.lowering.folding import folded as literal
 from rosetta_jit.model.expr import Binary, Call, Each, Len, List, Literal, Path, Pick, Slice
 
 if TYPE_CHECKING:
@@ -121,6 +122,7 @@ def _sliced(view: View, slice_: Slice) -> View:
     (axis,) = view.axes
     if axis.listed is not None:
         raise LayoutError(words.of_a_list(slice_.span))
+    slice_ = replace(slice_, step=literal(slice_.step))
     stop = axis.count if slice_.stop is None else slice_.stop
     if isinstance(slice_.step, Literal) and not (isinstance(slice_.step.value, int) and slice_.step.value > 0):
         raise LayoutError(words.slice_step(slice_.step.span))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.expressions import type_index
-from rosetta_jit.lowering.others import MAX_USES
+from rosetta_jit.lowering.others import MAX_USES, Use
 from rosetta_jit.lowering.scope import Broken, Message, Scope, resolve_path
 from rosetta_jit.lowering.typed import (
     BOOL,
@@ -66,7 +66,7 @@ def nest(rule: model.Assign, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...
         return None
     if target is None or source is None:
         scope.problems.append(words.no_messages(rule.span, describe(origin.type), describe(place.type)))
-        return ()
+        return (Default(place, rule.span), Ignore(origin, rule.span))
     found = _chosen(rule, target, source, scope)
     return None if found is None and rule.via is None else _used(found, rule, place, origin, scope, rules_of)
 
@@ -124,7 +124,7 @@ def _used(
         return (Default(place, rule.span), Ignore(origin, rule.span))
     mapping, side = found
     others = scope.others
-    others.uses.append(mapping.source.name)
+    others.uses.append(Use(mapping, side, place, origin, rule.span))
     depth = others.using.count(mapping.source.name)
     most = None if rule.via is None else rule.via.depth
     if depth and (most is None or most > MAX_DEPTH):

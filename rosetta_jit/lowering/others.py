@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frontend.search import Reading, SearchPath
+    from rosetta_jit.lowering.typed import Place
     from rosetta_jit.model import mapping as model
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Rule, Via
     from rosetta_jit.source import Source, Span
 
@@ -33,16 +35,27 @@ MAX_USES = 1000
 
 
 @dataclass(frozen=True, slots=True)
+class Use:
+    """That a rule is made by a mapping whose ``side`` is what the rule sets: at ``place``, from ``origin``."""
+
+    mapping: model.Mapping
+    side: Side
+    place: Place
+    origin: Place
+    span: Span | None
+
+
+@dataclass(frozen=True, slots=True)
 class Others:
     """The mappings that can be used, by the file that names them and the name there; and what is being used at the moment.
 
-    ``using`` are the files of the mappings around, from the outermost on; ``uses`` counts all that were made.
+    ``using`` are the files of the mappings around, from the outermost on; ``uses`` are all that were made.
     """
 
     found: Mapping[tuple[str, str], model.Mapping]
     imported: Mapping[str, tuple[str, ...]]
     using: tuple[str, ...]
-    uses: list[str] = field(default_factory=list[str])
+    uses: list[Use] = field(default_factory=list["Use"])
 
     def named(self, via: Via) -> model.Mapping | None:
         """The mapping of a ``via``; None where it could not be read, which is reported."""

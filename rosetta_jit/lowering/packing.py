@@ -162,8 +162,8 @@ class Packing:
 
     def arranged(self, rule: Arranged, loops: Loops) -> tuple[Rule, ...]:
         """The flag says which of the layouts the holder has."""
-        if any(len(set(column)) < len(rule.cases) for column in zip(*rule.cases, strict=True)):
-            self.problems.append(layouts.same_layout(rule.span))
+        for column, repeated in zip(zip(*rule.cases, strict=True), (layouts.same_flag, layouts.same_order), strict=True):
+            self.problems.extend(repeated(each.span) for number, each in enumerate(column) if each in column[:number])
         rest: tuple[Rule, ...] = (Reject(layouts.UNKNOWN_FLAG, rule.span),)
         for flag, value in reversed(rule.cases):
             inner = replace(self, known=self.known.inside())

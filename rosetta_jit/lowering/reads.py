@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.resolve import field_names, places_in
+from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.model.types import Array, Optional, Struct, Union
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import texts
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
@@ -20,8 +21,10 @@ from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.functions import signatures
 from rosetta_jit.lowering.held import fitted
 from rosetta_jit.lowering.inverse_texts import for_type
+from rosetta_jit.lowering.lengths_first import lengths_first
 from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
+from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.type_texts import is_textual, type_pieces
@@ -32,7 +35,6 @@ from rosetta_jit.lowering.typed import (
     Const,
     Convert,
     Default,
-    FieldStep,
     For,
     Ignore,
     ImageCall,
@@ -47,7 +49,7 @@ from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
-from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, String, Struct, Union, same_name
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -145,7 +147,7 @@ class _Block:
         found = tuple(rule for rule in typed if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
         scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
-        return found if not same else (*found, *self.same_names(same[0], found, scope))
+        return lengths_first(found if not same else (*found, *self.same_names(same[0], found, scope)))
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
         """Rules for the fields of the message that no other rule sets, and that the other side has too."""
@@ -274,30 +276,6 @@ def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | N
     return TypedRules(typed, tuple(block.broken))
 
 
-def field_names(place: Place) -> tuple[str, ...]:
-    """The fields on the way to a place, without indices."""
-    return tuple(step.field.name for step in place.steps if isinstance(step, FieldStep))
-
-
-def places_in(rules: tuple[Rule, ...]) -> list[Place]:
-    """All places that rules set, those within blocks included."""
-    return [place for rule in rules for place in _places(rule)]
-
-
-def _places(rule: Rule) -> list[Place]:
-    match rule:
-        case Assign(place) | SetLength(place) | Default(place):
-            return [place]
-        case For():
-            return places_in(rule.body)
-        case When():
-            return places_in((*rule.then, *rule.otherwise))
-        case Reject() | Ignore():
-            return []
-        case _:
-            assert_never(rule)
-
-
 def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
     there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in ("wire" if target == "holder" else "holder", target))
     return model.Assign(here, there, span)
@@ -328,8 +306,12 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return value
     if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
-    if isinstance(value, TextCall) and is_textual(value.type) and is_textual(target):
-        return value
+    if isinstance(value, TextCall) and is_textual(value.type):
+        if is_textual(target):
+            return value
+        if isinstance(target, String):
+            scope.problems.append(texts.text_length(value.span))
+            return None
     scalar = not isinstance(target, Array | Struct | Union | Map)
     fitting = convert(value, target) if scalar else None
     if fitting is None:
@@ -390,6 +372,8 @@ def _mismatch(value: Expr, target: Type) -> Diagnostic:
             return words.constant_range(value.span, str(number), aim)
         case Const(value=float(number), type=Float()), Float():
             return words.constant_range(value.span, repr(number), aim)
+        case _ if isinstance(value.type, Bool | Enum) and isinstance(target, Int):
+            return words.no_number(value.span, source, aim, word_for(value.type, target))
         case _:
             how = word_for(value.type, target)
             return (

@@ -13,8 +13,8 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
 from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify
+from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
-from rosetta_jit.lowering.resolve import field_names
 from rosetta_jit.lowering.typed import (
     BOOL,
     Access,

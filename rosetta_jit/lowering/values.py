@@ -32,6 +32,7 @@ from rosetta_jit.kernel.shape import statements
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
 from rosetta_jit.lowering.asked import asked
+from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.number_bytes import of_bytes
 from rosetta_jit.lowering.rebuild import rebuilt
@@ -45,6 +46,7 @@ from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from typing import TypeGuard
 
     from rosetta_jit.kernel.ir import Block, Stmt
     from rosetta_jit.model.expr import Operator
@@ -111,7 +113,12 @@ class Values:
             case typed.Binary(operator, left, right):
                 return self.operation(operator, left, right)
             case typed.Convert(operand, type_, rule):
-                return self.convert(self.of(operand), scalar_type(type_), rule)
+                number = self.of(operand)
+                return (
+                    self.named(number, type_)
+                    if rule == "exact" and is_named(type_, number)
+                    else self.convert(number, scalar_type(type_), rule)
+                )
             case typed.Call(function, arguments, _):
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):
@@ -256,6 +263,16 @@ class Values:
             case _:
                 assert_never(rule)
 
+    def named(self, value: Expr, type_: Bool | Enum) -> Expr:
+        """A number as one of the few that a type has."""
+        known = (0, 1) if isinstance(type_, Bool) else sorted({number for _, number in type_.values})
+        number = self.writer.let("number", value)
+        self.in_range(number, scalar_type(type_))
+        with self.writer.nested() as other:
+            self.expect(Const("bool", value=False), describe(type_))
+        self.writer.emit(Switch(Convert("i64", number), tuple((each, ()) for each in known), block(other)))
+        return self.convert(number, scalar_type(type_), "wrap")
+
     def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
         source = type_of(value)
         local = self.writer.let("number", value)
@@ -311,7 +328,7 @@ class Values:
         return Convert(target, value)
 
     def expect(self, condition: Expr, target: str) -> None:
-        self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES[target]}", line=self.line)
+        self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES.get(target, target)}", line=self.line)
 
 
 FAILING = (Require, Expect, HostCall, Call)
@@ -339,6 +356,11 @@ def scalar_type(type_: Type) -> Scalar:
             return scalar_name(scalar_of(type_))
         case _:
             raise AssertionError(type_)
+
+
+def is_named(type_: Type, number: Expr) -> TypeGuard[Bool | Enum]:
+    """Whether a type has some numbers alone, and it is not known which one comes."""
+    return isinstance(type_, Bool | Enum) and not isinstance(number, Const) and type_of(number) != "bool"
 
 
 def constant(number: float | str, scalar: Scalar) -> Const:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.lowering.polynomial import (
     Polynomial,
     TooComplexError,
@@ -19,7 +20,6 @@ from rosetta_jit.lowering.polynomial import (
     substitute,
     subtract,
 )
-from rosetta_jit.lowering.resolve import field_names, places_in
 from rosetta_jit.lowering.tiling import Run
 from rosetta_jit.lowering.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
 

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Declaration, Field, Schema, Type
 
 
+ESCAPED = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"})
+"""Characters that a text in quotes writes otherwise."""
+
+
 def show_types(schema: Schema, structs: Iterable[Struct]) -> str:
     """The structs, and every declaration that they reach, each once."""
     shown: dict[str, str] = {}
@@ -53,7 +57,7 @@ def show_expr(value: expr.Expr) -> str:
     """An expression, with all parentheses."""
     match value:
         case expr.Literal(literal):
-            return repr(literal)
+            return _literal(literal)
         case expr.Name(name):
             return name
         case expr.Path(_, steps):
@@ -61,16 +65,16 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Len(path):
             return f"len({show_expr(path)})"
         case expr.Unary(operator, operand):
-            return f"{operator}{show_expr(operand)}"
+            return f"{operator}{' ' if operator == 'not' else ''}{show_expr(operand)}"
         case expr.Binary(operator, left, right):
             return f"({show_expr(left)} {operator} {show_expr(right)})"
         case expr.Call(function, arguments):
-            return f"{function}({', '.join(map(show_expr, arguments))})"
+            return f"{function}({', '.join(map(_argument, arguments))})"
         case expr.Choice() if (subject := _subject(value)) is not None:
             entries = [f"{show_expr(key.right)} = {show_expr(each)}" for key, each in value.cases if isinstance(key, expr.Binary)]
             return f"table({show_expr(subject)}) {{ {', '.join([*entries, _last(value)])} }}"
         case expr.Choice(cases, otherwise, reason):
-            last = f"reject {reason!r}" if otherwise is None else show_expr(otherwise)
+            last = f"reject {_literal(reason)}" if otherwise is None else show_expr(otherwise)
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
         case expr.List(items):
             return f"[{', '.join(map(show_expr, items))}]"
@@ -82,6 +86,23 @@ def show_expr(value: expr.Expr) -> str:
             return show_expr(held)
         case _:
             assert_never(value)
+
+
+def _argument(value: expr.Expr) -> str:
+    """An expression that stands in brackets already."""
+    text = show_expr(value)
+    return text[1:-1] if isinstance(value, expr.Binary) else text
+
+
+def _literal(value: bool | float | str) -> str:
+    """A constant as mappings write it."""
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return f'"{value.translate(ESCAPED)}"'
+        case _:
+            return repr(value)
 
 
 def _step(step: expr.Step) -> str:
@@ -109,7 +130,7 @@ def _subject(choice: expr.Choice) -> expr.Expr | None:
 
 def _last(choice: expr.Choice) -> str:
     """How a table ends."""
-    return f"otherwise {f'reject {choice.reason!r}' if choice.otherwise is None else show_expr(choice.otherwise)}"
+    return f"otherwise {f'reject {_literal(choice.reason)}' if choice.otherwise is None else show_expr(choice.otherwise)}"
 
 
 def show_way(path: tuple[str | int | None, ...]) -> str:

@@ -148,3 +148,87 @@ def test_shipped_mappings(mapping_):
     assert [each.name for each in found.directions] == ["unpack", "pack"]
     assert all(not isinstance(each.cost, str) for each in found.directions)
     assert found.warnings == ()
+
+
+GEO = {
+    "geo.proto": """syntax = "proto3"; package geo;
+message Point { float x = 1; string label = 2; }
+message Path { Point start = 1; Point end = 2; repeated Point between = 3; string name = 4; }
+message Tree { int32 value = 1; repeated Tree kids = 2; }
+message Wide { int64 number = 1; repeated Wide below = 2; }""",
+    "lab/msg/Spot.msg": "float64 east\nstring label\n",
+    "lab/msg/Track.msg": "Spot start\nSpot end\nSpot[] between\nstring name\n",
+    "spot.mapping": """import "geo.proto"
+import "lab/msg/Spot.msg"
+data-holder: geo.Point
+wire-schema: lab/msg/Spot
+rules:
+  .x <-> float32(.east * 1000)
+  .label <-> .label
+""",
+    "track.mapping": """import "geo.proto"
+import "lab/msg/Track.msg"
+import "spot.mapping"
+data-holder: geo.Path
+wire-schema: lab/msg/Track
+rules:
+  .start <-> .end via "spot.mapping"
+  .end <-> .start
+  same names
+""",
+    "tree.mapping": """import "geo.proto"
+data-holder: geo.Tree
+wire-schema: geo.Wide
+rules:
+  .value <-> int32(.number)
+  .kids <-> .below via "tree.mapping" to depth 2
+""",
+}
+
+
+@pytest.fixture
+def nested(tmp_path, monkeypatch):
+    for name, content in GEO.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(content)
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.usefixtures("nested")
+def test_rules_of_other_mappings_stand_below_those_that_use_them():
+    unpack, pack = explanation("track.mapping").directions
+    inner = [(1, ".x = float32(.east * 1000)", "spot.mapping"), (1, ".label = .label", "spot.mapping")]
+    assert [(line.depth, line.text, line.file) for line in unpack.lines] == [
+        (0, '.start = .end via "spot.mapping"', ""),
+        *inner,
+        (0, ".end = .start", ""),
+        *inner,
+        (0, ".name = .name", ""),
+        (0, ".between = .between", ""),
+        *inner,
+    ]
+    assert [line.text for line in pack.lines if line.file] == [".east = divide(.x, 1000)", ".label = .label"] * 3
+    assert (unpack.lines[0].sets, unpack.lines[0].reads) == ((("start",),), (("end",),))
+    assert [(line.sets, line.reads) for line in unpack.lines if line.text.startswith(".x")] == [
+        ((("start", "x"),), (("end", "east"),)),
+        ((("end", "x"),), (("start", "east"),)),
+        ((("between", "x"),), (("between", "east"),)),
+    ]
+    assert (".start.x, .end.x, .between.x", True) in {(each.what, each.meant) for each in unpack.losses}
+
+
+@pytest.mark.usefixtures("nested")
+def test_a_mapping_is_not_opened_within_itself():
+    unpack, pack = explanation("tree.mapping").directions
+    assert [line.text for line in unpack.lines] == [".value = int32(.number)", '.kids = .below via "tree.mapping" to depth 2']
+    assert [line.text for line in pack.lines] == [".number = .value", '.below = .kids via "tree.mapping" to depth 2']
+
+
+@pytest.mark.usefixtures("nested")
+def test_other_mappings_as_text_page_and_json(capsys):
+    found = explanation("track.mapping")
+    assert "\n  6  spot.mapping    .x = float32(.east * 1000)" in as_text(found)
+    assert '<td class="block">spot.mapping</td><td class="rule" style="padding-left: 1.4rem">.x = float32(.east * 1000)' in as_page(found)
+    assert main(["explain", "--json", "track.mapping"]) == 0
+    lines = json.loads(capsys.readouterr().out)["directions"][0]["lines"]
+    assert [line["file"] for line in lines[:4]] == ["", "spot.mapping", "spot.mapping", ""]

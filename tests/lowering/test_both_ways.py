@@ -133,7 +133,7 @@ def test_a_flag_of_the_wire(backend):
     assert made.pack(unit="radian", n=4) == {"flag": False, "n": -4}
     error = made.refused(unit="metre", n=4)
     assert error.kind == "rejected"
-    assert "is not `'radian'`, as the mapping says" in str(error)
+    assert 'is not `"radian"`, as the mapping says' in str(error)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

@@ -8,10 +8,17 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosetta_jit.catalogue import bind as bind_words
 from rosetta_jit.catalogue import check as check_words
 from rosetta_jit.catalogue import derive as derive_words
+from rosetta_jit.catalogue import functions as functions_words
+from rosetta_jit.catalogue import images as images_words
+from rosetta_jit.catalogue import layouts as layouts_words
 from rosetta_jit.catalogue import mapping as mapping_words
+from rosetta_jit.catalogue import nested as nested_words
 from rosetta_jit.catalogue import resolve as resolve_words
+from rosetta_jit.catalogue import texts as texts_words
+from rosetta_jit.catalogue import unit_files as unit_files_words
 from rosetta_jit.catalogue import units as units_words
 from rosetta_jit.cells import cells
 from rosetta_jit.diagnostics import MAX_LINE, render, render_all, to_json
@@ -32,8 +39,24 @@ if TYPE_CHECKING:
 FOLDER = GOLDEN / "mapping"
 WRONG = sorted(FOLDER.glob("*.mapping"))
 FRONT_ENDS = Readers({name: installed()[name] for name in ("yarp", "protobuf", "lcm")})
-FILES = {path.name: path.read_text() for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".lcm", ".txt", ".units"}}
-CATALOGUE = (mapping_words, resolve_words, check_words, derive_words, units_words)
+SCHEMAS = [path for path in FOLDER.iterdir() if path.suffix in {".proto", ".bottle-schema", ".lcm", ".txt", ".units"}]
+FILES = {path.name: path.read_text() for path in (*SCHEMAS, *(FOLDER / "used").iterdir())}
+"""What the wrong mappings import, and the mappings that they use."""
+
+CATALOGUE = (
+    mapping_words,
+    resolve_words,
+    check_words,
+    derive_words,
+    units_words,
+    layouts_words,
+    texts_words,
+    nested_words,
+    functions_words,
+    images_words,
+    unit_files_words,
+    bind_words,
+)
 MAKERS = ("error", "warning", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
 """What takes files: tests/frontend/test_search.py has it."""
@@ -44,7 +67,16 @@ OF_BOTH_WAYS = ("alike_blocks", "too_complex", "too_many_blocks", "unknown_condi
 OF_PIECES = ("many_pieces", "lone_brace", "no_value")
 """Values in the texts of rejections, and parameters: test_rejections.py and test_parameters.py have it."""
 
-ELSEWHERE = (*OF_FILES, *OF_BOTH_WAYS, *OF_PIECES)
+OF_PROGRAMS = ("missing", "unknown", "needless", "not_given", "not_declared", "does_not_compile", "no_compiler", "no_library")
+"""What is given to a program, and what is not installed: test_parameters.py, test_functions.py and test_compressed.py have it."""
+
+OF_SIZES = ("many_mappings", "many_uses", "many_items", "long_list", "mixed_list", "too_many", "too_many_parts")
+"""More than is compiled: `test_what_is_too_large` and test_parameters.py have it."""
+
+OF_WIDE_TEXTS = ("wide_text", "text_length")
+"""Text of 16-bit units, which the frameworks here lack: `test_wide_texts` has it."""
+
+ELSEWHERE = (*OF_FILES, *OF_BOTH_WAYS, *OF_PIECES, *OF_PROGRAMS, *OF_SIZES, *OF_WIDE_TEXTS)
 
 
 def diagnostics(path: Path) -> tuple[Diagnostic, ...]:
@@ -102,6 +134,42 @@ def test_every_report_has_a_wrong_mapping(monkeypatch: pytest.MonkeyPatch) -> No
     for path in WRONG:
         diagnostics(path)
     assert {(module.__name__, name) for module, name, _ in functions} - made == set()
+
+
+def reports(files: dict[str, str], frameworks: tuple[str, ...] = ("yarp", "protobuf")) -> list[str]:
+    """The codes of what is wrong with `m.mapping` among some files."""
+    front_ends = Readers({name: installed()[name] for name in frameworks})
+    with pytest.raises(MappingError) as error:
+        check(parse(Source("m.mapping", files["m.mapping"])), front_ends, SearchPath(files=tuple(files.items())))
+    return [each.code for each in error.value.diagnostics if each.severity == "error"]
+
+
+def test_what_is_too_large() -> None:
+    schema = """syntax = "proto2"; package t; message A { optional A x = 1; optional A y = 2; optional int32 n = 3; }
+message B { optional B x = 1; optional B y = 2; optional int32 n = 3; }"""
+    head = 'import "t.proto"\ndata-holder: t.A\nwire-schema: t.B\nunpack-rules:\n  .n = .n\n'
+    ended = f"{head}  default .x default .y ignore .x ignore .y\n"
+
+    def nested(name: str, other: str) -> tuple[str, str]:
+        return name, f'{head}  .x = .x via "{other}"\n  .y = .y via "{other}"\n'
+
+    doubling = dict(nested(f"m{n}.mapping" if n else "m.mapping", f"m{n + 1}.mapping") for n in range(11))
+    assert reports({"t.proto": schema, **doubling, "m11.mapping": ended})[0] == "many-uses"
+    many = "".join(f'  when .n == {n} .x = .x via "m{n}.mapping" else default .x end\n' for n in range(70))
+    others = {f"m{n}.mapping": ended for n in range(70)}
+    assert "many-mappings" in reports({"t.proto": schema, **others, "m.mapping": head + many})
+    units = "t.A:\n" + "  .n: m\n" * 5001
+    assert "too-many-units" in reports({"t.proto": schema, "u.units": units, "m.mapping": f'import "u.units"\n{ended}'})
+
+
+def test_wide_texts() -> None:
+    files = {
+        "w.idl": "module wide { struct W { wstring s; }; };",
+        "t.proto": 'syntax = "proto2"; package t; message T { required string s = 1; }',
+        "m.mapping": 'import "w.idl"\nimport "t.proto"\ndata-holder: t.T\nwire-schema: wide::W\nunpack-rules:\n  .s = upper(.s)\n'
+        "pack-rules:\n  .s = upper(.s)\n",
+    }
+    assert reports(files, ("ros2", "protobuf")) == ["wide-text", "wide-text"]
 
 
 def test_the_corpus_is_large_enough() -> None:

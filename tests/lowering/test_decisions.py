@@ -172,3 +172,103 @@ def test_large_tables(tmp_path):
     assert ("many-cases", 10) in problems(tmp_path, f"unpack-rules:\n{rest}  .count = table(.count) {{ {table(5000)} }}\n")
     texts = table(60, values=lambda number: f'"{number}"')
     assert ("many-cases", 6) in problems(tmp_path, f"pack-rules:\n  .encoding = table(.count) {{ {texts} }}\n")
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_what_decides_alone_leaves_the_rest_uncomputed(tmp_path, backend):
+    rules = """unpack-rules:
+  .mode = h.Picture.Mode.GRAY
+  .count = 7 if .count != 0 and 100 / .count > 9 else 8
+  .loud = len(.values) < 3 or .values[2] > 0
+  .level = .level
+  .values = .values
+"""
+    decode = rj.Decoder(folder(tmp_path, rules), encoding="yarp3", backend=backend)
+
+    def decoded(count, values):
+        found = decode(wire(backend, count=count, values=values))
+        return found.count, found.loud
+
+    assert decoded(0, []) == (8, True)
+    assert decoded(10, [1.0, 1.0, -1.0]) == (7, False)
+    assert decoded(50, [1.0, 1.0, 2.0]) == (8, True)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_choice_among_comparisons(tmp_path, backend):
+    rules = """unpack-rules:
+  .mode = h.Picture.Mode.GRAY
+  .loud = .count > 3 if .count != 7 else .level > 0
+  .count = .count
+  .level = .level
+  .values = .values
+"""
+    decode = rj.Decoder(folder(tmp_path, rules), encoding="yarp3", backend=backend)
+    assert [decode(wire(backend, count=count, level=-1.0)).loud for count in (2, 5, 7)] == [False, True, False]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(("rule", "good", "bad"), [("bool(.count)", (0, 1), (2, -1)), ("bool(uint64(.level))", (0, 1), (2, 2.0**63))])
+def test_no_other_number_is_a_bool(tmp_path, rule, good, bad, backend):
+    rules = f"unpack-rules:\n  .loud = {rule}\n  .mode = h.Picture.Mode.RGB\n  .count = .count\n  .level = .level\n  .values = .values\n"
+    decode = rj.Decoder(folder(tmp_path, rules), encoding="yarp3", backend=backend)
+    field = "level" if "level" in rule else "count"
+    assert [decode(wire(backend, **{field: value})).loud for value in good] == [False, True]
+    for value in bad:
+        with pytest.raises(rj.DecodeError, match="does not fit bool") as error:
+            decode(wire(backend, **{field: value}))
+        assert (error.value.kind, error.value.path) == ("range", ".loud")
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_enum_has_the_numbers_alone_that_it_names(tmp_path, backend):
+    rules = """rules:
+  .mode <-> h.Picture.Mode(.count)
+  .loud <-> true
+  .level <-> .level
+  .values <-> .values
+unpack-rules:
+  .count = 0
+pack-rules:
+  .encoding = ""
+  ignore .count
+"""
+    decode, encode = (make(folder(tmp_path, rules), encoding="yarp3", backend=backend) for make in (rj.Decoder, rj.Encoder))
+    assert [decode(wire(backend, count=count)).to_dict()["mode"] for count in (0, 1, 2)] == ["GRAY", "RGB", "BGR"]
+    assert read_wire(encode(decode(wire(backend, count=2))))["count"] == 2
+    for count in (3, -1):
+        with pytest.raises(rj.DecodeError, match=r"does not fit enum h\.Picture\.Mode") as error:
+            decode(wire(backend, count=count))
+        assert error.value.kind == "range"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_rules_in_any_order(tmp_path, backend):
+    """A length may stand behind the elements that it makes room for."""
+    unpack = """  for i from 0 to len(.values)
+    .values[i] = .values[i]
+  end
+  .level = .level
+  len(.values) = len(.values)
+  .mode = h.Picture.Mode.RGB
+  .count = .count
+  .loud = true
+"""
+    pack = '  .values[] = .values[]\n  ignore .loud\n  .encoding = table(.mode) { h.Picture.Mode.RGB = "rgb8" }\n  .level = .level\n'
+    made = folder(tmp_path, f"unpack-rules:\n{unpack}", f"pack-rules:\n{pack}  len(.values) = len(.values)\n  .count = .count\n")
+    decode, encode = (make(made, encoding="yarp3", backend=backend) for make in (rj.Decoder, rj.Encoder))
+    message = wire(backend, values=[1.0, 2.0, 3.0])
+    assert list(decode(message).values) == [1.0, 2.0, 3.0]
+    assert encode(decode(message)) == message
+
+
+def test_what_refuses_the_whole_message_names_no_field(tmp_path):
+    decode = rj.Decoder(folder(tmp_path, UNPACK), encoding="yarp3", backend="interpreter")
+    message = wire("interpreter", count=-1)
+    with pytest.raises(rj.DecodeError) as error:
+        decode(message)
+    assert error.value.path == ""
+    assert str(error.value) == f"rejected: negative counts mean nothing (m.mapping:6:3) - at byte {len(message)}"
+    encode = rj.Encoder(folder(tmp_path, PACK), encoding="yarp3", backend="interpreter")
+    with pytest.raises(rj.EncodeError, match=r"^rejected: too many values \(m\.mapping:\d+:\d+\)$"):
+        encode(encode.holder_type.from_dict({"mode": "RGB", "count": 1, "level": 0.0, "loud": False, "values": [1.0] * 4}))
