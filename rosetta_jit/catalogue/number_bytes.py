@@ -25,7 +25,9 @@ def no_field(span: Span | None, function: str, found: str) -> Diagnostic:
 
 def no_integer(span: Span | None, found: str) -> Diagnostic:
     """A place that is no integer."""
-    return error("integer", f"bytes are counted in integers, not {found}", span, f"this is {found}")
+    return error(
+        "integer", f"bytes are counted in integers, not {found}", span, f"this is {found}", help_="`int64(..., round)` makes it one"
+    )
 
 
 def no_number(span: Span | None, found: str) -> Diagnostic:

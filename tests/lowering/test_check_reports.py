@@ -16,6 +16,7 @@ from rosetta_jit.catalogue import images as images_words
 from rosetta_jit.catalogue import layouts as layouts_words
 from rosetta_jit.catalogue import mapping as mapping_words
 from rosetta_jit.catalogue import nested as nested_words
+from rosetta_jit.catalogue import number_bytes as number_bytes_words
 from rosetta_jit.catalogue import resolve as resolve_words
 from rosetta_jit.catalogue import texts as texts_words
 from rosetta_jit.catalogue import unit_files as unit_files_words
@@ -56,6 +57,7 @@ CATALOGUE = (
     images_words,
     unit_files_words,
     bind_words,
+    number_bytes_words,
 )
 MAKERS = ("error", "warning", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
