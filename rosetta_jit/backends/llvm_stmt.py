@@ -57,6 +57,10 @@ from rosetta_jit.kernel.state import GROW_LANE, GROW_ROWS
 if TYPE_CHECKING:
     from rosetta_jit.backends.llvm_frame import Frame
 
+MANY_CASES = 64
+GOLDEN = 0x9E3779B1
+"""2**32 over the golden ratio: its multiples leave the numbers below 2**32 in an order without a pattern."""
+
 
 def block(frame: Frame, statements: Block) -> None:
     """Print statements until one ends the block; what follows a Return is never reached."""
@@ -255,7 +259,7 @@ def _switch(frame: Frame, value: ir.Value, cases: tuple[tuple[int, Block], ...],
     builder = frame.builder
     other, behind = frame.block("default"), frame.block("after")
     switch = builder.switch(value, other)
-    for number, body in cases:
+    for number, body in _shuffled(cases):
         case = frame.block(f"case{number}")
         switch.add_case(ir.Constant(value.type, number), case)
         builder.position_at_end(case)
@@ -263,6 +267,17 @@ def _switch(frame: Frame, value: ir.Value, cases: tuple[tuple[int, Block], ...],
     builder.position_at_end(other)
     _branch(frame, default, behind)
     builder.position_at_end(behind)
+
+
+def _shuffled(cases: tuple[tuple[int, Block], ...]) -> list[tuple[int, Block]]:
+    """The cases, if they are many in no order that means anything: so they will lie in memory.
+
+    A processor foretells where a switch jumps to by the addresses that it jumped to before. Of a hundred cases of one size, taken in the
+    order in which they lie, as the fields of a message come, these look all alike.
+    """
+    if len(cases) < MANY_CASES:
+        return list(cases)
+    return [case for _, case in sorted(enumerate(cases), key=lambda each: each[0] * GOLDEN % 2**32)]
 
 
 def _branch(frame: Frame, body: Block, behind: ir.Block) -> None:
