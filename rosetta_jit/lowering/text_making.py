@@ -55,6 +55,8 @@ def replaced(writer: Writer, view: View, old: bytes, new: bytes) -> View:
     size = writer.let("size", Binary("add", view.size, mul(found, longer)))
     start = room(writer, size)
     limit = writer.let("limit", Binary("add", start, size))
+    for each in (Compare("le", start, limit), Compare("le", limit, Capacity(lane_of(writer)))):
+        writer.expect(each, "length", MESSAGE, LOST)
     if view.lane == lane_of(writer):
         writer.expect(Compare("le", view.after, start), "length", MESSAGE, LOST)
 

@@ -103,7 +103,10 @@ def put(writer: Writer, at: Expr, byte: Expr | int) -> None:
 def room(writer: Writer, size: Expr) -> Local:
     """Where the next so many bytes of the hidden lane begin; they become part of it by `kept`."""
     writer.emit(Reserve(lane_of(writer), size))
-    return writer.let("text", Used(lane_of(writer)))
+    start = writer.let("text", Used(lane_of(writer)))
+    for each in has_room(writer, start, size):  # there is: said again, as what is used becomes a long sum where many texts are made
+        writer.expect(each, "length", MESSAGE, LOST)
+    return start
 
 
 def kept(writer: Writer, start: Expr, first: Expr, after: Expr, *, valid: bool) -> View:

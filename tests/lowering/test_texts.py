@@ -185,3 +185,23 @@ unpack-rules:
         assert decode(message).to_dict() == {"names": expected, "sizes": sizes}
         rows = decode.many(message * 3, np.arange(4, dtype=np.int64) * len(message))
         assert [row.to_dict() for row in rows] == [{"names": expected, "sizes": sizes}] * 3
+
+
+@pytest.mark.parametrize("count", [16, 40])
+def test_many_texts_are_made(count):
+    """What the hidden lane holds is a long sum then, and each text still has its room."""
+    names = [f"y{number}" for number in range(count)]
+    files = {
+        "t/In.msg": "string s\n",
+        "t/Out.msg": "".join(f"string {name}\n" for name in names),
+        "m.mapping": 'import "t/In.msg"\nimport "t/Out.msg"\ndata-holder: t/Out\nwire-schema: t/In\nunpack-rules:\n'
+        + "".join(f'  .{name} = replace(.s, "a", "{name}")\n' for name in names),
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="ros1", backend="python")
+    write = rj.Encoder.of("t/In", schema=files, imports=["t/In.msg"], encoding="ros1", backend="interpreter")
+    assert decode(write(write.holder_type.from_dict({"s": "banana"}))).to_dict() == {name: f"b{name}n{name}n{name}" for name in names}
+
+
+def test_texts_of_texts_of_texts():
+    text = "replace(" * 20 + ".s" + ', "a", "b")' * 20
+    assert decoder({"s": text}, "python")(s="banana")["s"] == "bbnbnb"
