@@ -10,8 +10,8 @@ from dataclasses import field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.catalogue import layouts, texts
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.catalogue import texts
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
@@ -390,6 +390,9 @@ def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
             return False
         case Array() | Bytes() | Map():
             return True
+        case Bool() | Int() | Float() | Enum():
+            scope.problems.append(layouts.one_value(place.span))
+            return False
         case other:
             scope.problems.append(words.length_not_settable(place.span, describe(other)))
             return False

@@ -104,7 +104,7 @@ class Writer:
     position: Expr = BEGIN
     origin: Expr = BEGIN
     sites: dict[Site, int] = field(default_factory=lambda: {Site("grow", "", "a lane is too small"): 0})
-    names: set[str] = field(default_factory=lambda: {parameter.name for parameter in (BEGIN, END, ROW)})
+    names: set[str] = field(default_factory=lambda: {BEGIN.name, END.name, ROW.name})
     stems: dict[str, int] = field(default_factory=dict[str, int])
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
     routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
