@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends import llvm_stmt
-from rosetta_jit.backends.llvm_frame import F32, F64, I32, I64, Variable
+from rosetta_jit.backends.llvm_frame import F32, F64, I32, I64, Variable, forgotten
 from rosetta_jit.kernel.ir import Expect, If
 from rosetta_jit.kernel.rewrite import locals_in
 
@@ -48,5 +48,4 @@ def _renew(frame: Frame, name: str) -> None:
     bits = BITS.get(value.type)
     if bits is not None and not isinstance(value, ir.Constant | ir.Argument):
         number = frame.builder.bitcast(value, bits)
-        hidden = frame.builder.asm(ir.FunctionType(bits, [bits]), "", "=r,0", [number], side_effect=False)
-        frame.locals[name] = frame.builder.bitcast(hidden, value.type)
+        frame.locals[name] = frame.builder.bitcast(forgotten(frame.builder, number), value.type)

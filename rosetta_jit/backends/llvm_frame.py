@@ -48,6 +48,11 @@ ESCAPED = ir.FunctionType(ir.VoidType(), [POINTER])
 """The type of an instruction that does nothing with a slot, but takes its address: LLVM leaves the slot in memory."""
 
 
+def forgotten(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+    """The same integer, of which LLVM knows nothing: an instruction that does nothing, but may do anything for all that it can tell."""
+    return builder.asm(ir.FunctionType(number.type, [number.type]), "", "=r,0", [number], side_effect=False)
+
+
 def is_float(scalar: Scalar) -> bool:
     """Whether a scalar is one of IEEE 754."""
     return scalar in ("f32", "f64")

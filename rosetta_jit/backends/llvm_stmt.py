@@ -21,7 +21,7 @@ from rosetta_jit.backends.llvm_expr import (
     store,
     wire_pointer,
 )
-from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, constant, state_word
+from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm_host import host_called
 from rosetta_jit.kernel.ir import (
     BEGIN,
@@ -93,7 +93,8 @@ def _statement(frame: Frame, statement: Stmt) -> None:
         case Advance(lane, count):
             slot = frame.used_slot(lane)
             rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
-            frame.builder.store(rows, slot)
+            # One text behind another: what LLVM works out for a sum of sums takes exponential time.
+            frame.builder.store(forgotten(frame.builder, rows) if frame.is_hidden(lane) else rows, slot)
         case Copy(target, source, size):
             copy_memory(frame, pointer(frame, target), pointer(frame, source), expression(frame, size))
         case Fill(target, size, byte):
