@@ -155,6 +155,7 @@ class DecoderBase(Program):
             if result != run.GROW:
                 raise self._many_error(result, data, places, done, batch)
             with run.decoding():
+                run.limit(lanes, data.size)
                 _grow_for_all(batch, done, count)
             done = self._many(data, places, done, batch)
         lanes.words[VALID] = CLEAN

@@ -56,9 +56,11 @@ def python_run(kernel: Callable[..., int]) -> Run:
 
 
 def run_growing(run: Run, buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
-    """Run until no lane is too small."""
+    """Run until no lane is too small. A message is what a buffer holds; where there is none, nobody asks for too much."""
     result = run(buffer, begin, end, lanes, row)
     while result == GROW:
+        if buffer is not None:
+            limit(lanes, end - begin)
         grow(lanes)
         result = run(buffer, begin, end, lanes, row)
     return result
@@ -75,13 +77,34 @@ def grow(lanes: Lanes) -> None:
     lanes.grow(*missing(lanes))
 
 
-NO_MEMORY = "it asks for more elements than there is memory for"
+MOST_BYTES = 1 << 28
+"""What a message may ask for at once beyond what its bytes can fill."""
+
+WIDEST = 1 << 12
+"""Bytes of a hidden lane that one byte of a message can fill."""
+
+
+def limit(lanes: Lanes, size: int) -> None:
+    """Refuse a message of so many bytes that asks for far more room than they can fill: rules may take a length from what it says.
+
+    Raises
+    ------
+    MemoryError
+        It does.
+    """
+    lane, rows = missing(lanes)
+    each, most = (lanes.plan.strides[lane], size) if lane < len(lanes.buffers) else (1, size * WIDEST)
+    if rows * each > MOST_BYTES + most * each:
+        raise MemoryError(f"{rows} rows of {each} bytes for a message of {size}")
+
+
+NO_MEMORY = "it asks for more elements than there may be, or than there is memory for"
 """A mapping may take a length from what a message says, and not from how much it holds."""
 
 
 @contextmanager
 def decoding() -> Generator[None]:
-    """Around what makes room for a message: none may ask for more than there is."""
+    """Around what makes room for a message: none may ask for more than there is, or than `limit` allows."""
     try:
         yield
     except MemoryError as error:
