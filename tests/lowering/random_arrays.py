@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tests.lowering.random_values import Maker, Refused, some_value
+from tests.lowering.meaning import Refused
+from tests.lowering.random_values import Maker, some_value
 
 if TYPE_CHECKING:
     import random
     from collections.abc import Callable
 
-    from tests.lowering.random_values import Fields
+    from tests.lowering.meaning import Fields
 
 ARRAYS = {"xs": "float64", "ks": "int32"}
 """The arrays that rules read, beside `ps`, an array of `x`, float64, `n`, int32, and `s`, string."""

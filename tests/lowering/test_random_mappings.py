@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from tests.lowering.meaning import LEAVES, Refused
 from tests.lowering.random_arrays import Arrays, some_arrays
-from tests.lowering.random_values import LEAVES, Maker, Refused, plain, some_fields
+from tests.lowering.random_values import Maker, plain, some_fields
 
 RULES = 8
 MESSAGES = 25
