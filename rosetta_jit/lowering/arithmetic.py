@@ -90,6 +90,7 @@ def floored(writer: Writer, function: str, left: Expr, right: Expr, where: Where
 
 def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str = "") -> Expr:
     """``number`` rounded up to a multiple of ``quantum``; a quantum of 1 or less changes nothing."""
+    number = writer.once(number)
     writer.expect(Compare("ge", number, index(0)), "range", where, "a negative size cannot be aligned", line=line)
     step = writer.let("step", Binary("max", quantum, index(1)))
     over = writer.let("over", Binary("rem", number, step))
