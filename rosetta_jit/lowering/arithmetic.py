@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Comparison, Const, Expr, Select, add, index, mul, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Comparison, Const, Expr, Fits, Select, add, index, mul, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Arithmetic
@@ -94,5 +94,6 @@ def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str =
     writer.expect(Compare("ge", number, index(0)), "range", where, "a negative size cannot be aligned", line=line)
     step = writer.let("step", Binary("max", quantum, index(1)))
     over = writer.let("over", Binary("rem", number, step))
+    writer.expect(Fits("sub", step, over), "range", where, "a size cannot be aligned so", line=line)  # true anyway; said for the proof
     missing = writer.let("missing", Select(Compare("eq", over, index(0)), index(0), Binary("sub", step, over)))
     return writer.checked("add", number, missing, where, line=line)
