@@ -30,8 +30,7 @@ bytes:
   %data = getelementptr i8, ptr %message.object, i64 32
   br label %decode
 buffer:
-  %got = call i32 @PyObject_GetBuffer(ptr %message.object, ptr %view, i32 0)
-  %has = icmp eq i32 %got, 0
+  %has = call i1 @open(ptr %message.object, ptr %view, i32 0)
   br i1 %has, label %viewed, label %raise, !prof !0
 viewed:
   %view.data = load ptr, ptr %view
@@ -48,7 +47,7 @@ decode:
   store i64 %valid, ptr %state
   br i1 %is_bytes, label %judge, label %release, !prof !1
 release:
-  call void @PyBuffer_Release(ptr %view)
+  call void @close(ptr %message.object, ptr %view)
   br label %judge
 judge:
   br i1 %good, label %return, label %failed, !prof !0

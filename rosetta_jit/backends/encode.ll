@@ -46,39 +46,40 @@ into:
   %offset.object = load ptr, ptr %offset.at
   %offset = call i64 @PyLong_AsSsize_t(ptr %offset.object)
   %positive = icmp sge i64 %offset, 0
-  br i1 %positive, label %open, label %negative, !prof !0
+  br i1 %positive, label %target, label %negative, !prof !0
 negative:
   %error = call ptr @PyErr_Occurred()
   %clean = icmp eq ptr %error, null
   br i1 %clean, label %slow, label %raise
-open:
+target:
   %target.at = getelementptr ptr, ptr %args, i64 1
-  %target = load ptr, ptr %target.at
+  %target.object = load ptr, ptr %target.at
   ; PyBUF_WRITABLE
-  %got = call i32 @PyObject_GetBuffer(ptr %target, ptr %view, i32 1)
-  %has = icmp eq i32 %got, 0
+  %has = call i1 @open(ptr %target.object, ptr %view, i32 1)
   br i1 %has, label %opened, label %raise, !prof !0
 opened:
-  %view.data = load ptr, ptr %view
-  %view.size.at = getelementptr i8, ptr %view, i64 16
-  %view.size = load i64, ptr %view.size.at
-  %inside = icmp sle i64 %offset, %view.size
-  br i1 %inside, label %fill, label %beyond, !prof !0
+  %room = load ptr, ptr %view
+  %room.size.at = getelementptr i8, ptr %view, i64 16
+  %room.size = load i64, ptr %room.size.at
+  %inside = icmp sle i64 %offset, %room.size
+  br i1 %inside, label %fill, label %close, !prof !0
 fill:
-  %end = call i64 @kernel(ptr %view.data, i64 %offset, i64 %view.size, ptr %state, i64 0)
-  call void @PyBuffer_Release(ptr %view)
+  %filled.end = call i64 @kernel(ptr %room, i64 %offset, i64 %room.size, ptr %state, i64 0)
+  br label %close
+close:
+  %end = phi i64 [ %filled.end, %fill ], [ 0, %opened ]
+  call void @close(ptr %target.object, ptr %view)
+  br i1 %inside, label %judge, label %slow, !prof !0
+judge:
   %filled = icmp sge i64 %end, 0
   br i1 %filled, label %position, label %failed, !prof !0
 position:
   call void @made(ptr %context)
   %end.object = call ptr @PyLong_FromSsize_t(i64 %end)
   ret ptr %end.object
-beyond:
-  call void @PyBuffer_Release(ptr %view)
-  br label %slow
 
 failed:
-  %result = phi i64 [ %size, %choose ], [ %written, %drop ], [ %end, %fill ]
+  %result = phi i64 [ %size, %choose ], [ %written, %drop ], [ %end, %judge ]
   call void @note(i64 %result, ptr %state)
   br label %slow
 slow:

@@ -55,7 +55,8 @@ def run_attempts(
             with np.errstate(all="ignore"):
                 return attempt(memoryview(buffer).cast("B"), begin, end, state, views, row)
         except Failed as failed:
-            farthest = failed if farthest is None or failed.at > farthest.at else farthest
+            if farthest is None or failed.at > farthest.at:
+                farthest = failed.with_traceback(None)  # its frames hold this one, and that the message's buffer
         except Full as full:
             stride = hidden[full.lane - own] if hidden and full.lane >= own else 1
             state[GROW_LANE], state[GROW_ROWS] = full.lane, full.missing * stride

@@ -29,6 +29,7 @@ MATHEMATICS = (
 ALLOWED = frozenset(
     [
         "PyBuffer_Release",
+        "PyByteArray_Type",
         "PyBytes_FromStringAndSize",
         "PyBytes_Type",
         "PyErr_Occurred",

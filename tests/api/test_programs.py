@@ -142,6 +142,27 @@ def test_encode_is_the_inverse(backend, decode, dialect):
     assert np.allclose(np.degrees(rj.Decoder(TORSO, backend=backend)(written).angles), DEGREES, rtol=1e-6)
 
 
+def test_a_bytearray_can_be_resized_after_each_call_whatever_came_of_it(backend, decode):
+    encode = rj.Encoder(TORSO, encoding="yarp3", backend=backend)
+    message = bytearray(b"..." + MESSAGE)
+    del message[:3]  # its bytes begin behind those of its memory
+    angles = decode(message)
+    assert np.array_equal(angles.angles, np.radians(DEGREES).astype(np.float32))
+    cut, small, empty, buffer = bytearray(MESSAGE[:-1]), bytearray(20), bytearray(), bytearray(40)
+    for refused in (cut, empty):
+        with pytest.raises(rj.DecodeError):
+            decode(refused)
+    decode(message)
+    for offset, refused in ((0, small), (0, empty), (9, buffer), (41, buffer), (-1, buffer)):
+        with pytest.raises(BufferError):
+            encode(angles, refused, offset)
+    assert encode(angles, buffer, 8) == 40
+    assert np.array_equal(decode(buffer[8:]).angles, angles.angles)
+    for exported in (message, cut, small, empty, buffer):
+        exported.extend(b"more")
+        exported.clear()
+
+
 def test_encode_refuses_what_it_cannot_write(backend, decode):
     encode = rj.Encoder(TORSO, encoding="yarp3", backend=backend)
     angles = decode(MESSAGE)
