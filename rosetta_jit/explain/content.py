@@ -103,7 +103,7 @@ def explanation(mapping: str, *, encoding: str | None = None, folders: Iterable[
     request = Request("decode", mapping, encoding=encoding, folders=folders)
     found = (_direction("unpack", written, checked, request), _direction("pack", written, checked, request))
     return Explanation(
-        written.source.name,
+        mapping,
         _side("wire", checked.wire, readers),
         _side("holder", checked.holder, readers),
         tuple(each for each in found if each is not None),

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 ROW, HEAD = 26, 38
 """Heights of a field and of a side's head, in pixels; the template's styles use them too."""
 
+APART = {"unpack": -2, "pack": 2}
+"""How far from the middle of a field the lines of each direction end, so that neither hides the other."""
+
 MAX_LINKS = 1_000
 
 
@@ -71,7 +74,8 @@ def _links(explanation: Explanation) -> list[str]:
             wire, holder = (line.reads, line.sets) if direction.name == "unpack" else (line.sets, line.reads)
             for one, other in ((_height(a, heights["wire"]), _height(b, heights["holder"])) for a in wire for b in holder):
                 if one is not None and other is not None:
-                    found[f'<path class="{direction.name}" d="M0 {one} C50 {one} 50 {other} 100 {other}"/>'] = None
+                    left, right = one + APART[direction.name], other + APART[direction.name]
+                    found[f'<path class="{direction.name}" d="M0 {left} C50 {left} 50 {right} 100 {right}"/>'] = None
     return list(found)[:MAX_LINKS]
 
 
