@@ -6,6 +6,7 @@ small. A lane that grows moves to memory of its own; whoever still has a view ke
 
 from __future__ import annotations
 
+import operator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
@@ -30,6 +31,8 @@ from rosetta_jit.model.layout import Number
 from rosetta_jit.runtime.hidden import ALIGNMENT, Hidden, aligned_bytes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from rosetta_jit.model.births import Birth
@@ -39,6 +42,10 @@ Array = np.ndarray[Any, Any]
 
 INITIAL_BYTES = 64
 """What a lane has room for before it grows."""
+
+MOST_AT_ONCE = 1 << 16
+"""Bytes that a holder may have from the start because others needed them. It costs little to make room for more than that, compared with
+filling it."""
 
 MAX_WASTE = 1 << 16
 """Bytes that a holder may leave unused before it tidies up, at least."""
@@ -130,8 +137,11 @@ class Plan:
     image: NDArray[np.uint8] | None = None
 
 
-def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = ()) -> Plan:
-    """A plan with room for so many messages, which are in use from the start, and zero; and for what one of them is born with."""
+def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Sequence[int] = ()) -> Plan:
+    """A plan with room for so many messages, which are in use from the start, and zero; and for what one of them is born with.
+
+    Where ``room`` says how many rows a lane is to have, it has at least as many.
+    """
     needed: dict[int, int] = {}
     _count(births, 1, needed)
     strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
@@ -143,6 +153,7 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = ()) -> Plan:
     sizes: list[int] = []
     for lane, stride in enumerate(strides):
         capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride, needed.get(lane, 0))
+        capacity = max(capacity, room[lane] if room else 0)
         offsets.append(behind)
         sizes.append(_aligned(capacity * stride, 8))
         template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
@@ -161,6 +172,15 @@ def born(plan: Plan) -> Plan:
     template, image = plan.template.copy(), prototype.arena[plan.template.nbytes :]
     template[lane_word(0, USED) :: LANE_WORDS] = prototype.state[lane_word(0, USED) :: LANE_WORDS]
     return replace(plan, template=template, image=image[: int(np.flatnonzero(image)[-1]) + 1].copy())
+
+
+def roomier(plan_: Plan, lanes: Lanes) -> Plan:
+    """The plan of one message with the room that others of its layout have come to, as long as that is little."""
+    room = [lanes.capacity(lane) for lane in range(len(plan_.strides))]
+    if all(size <= plan_.sizes[lane] for lane, size in enumerate(map(operator.mul, room, plan_.strides))):
+        return plan_
+    wanted = plan(plan_.layout, births=plan_.births, room=room)
+    return born(wanted) if wanted.size_bytes <= MOST_AT_ONCE else plan_
 
 
 def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:

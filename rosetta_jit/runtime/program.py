@@ -17,7 +17,7 @@ from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import CAPACITY, NOW, NUMBER, USED, VALID, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import MADE, Context, bind_call
-from rosetta_jit.runtime.lanes import CLEAN
+from rosetta_jit.runtime.lanes import CLEAN, roomier
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.lanes import Lanes, Plan
     from rosetta_jit.runtime.native import Library
 
 _MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
@@ -65,11 +65,13 @@ class Program:
 
     _loaded: Loaded
     _holder: Holder
+    _plan: Plan
     _context: tuple[Context, NDArray[np.int64]]
 
     def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
         self._loaded = loaded
         self._holder = loaded.holder_type()
+        self._plan = loaded.holder_type.family_.plan
         lanes = self._holder.lanes_
         context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type)
         bind_call(self, None if loaded.library is None else loaded.library["call"], context)
@@ -90,8 +92,11 @@ class Program:
         return self._loaded.holder_type
 
     def new(self) -> Any:
-        """A holder of one's own."""
-        return self._loaded.holder_type()
+        """A holder of one's own, with room for what has been decoded until now, unless that is much."""
+        holder_type = self._loaded.holder_type
+        holder = holder_type.__new__(holder_type)
+        holder.lay_out_(self._plan)
+        return holder
 
     def _checked(self, holder: object) -> Holder:
         expected = self._loaded.holder_type
@@ -211,6 +216,7 @@ class DecoderBase(Program):
         if result < 0:
             raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
         self._count(1)
+        self._plan = roomier(self._plan, lanes)
         lanes.words[VALID] = CLEAN
         lanes.source[0] = (message if isinstance(message, bytes) else memoryview(cast("Any", message))) if self._loaded.borrow else None
         return holder

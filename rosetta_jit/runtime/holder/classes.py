@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder.family import Family
+    from rosetta_jit.runtime.lanes import Plan
 
 
 if TYPE_CHECKING:
@@ -36,8 +37,11 @@ class Holder(Message, Base):
     family_: Family
 
     def __init__(self) -> None:
-        family = self.family_
-        self.lanes_ = self.home_ = Lanes(family.plan, family.array_type)
+        self.lay_out_(self.family_.plan)
+
+    def lay_out_(self, plan: Plan) -> None:
+        """Give the holder lanes. It must have none yet."""
+        self.lanes_ = self.home_ = Lanes(plan, self.family_.array_type)
         self.row_ = 0
         bind_state(self, self.lanes_.address)
 
