@@ -28,7 +28,7 @@ from rosetta_jit.kernel.state import (
 )
 from rosetta_jit.model.births import FirstCase, FixedArray
 from rosetta_jit.model.layout import Number
-from rosetta_jit.runtime.hidden import ALIGNMENT, Hidden, aligned_bytes
+from rosetta_jit.runtime.hidden import ALIGNMENT, Hidden, address_of, aligned_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -242,7 +242,7 @@ class Lanes:
     def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
         self.plan = plan
         arena = np.zeros(plan.size_bytes + ALIGNMENT, np.uint8)
-        address: int = arena.__array_interface__["data"][0]
+        address = address_of(arena)
         shift = -address % ALIGNMENT
         self.arena = arena[shift : shift + plan.size_bytes]
         self.address = address + shift
@@ -297,7 +297,7 @@ class Lanes:
 
     def _place(self, lane: int, buffer: NDArray[np.uint8], capacity: int) -> None:
         self.buffers[lane] = buffer
-        self.words[lane_word(lane, ADDRESS)] = buffer.__array_interface__["data"][0]
+        self.words[lane_word(lane, ADDRESS)] = address_of(buffer)
         self.words[lane_word(lane, CAPACITY)] = capacity
         self._forget(lane)
 

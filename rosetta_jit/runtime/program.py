@@ -192,7 +192,7 @@ class DecoderBase(Program):
         lanes, count = batch.lanes, len(offsets) - 1
         if self._loaded.library is not None:
             many = _MANY(self._loaded.library["many"])
-            return many(data.ctypes.data, data.size, offsets.ctypes.data, first, count, lanes.state.ctypes.data)
+            return many(data.ctypes.data, data.size, offsets.ctypes.data, first, count, lanes.address)
         return _one_by_one(self._loaded.kernel, data, offsets, first, batch)
 
     def _many_error(self, result: int, data: NDArray[np.uint8], offsets: NDArray[np.int64], done: int, batch: Batch) -> Exception:
@@ -290,7 +290,7 @@ class EncoderBase(Program):
     def _sizes(self, batch: Batch, offsets: NDArray[np.int64], first: int) -> int:
         if self._loaded.library is not None:
             sizes = _SIZES(self._loaded.library["sizes"])
-            return sizes(offsets.ctypes.data, first, len(batch), batch.lanes.state.ctypes.data)
+            return sizes(offsets.ctypes.data, first, len(batch), batch.lanes.address)
         assert self._loaded.size is not None
         for number in range(first, len(batch)):
             size = self._loaded.size(None, 0, run.ANY_SIZE, batch.lanes, number)
@@ -304,7 +304,7 @@ class EncoderBase(Program):
         lanes = batch.lanes
         if self._loaded.library is not None:
             many = _MANY(self._loaded.library["many"])
-            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, len(batch), lanes.state.ctypes.data)
+            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, len(batch), lanes.address)
         return _one_by_one(self._loaded.kernel, buffer, offsets, first, batch, self._loaded.size)
 
     def _usable(self, holder: object) -> Holder:

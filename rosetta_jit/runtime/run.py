@@ -39,7 +39,7 @@ def native_run(address: int) -> Run:
     kernel = _KERNEL(address)
 
     def run(buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
-        return kernel(None if buffer is None else buffer.ctypes.data, begin, end, lanes.state.ctypes.data, row)
+        return kernel(None if buffer is None else buffer.ctypes.data, begin, end, lanes.address, row)
 
     return run
 
