@@ -5,12 +5,18 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT ?= demo-output
 NATIVE := build/native/libpeers.so
+YARP := build/yarp
 BENCH = --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --benchmark-storage=file://build/bench/runs $(if $(QUICK),--quick)
 
 .DEFAULT_GOAL := help
 RUN := build/bench/run.json
 
-.PHONY: help demo test check campaign conformance bench bench-check bench-compare native clean
+# Where CMake finds the YARP of `make yarp`.
+ifneq ($(wildcard $(YARP)/cmake/.built),)
+export YARP_DIR ?= $(abspath $(YARP))/cmake
+endif
+
+.PHONY: help demo test check campaign conformance bench bench-check bench-compare native yarp clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -67,6 +73,20 @@ $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or name one: make PYTHON=..." >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is older than Python 3.11" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
+
+yarp: $(YARP)/cmake/.built ## build the real YARP out of PyPI for tests and bench (minutes; needs a C++ compiler, CMake, and Debian's ycm-cmake-modules and libace-dev)
+
+# A source distribution of 2021: newer compilers want headers that it forgets. Its libraries are enough, and are used where they are built.
+YARP_RELEASE := yarp_middleware-3.5.0
+YARP_HEADERS := utility cstdint limits memory iterator sstream functional mutex algorithm string
+YARP_WITHOUT := GUIS TESTS BINDINGS EXAMPLES libYARP_math CARRIER_PLUGINS DEVICE_PLUGINS PORTMONITOR_PLUGINS
+$(YARP)/cmake/.built: | $(BIN)/python
+	$(BIN)/python -m pip download --quiet --disable-pip-version-check --no-deps --no-binary :all: --dest $(YARP) $(subst _,-,$(subst -,==,$(YARP_RELEASE)))
+	tar -xzf $(YARP)/$(YARP_RELEASE).tar.gz -C $(YARP)
+	cmake -S $(YARP)/$(YARP_RELEASE) -B $(YARP)/cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$(YARP_HEADERS:%=-include %)" \
+		$(YARP_WITHOUT:%=-DYARP_COMPILE_%=OFF) > $(YARP)/configure.log 2>&1
+	cmake --build $(YARP)/cmake --parallel 2 --target YARP_os YARP_sig YARP_init YARP_wire_rep_utils
+	touch $@
 
 native: $(VENV)/.bench ## build the native peers: YARP or the model of it, and the C++ of each framework that is installed
 	$(MAKE) --directory bench/native OUTPUT=$(abspath $(NATIVE)) LCM_GEN=$(abspath $(firstword $(wildcard $(VENV)/lib/python*/site-packages/bin/lcm-gen)))

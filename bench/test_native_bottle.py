@@ -47,6 +47,13 @@ def bottle_contenders(effort, decoder, message, peers):
     ]
 
 
+def yarp_vector(peers, message, count):
+    """YARP's class for this list alone, where it is installed."""
+    read = peers.yarp("vector", message)
+    if read is not None:
+        yield Contender("YARP's Vector", "peer", "an array of float64 degrees, used again, in C++", lambda: read(count))
+
+
 def many(decoder, rows, into):
     buffer, offsets = rows
     return lambda: decoder.many(buffer, offsets, into=into)
@@ -64,6 +71,7 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
         "24 specialised doubles, 200 bytes, 1,000,000 decodes",
         [
             *bottle_contenders(effort, decoder, message, peers),
+            *yarp_vector(peers, message, count),
             Contender(LOOP, "peer", "an array of float32 radians, used again", lambda: peers.loop(message, 266)(count)),
             Contender(COPY, "peer", "an array of float64 degrees, used again", lambda: peers.copy(message, 266)(count)),
             Contender("numba by hand", "peer", "an array, used again", effort.call(by_hand, array, np.empty(24, np.float32), count=count)),

@@ -62,6 +62,7 @@ def test_image_against_memmove(job, effort, compare, record):
                 "a bottle with a blob, in C++; nothing is converted",
                 rounds_of(peers.dynamic(message), effort.round_s),
             ),
+            *yarp(peers, message, effort),
             Contender("C++ by hand", "peer", "an array, used again", rounds_of(peers.image(job.native, message), effort.round_s)),
             Contender("numpy, unchecked", "peer", "an array, anew", effort.call(by_numpy, message)),
         ],
@@ -80,6 +81,15 @@ def test_borrowed_image_against_len(effort, compare, record):
         ],
     )
     record("image, borrowed", outcome.ratio(OURS, LEN), 4, "x len()", f"{outcome.took(OURS).median:.0f} ns")
+
+
+def yarp(peers, message, effort):
+    """YARP's own image, where it is installed."""
+    read = peers.yarp("image", message)
+    if read is not None:
+        yield Contender(
+            "YARP's Image", "peer", "an image, used again, its rows padded; nothing is converted", rounds_of(read, effort.round_s)
+        )
 
 
 def numpy_decoder(job):

@@ -4,13 +4,6 @@
 
 #include "timing.hpp"
 
-#ifdef WITH_YARP
-#include <yarp/conf/version.h>
-#include <yarp/os/Bottle.h>
-#else
-#include "bottle.hpp"
-#endif
-
 namespace {
 
 constexpr float DEGREE = 0.017453292519943295F;
@@ -46,27 +39,6 @@ void* empty(void*, void* argument) {
 }  // namespace
 
 extern "C" {
-
-const char* dynamic_decoder() {
-#ifdef WITH_YARP
-    return "YARP " YARP_VERSION;
-#else
-    return "model of YARP";
-#endif
-}
-
-double dynamic_decode_ns(const unsigned char* message, std::int64_t size, std::int64_t iterations) {
-#ifdef WITH_YARP
-    yarp::os::Bottle bottle;
-    return nanoseconds(iterations, [&] {
-        bottle.fromBinary(reinterpret_cast<const char*>(message), static_cast<int>(size));
-        return bottle.size() > 0;
-    });
-#else
-    model::Bottle bottle;
-    return nanoseconds(iterations, [&] { return bottle.from_binary(reinterpret_cast<const char*>(message), static_cast<std::size_t>(size)); });
-#endif
-}
 
 double loop_decode_ns(const unsigned char* message, std::int64_t size, std::int32_t tag, float* angles, std::int64_t iterations) {
     return nanoseconds(iterations, [=] {

@@ -29,6 +29,11 @@ class Peers:
     def dynamic(self, message: bytes) -> Callable[[int], float]:
         return self._timed("dynamic_decode_ns", message)
 
+    def yarp(self, class_: str, message: bytes) -> Callable[[int], float] | None:
+        """YARP's ``image`` or ``vector``, if real YARP was linked."""
+        name = f"yarp_{class_}_ns"
+        return self._timed(name, message) if hasattr(self.library, name) else None
+
     def loop(self, message: bytes, tag: int) -> Callable[[int], float]:
         return self._timed("loop_decode_ns", message, tag, (ctypes.c_float * (len(message) // 8))())
 
