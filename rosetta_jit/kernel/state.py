@@ -15,6 +15,10 @@ returned, for who called it through an entry (`backends/*.ll`); words 12 and 13 
 from __future__ import annotations
 
 VALID, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, ERROR_INDICES = 0, 1, 2, 3, 4, 5
+CLEAN, UNSETTLED = 1, 2
+"""Values of the state's word `VALID`, besides 0. An unsettled holder reads as usual, but must be settled before it is encoded: spans are
+borrowed from a message, or much of the lanes is not used any more. Encoders accept 1 and leave 2 to their slow path."""
+
 RESULT = 9
 HIDDEN, HIDDEN_COUNT = 10, 11
 NOW, NUMBER = 12, 13

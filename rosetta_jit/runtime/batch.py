@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, assert_never
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.columns import Ragged, column, presence_mask
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.lanes import Lanes, plan
+from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,9 +12,9 @@ import numpy as np
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import String
+from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import coerce
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.lanes import dtype_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,45 +2,18 @@
 
 from __future__ import annotations
 
-import ctypes
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, LANE_WORDS
+from rosetta_jit.runtime.memory import address_of, aligned, aligned_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-ALIGNMENT = 64
-"""Of each lane: a cache line, and the widest vector register."""
-
 INITIAL_BYTES = 256
 """What a hidden lane has room for before it grows."""
-
-
-MOST_BYTES = 1 << 62
-"""More than any address space has."""
-
-
-def address_of(memory: NDArray[Any]) -> int:
-    """Where an array of ours lies, which has elements and can be written: numpy takes six times as long to say it."""
-    return ctypes.addressof(ctypes.c_char.from_buffer(cast("Any", memory)))
-
-
-def aligned_bytes(size: int) -> NDArray[np.uint8]:
-    """Bytes that begin at a multiple of `ALIGNMENT`.
-
-    Raises
-    ------
-    MemoryError
-        If there is no such memory.
-    """
-    if size > MOST_BYTES:  # numpy says this in other words
-        raise MemoryError(f"no memory has {size} bytes")
-    memory = np.empty(size + ALIGNMENT, np.uint8)
-    shift = -address_of(memory) % ALIGNMENT
-    return memory[shift : shift + size]
 
 
 class Hidden:
@@ -69,7 +42,7 @@ class Hidden:
             self.buffers.append(aligned_bytes(INITIAL_BYTES))
         if size > 0:
             old = self.buffers[lane].size
-            self.buffers[lane] = aligned_bytes(-(-max(2 * old, old + size) // ALIGNMENT) * ALIGNMENT)
+            self.buffers[lane] = aligned_bytes(aligned(max(2 * old, old + size)))
         self._words = np.zeros(LANE_WORDS * len(self.buffers), np.int64)
         self._words[ADDRESS::LANE_WORDS] = [address_of(buffer) for buffer in self.buffers]
         self._words[CAPACITY::LANE_WORDS] = [buffer.size for buffer in self.buffers]

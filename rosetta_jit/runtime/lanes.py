@@ -12,36 +12,19 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.kernel.state import (
-    ADDRESS,
-    CAPACITY,
-    HIDDEN,
-    HIDDEN_COUNT,
-    LANE_WORDS,
-    STRIDE,
-    USED,
-    VALID,
-    lane_word,
-    state_words,
-)
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, CLEAN, HIDDEN, HIDDEN_COUNT, LANE_WORDS, UNSETTLED, USED, VALID, lane_word
 from rosetta_jit.model.births import FirstCase, FixedArray
-from rosetta_jit.model.layout import Number
-from rosetta_jit.runtime.hidden import ALIGNMENT, Hidden, address_of, aligned_bytes
+from rosetta_jit.runtime.cells import Array, Arrays, Cells
+from rosetta_jit.runtime.hidden import Hidden
+from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
+from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from rosetta_jit.model.births import Birth
     from rosetta_jit.model.layout import Layout
-
-Array = np.ndarray[Any, Any]
-
-INITIAL_BYTES = 64
-"""What a lane has room for before it grows."""
 
 MOST_AT_ONCE = 1 << 16
 """Bytes that a holder may have from the start because others needed them. It costs little to make room for more than that, compared with
@@ -49,150 +32,6 @@ filling it."""
 
 MAX_WASTE = 1 << 16
 """Bytes that a holder may leave unused before it tidies up, at least."""
-
-SCRATCH_STRIDE = 8
-"""One word a row, for what an encoder must remember between its passes."""
-
-CLEAN, UNSETTLED = 1, 2
-"""Values of the state's word `VALID`, besides 0. An unsettled holder reads as usual, but must be settled before it is encoded: spans are
-borrowed from a message, or much of the lanes is not used any more. Encoders accept 1 and leave 2 to their slow path."""
-
-SCALARS: tuple[str, ...] = ("bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64")
-_FORMATS = {
-    "bool": "?",
-    "i8": "b",
-    "u8": "B",
-    "i16": "h",
-    "u16": "H",
-    "i32": "i",
-    "u32": "I",
-    "i64": "q",
-    "u64": "Q",
-    "f32": "f",
-    "f64": "d",
-}
-"""Of memoryview and numpy alike."""
-_BYTES = np.dtype(np.uint8)
-
-
-def cell_key(lane: int, scalar: str) -> int:
-    """The key of a lane's cells of one scalar in `Cells`."""
-    return lane << 4 | SCALARS.index(scalar)
-
-
-def dtype_of(scalar: str) -> np.dtype[Any]:
-    """The numpy type of a scalar."""
-    return np.dtype(_FORMATS[scalar])
-
-
-class Cells(dict[int, Any]):
-    """The lanes as cells of each scalar, made when first asked for: reading one costs a third of what numpy takes."""
-
-    __slots__ = ("buffers",)
-
-    def __init__(self, buffers: list[NDArray[np.uint8]]) -> None:
-        self.buffers = buffers
-
-    def __missing__(self, key: int) -> Any:
-        lane: Any = memoryview(cast("Any", self.buffers[key >> 4]))
-        cells: Any = lane.cast(_FORMATS[SCALARS[key & 15]])
-        self[key] = cells
-        return cells
-
-
-class Arrays(dict[int, Array]):
-    """The lanes of numbers as arrays of their type, all rows, made when first asked for."""
-
-    __slots__ = ("array_type", "buffers", "dtypes")
-
-    def __init__(self, buffers: list[NDArray[np.uint8]], dtypes: tuple[np.dtype[Any], ...], array_type: type[Array]) -> None:
-        self.buffers = buffers
-        self.dtypes = dtypes
-        self.array_type = array_type
-
-    def __missing__(self, lane: int) -> Array:
-        array: Array = self.buffers[lane].view(self.dtypes[lane]).view(self.array_type)
-        self[lane] = array
-        return array
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Plan:
-    """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
-
-    ``template`` is the state without its addresses, ``addresses`` are the words where each lane's stands. ``image`` is what lies behind
-    the state when the messages are born with ``births``, as far as it is not zero.
-    """
-
-    layout: Layout
-    rows: int
-    strides: tuple[int, ...]
-    offsets: tuple[int, ...]
-    sizes: tuple[int, ...]
-    dtypes: tuple[np.dtype[Any], ...]
-    size_bytes: int
-    template: NDArray[np.int64]
-    addresses: tuple[int, ...]
-    births: tuple[Birth, ...] = ()
-    image: NDArray[np.uint8] | None = None
-
-
-def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Sequence[int] = ()) -> Plan:
-    """A plan with room for so many messages, which are in use from the start, and zero; and for what one of them is born with.
-
-    Where ``room`` says how many rows a lane is to have, it has at least as many.
-    """
-    needed: dict[int, int] = {}
-    _count(births, 1, needed)
-    strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
-    words = state_words(len(strides))
-    template = np.zeros(words, np.int64)
-    template[VALID] = CLEAN
-    behind = _aligned(8 * words)
-    offsets: list[int] = []
-    sizes: list[int] = []
-    for lane, stride in enumerate(strides):
-        capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride, needed.get(lane, 0))
-        capacity = max(capacity, room[lane] if room else 0)
-        offsets.append(behind)
-        sizes.append(_aligned(capacity * stride, 8))
-        template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
-        behind = _aligned(behind + sizes[-1])
-    addresses = tuple(lane_word(lane, ADDRESS) for lane in range(len(strides)))
-    dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else _BYTES for lane in layout.lanes), _BYTES)
-    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addresses, births)
-
-
-def born(plan: Plan) -> Plan:
-    """The plan of one message, which is born from the start."""
-    if not plan.births:
-        return plan
-    prototype = Lanes(plan)
-    prototype.bear(plan.births, 0, 1)
-    template, image = plan.template.copy(), prototype.arena[plan.template.nbytes :]
-    template[lane_word(0, USED) :: LANE_WORDS] = prototype.state[lane_word(0, USED) :: LANE_WORDS]
-    return replace(plan, template=template, image=image[: int(np.flatnonzero(image)[-1]) + 1].copy())
-
-
-def roomier(plan_: Plan, lanes: Lanes) -> Plan:
-    """The plan of one message with the room that others of its layout have come to, as long as that is little."""
-    room = [lanes.capacity(lane) for lane in range(len(plan_.strides))]
-    if all(size <= plan_.sizes[lane] for lane, size in enumerate(map(operator.mul, room, plan_.strides))):
-        return plan_
-    wanted = plan(plan_.layout, births=plan_.births, room=room)
-    return born(wanted) if wanted.size_bytes <= MOST_AT_ONCE else plan_
-
-
-def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:
-    """Add up how many rows of each lane so many rows are born with."""
-    for each in births:
-        if isinstance(each, FixedArray):
-            born[each.lane] = born.get(each.lane, 0) + rows * each.length
-            _count(each.within, rows * each.length, born)
-
-
-def _aligned(size: int, alignment: int = ALIGNMENT) -> int:
-    return -(-size // alignment) * alignment
 
 
 class Lanes:
@@ -291,7 +130,7 @@ class Lanes:
         stride = self.plan.strides[lane]
         capacity = self.capacity(lane)
         capacity = max(2 * capacity, capacity + rows)
-        old, size = self.buffers[lane], _aligned(capacity * stride, 8)
+        old, size = self.buffers[lane], aligned(capacity * stride, 8)
         self._place(lane, aligned_bytes(size), capacity)
         self.buffers[lane][: old.size] = old
 
@@ -383,3 +222,23 @@ class Lanes:
     def invalid(self) -> InvalidHolder:
         """The error of reading what a failed decode left behind."""
         return InvalidHolder("the last decode into this holder failed; decode again or clear it before you read it")
+
+
+def born(plan: Plan) -> Plan:
+    """The plan of one message, which is born from the start."""
+    if not plan.births:
+        return plan
+    prototype = Lanes(plan)
+    prototype.bear(plan.births, 0, 1)
+    template, image = plan.template.copy(), prototype.arena[plan.template.nbytes :]
+    template[lane_word(0, USED) :: LANE_WORDS] = prototype.state[lane_word(0, USED) :: LANE_WORDS]
+    return replace(plan, template=template, image=image[: int(np.flatnonzero(image)[-1]) + 1].copy())
+
+
+def roomier(plan_: Plan, lanes: Lanes) -> Plan:
+    """The plan of one message with the room that others of its layout have come to, as long as that is little."""
+    room = [lanes.capacity(lane) for lane in range(len(plan_.strides))]
+    if all(size <= plan_.sizes[lane] for lane, size in enumerate(map(operator.mul, room, plan_.strides))):
+        return plan_
+    wanted = plan(plan_.layout, births=plan_.births, room=room)
+    return born(wanted) if wanted.size_bytes <= MOST_AT_ONCE else plan_

@@ -14,10 +14,10 @@ import numpy as np
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, EncodeError
-from rosetta_jit.kernel.state import CAPACITY, NOW, NUMBER, USED, VALID, lane_word
+from rosetta_jit.kernel.state import CAPACITY, CLEAN, NOW, NUMBER, USED, VALID, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import MADE, Context, bind_call
-from rosetta_jit.runtime.lanes import CLEAN, roomier
+from rosetta_jit.runtime.lanes import roomier
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.lanes import Lanes, Plan
+    from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.native import Library
+    from rosetta_jit.runtime.plan import Plan
 
 _MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 _SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)

@@ -17,11 +17,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.errors import EncodeError, InvalidHolder, ValuesError
-from rosetta_jit.kernel.state import CAPACITY, USED, VALID, lane_word
+from rosetta_jit.kernel.state import CAPACITY, CLEAN, UNSETTLED, USED, VALID, lane_word
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.runtime.holder import holder_class, holder_class_of
-from rosetta_jit.runtime.lanes import CLEAN, UNSETTLED, Lanes
+from rosetta_jit.runtime.lanes import Lanes
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import FLAT, SCHEMA, flat, whole

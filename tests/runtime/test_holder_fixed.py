@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from rosetta_jit.errors import ValuesError
-from rosetta_jit.kernel.state import VALID
+from rosetta_jit.kernel.state import UNSETTLED, VALID
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.runtime.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
-from rosetta_jit.runtime.lanes import UNSETTLED
 
 POINT = Struct("t.Point", (Field("xy", Array(Float(64), 2)), Field("id", Bytes("octet", 3))))
 NODE = Struct("t.Node", (Field("at", Array(Int(16), 2)), Field("next", Optional(Ref("t.Node"))), Field("nodes", Array(Ref("t.Node")))))

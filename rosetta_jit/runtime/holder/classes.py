@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from rosetta_jit.kernel.state import VALID
+from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.runtime.callable import bind_state, holder_base
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, Message, View, place
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
-from rosetta_jit.runtime.lanes import CLEAN, Lanes
+from rosetta_jit.runtime.lanes import Lanes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder.family import Family
-    from rosetta_jit.runtime.lanes import Plan
+    from rosetta_jit.runtime.plan import Plan
 
 
 if TYPE_CHECKING:

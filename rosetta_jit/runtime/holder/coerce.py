@@ -14,7 +14,7 @@ import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
-from rosetta_jit.runtime.lanes import dtype_of
+from rosetta_jit.runtime.cells import dtype_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

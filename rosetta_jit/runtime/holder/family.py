@@ -18,7 +18,8 @@ from rosetta_jit.runtime.holder.classes import Holder
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, stale_getter, view_setter
 from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
-from rosetta_jit.runtime.lanes import Lanes, born, plan
+from rosetta_jit.runtime.lanes import Lanes, born
+from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import arena, coerce
 from rosetta_jit.runtime.holder.record import Numbers
-from rosetta_jit.runtime.lanes import dtype_of
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Items, ScalarType

@@ -19,7 +19,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import layout as slots
 from rosetta_jit.model.births import Births, selected, selecting
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.runtime.lanes import SCALARS, cell_key
+from rosetta_jit.runtime.cells import SCALARS, cell_key
 
 if TYPE_CHECKING:
     from rosetta_jit.model.births import Birth

@@ -1,0 +1,83 @@
+"""Plans: how the first memory of a holder is divided among its lanes, and what the state says of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel.state import ADDRESS, CLEAN, STRIDE, VALID, lane_word, state_words
+from rosetta_jit.model.births import FixedArray
+from rosetta_jit.model.layout import Number
+from rosetta_jit.runtime.cells import BYTES, dtype_of
+from rosetta_jit.runtime.memory import aligned
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rosetta_jit.model.births import Birth
+    from rosetta_jit.model.layout import Layout
+
+INITIAL_BYTES = 64
+"""What a lane has room for before it grows."""
+
+SCRATCH_STRIDE = 8
+"""One word a row, for what an encoder must remember between its passes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
+
+    ``template`` is the state without its addresses, ``addresses`` are the words where each lane's stands. ``image`` is what lies behind
+    the state when the messages are born with ``births``, as far as it is not zero.
+    """
+
+    layout: Layout
+    rows: int
+    strides: tuple[int, ...]
+    offsets: tuple[int, ...]
+    sizes: tuple[int, ...]
+    dtypes: tuple[np.dtype[Any], ...]
+    size_bytes: int
+    template: NDArray[np.int64]
+    addresses: tuple[int, ...]
+    births: tuple[Birth, ...] = ()
+    image: NDArray[np.uint8] | None = None
+
+
+def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Sequence[int] = ()) -> Plan:
+    """A plan with room for so many messages, which are in use from the start, and zero; and for what one of them is born with.
+
+    Where ``room`` says how many rows a lane is to have, it has at least as many.
+    """
+    needed: dict[int, int] = {}
+    _count(births, 1, needed)
+    strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
+    words = state_words(len(strides))
+    template = np.zeros(words, np.int64)
+    template[VALID] = CLEAN
+    behind = aligned(8 * words)
+    offsets: list[int] = []
+    sizes: list[int] = []
+    for lane, stride in enumerate(strides):
+        capacity = max(rows, 1) if lane == 0 else max(1, INITIAL_BYTES // stride, needed.get(lane, 0))
+        capacity = max(capacity, room[lane] if room else 0)
+        offsets.append(behind)
+        sizes.append(aligned(capacity * stride, 8))
+        template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
+        behind = aligned(behind + sizes[-1])
+    addresses = tuple(lane_word(lane, ADDRESS) for lane in range(len(strides)))
+    dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else BYTES for lane in layout.lanes), BYTES)
+    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addresses, births)
+
+
+def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:
+    """Add up how many rows of each lane so many rows are born with."""
+    for each in births:
+        if isinstance(each, FixedArray):
+            born[each.lane] = born.get(each.lane, 0) + rows * each.length
+            _count(each.within, rows * each.length, born)
