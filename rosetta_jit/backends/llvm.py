@@ -43,8 +43,8 @@ MANY = 64
 SEVERAL = 4
 """The same for a routine that loops whatever it is given: the rounds cost more than the call, and LLVM makes vectors of each loop."""
 
-SHORT = 24
-"""Statements of a routine up to which it is part of its callers, if they are not many."""
+TINY, SHORT = 8, 24
+"""Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
 def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
@@ -52,20 +52,43 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
     """
-    calls = Counter(each.routine for body in kernel.bodies for each in statements(body) if isinstance(each, Call))
-    routines: dict[str, ir.Function] = {}
+    calls, routines = _calls(kernel), dict[str, "ir.Function | Routine"]()
     for routine in kernel.routines:
-        routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
-        if calls[routine.name] >= (SEVERAL if any(isinstance(each, For | While) for each in routine.body) else MANY):
-            routines[routine.name].attributes.add("noinline")
-        elif sum(1 for _ in statements(routine.body)) <= SHORT:
-            routines[routine.name].attributes.add("alwaysinline")
+        if _is_in_place(routine, calls[routine.name]):
+            routines[routine.name] = routine
+            continue
+        function = routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
+        if calls[routine.name] >= _many(routine):
+            function.attributes.add("noinline")
     function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ("buffer", "begin", "end", "state", "row"))
     entry = ir.IRBuilder(function.append_basic_block("entry"))
     first = function.append_basic_block("body")
     _attempts(entry, first, Parameters(*function.args), kernel, routines)
     entry.branch(first)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
+
+
+def _calls(kernel: Kernel) -> Counter[str]:
+    """How often each routine will be called in what is printed."""
+    calls = Counter(each.routine for body in kernel.bodies for each in statements(body) if isinstance(each, Call))
+    for routine in reversed(kernel.routines):  # which call those before them
+        times = calls[routine.name] if _is_in_place(routine, calls[routine.name]) else 1
+        for each in statements(routine.body):
+            if isinstance(each, Call):
+                calls[each.routine] += times
+    return calls
+
+
+def _is_in_place(routine: Routine, calls: int) -> bool:
+    """Whether a routine is printed where it is called. LLVM could do that, but would have results and failures to take apart again."""
+    parts = list(statements(routine.body))
+    is_tiny = len(parts) <= TINY and not any(isinstance(each, For | While) for each in parts)
+    return is_tiny or (len(parts) <= SHORT and calls < _many(routine))
+
+
+def _many(routine: Routine) -> int:
+    """Calls from which on a routine stays a function."""
+    return SEVERAL if any(isinstance(each, For | While) for each in routine.body) else MANY
 
 
 def _behind_check(module: ir.Module, kernel: Kernel, inside: ir.Function, name: str) -> ir.Function:
@@ -98,7 +121,7 @@ def _function(module: ir.Module, signature: ir.FunctionType, name: str, argument
     return function
 
 
-def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, routines: Mapping[str, ir.Function]) -> ir.Function:
+def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, routines: Mapping[str, ir.Function | Routine]) -> ir.Function:
     """A routine as a function that returns 0 and the results, or the number of the failure and its offset."""
     outcome = ir.LiteralStructType([I64] * (1 + max(1, len(routine.results))))
     signature = ir.FunctionType(outcome, [POINTER, I64, I64, POINTER, *(LLVM_TYPES[each.type] for each in routine.parameters)])
@@ -131,7 +154,9 @@ def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value
     builder.ret(whole)
 
 
-def _attempts(entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kernel: Kernel, routines: Mapping[str, ir.Function]) -> None:
+def _attempts(
+    entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kernel: Kernel, routines: Mapping[str, ir.Function | Routine]
+) -> None:
     """Body after body; each failure but the last starts the next one."""
     builder = ir.IRBuilder(start)
     loaded: dict[tuple[int, int], ir.Value] = {}

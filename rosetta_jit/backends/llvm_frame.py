@@ -18,7 +18,7 @@ from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMB
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rosetta_jit.kernel.ir import Scalar
+    from rosetta_jit.kernel.ir import Call, Routine, Scalar
 
 I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
 F32, F64, POINTER = ir.FloatType(), ir.DoubleType(), ir.PointerType()
@@ -107,7 +107,10 @@ class Exit:
 
 @dataclass(slots=True)
 class Frame:
-    """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to."""
+    """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
+
+    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
+    """
 
     module: ir.Module
     entry: ir.IRBuilder
@@ -119,7 +122,8 @@ class Frame:
     done: Exit
     failed: Exit
     decodes: bool
-    routines: Mapping[str, ir.Function]
+    routines: Mapping[str, ir.Function | Routine]
+    caller: tuple[Frame, Call] | None = None
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
 

@@ -6,6 +6,7 @@ takes failures; so the hot path holds compares and branches alone.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
@@ -25,6 +26,7 @@ from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, con
 from rosetta_jit.backends.llvm_host import host_called
 from rosetta_jit.kernel.ir import (
     BEGIN,
+    END,
     GROW,
     Advance,
     Assign,
@@ -44,6 +46,7 @@ from rosetta_jit.kernel.ir import (
     Require,
     Reserve,
     Return,
+    Routine,
     SetField,
     Stmt,
     Store,
@@ -145,7 +148,7 @@ def _is_behind_begin(at: Expr) -> bool:
 def _check(frame: Frame, holds: ir.Value, failure: Failure) -> None:
     """Go on where the condition holds."""
     good = _cold(frame, holds)
-    _fail(frame, constant(failure.site), expression(frame, failure.at), failure.indices)
+    _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
     frame.builder.position_at_end(good)
 
 
@@ -157,27 +160,45 @@ def _cold(frame: Frame, holds: ir.Value) -> ir.Block:
     return good
 
 
-def _fail(frame: Frame, site: ir.Value, offset: ir.Value, indices: tuple[Expr, ...]) -> None:
-    values = [site, offset, *(expression(frame, each) for each in indices)]
+def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[Expr, ...]) -> None:
+    """Leave the body at the site of a number, counted from 1; what a routine's sites and indices are, its caller says."""
+    while frame.caller is not None:
+        frame, call = frame.caller
+        sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
+    values = [_site(frame.builder, number, sites), offset, *(expression(frame, each) for each in indices)]
     frame.failed.enter(frame.builder, [*values, *[constant(0)] * (len(frame.failed.phis) - len(values))])
 
 
 def _call(frame: Frame, call: Call) -> None:
+    routine = frame.routines[call.routine]
+    if isinstance(routine, Routine):
+        _inline(frame, call, routine)
+        return
     builder, parameters = frame.builder, frame.parameters
     given = [expression(frame, each) for each in call.arguments]
-    outcome = builder.call(frame.routines[call.routine], [parameters.buffer, parameters.begin, parameters.end, parameters.state, *given])
+    outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *given])
     number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
     good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
-    _fail(frame, _site(builder, number, call.sites), first, call.indices)
+    _fail(frame, call.sites, number, first, call.indices)
     builder.position_at_end(good)
     for position, result in enumerate(call.results, 1):
         frame.locals[result.name] = builder.extract_value(outcome, position)
 
 
+def _inline(frame: Frame, call: Call, routine: Routine) -> None:
+    """The routine's statements instead of a call."""
+    names = {name: frame.locals[name] for name in (BEGIN.name, END.name)}
+    given = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
+    inside = replace(frame, locals=names | given, caller=(frame, call))
+    block(inside, routine.body)
+    for here, there in zip(call.results, routine.results, strict=True):
+        frame.locals[here.name] = expression(inside, there)
+
+
 def _host_call(frame: Frame, call: HostCall) -> None:
     status, result = host_called(frame, call)
     good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
-    _fail(frame, constant(call.failure.site), expression(frame, call.failure.at), call.failure.indices)
+    _fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
     frame.builder.position_at_end(good)
     frame.locals[call.result.name] = load(frame, result, call.result.type, alignment=1)
 

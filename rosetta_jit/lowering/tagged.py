@@ -44,7 +44,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.unknown import skip_unknown
-from rosetta_jit.lowering.varint import from_varint, read_varint, varint_bytes
+from rosetta_jit.lowering.varint import from_varint, read_tag, read_varint, varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
@@ -139,7 +139,7 @@ def _finish(message: Message) -> None:
 def _read_field(message: Message, ended: Local | None) -> None:
     writer, where = message.writer, message.fields.where
     begin = writer.position
-    tag = writer.let("tag", Convert("i64", read_varint(writer, where)))
+    tag = writer.let("tag", Convert("i64", read_tag(writer, where)))
     after = writer.var("next", writer.position)
     cases: list[tuple[int, tuple[Stmt, ...]]] = []
     for entry in message.tagged.entries:

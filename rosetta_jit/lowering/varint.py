@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import BEGIN, END, Binary, Compare, Const, Convert, Expr, If, Local, Select, While, add, index, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Local, Select, While, add, index, type_of
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosetta_jit.wire.codec import Varint
 
 SEVEN_BITS = Const("u64", 0x7F)
@@ -22,32 +24,70 @@ def read_varint(writer: Writer, where: Where) -> Local:
     return value
 
 
+def read_tag(writer: Writer, where: Where) -> Local:
+    """The same for what has two bytes as often as one: fields have numbers from 16 on, too."""
+    value, writer.position = writer.call("read_tag", _read_tag, (writer.position,), where)
+    return value
+
+
 def _read(writer: Writer) -> Contract:
-    """One byte is the common case; at most ten are read, and bits above the 64th are dropped."""
+    """One byte is the common case, which costs no call: what reads more is a routine of its own."""
+    return _first_byte(writer, lambda _, at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+
+
+def _read_tag(writer: Writer) -> Contract:
+    def second(first: Local, at: Local) -> tuple[Local, ...]:
+        byte = writer.let("byte", writer.load("u8", MESSAGE))
+        low = Binary("and", Convert("u64", first), SEVEN_BITS)
+        value = writer.var("varint", Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
+        after = writer.var("next", writer.position)
+        _if_more(writer, byte, lambda: writer.call("read_long_varint", _read_long, (at,), MESSAGE), value, after)
+        return value, after
+
+    return _first_byte(writer, second)
+
+
+def _first_byte(writer: Writer, further: Callable[[Local, Local], tuple[Local, ...]]) -> Contract:
+    """A byte alone, or, behind the byte and the place where it stands, what it begins."""
+    at = writer.parameter("at", "i64")
+    writer.position = at
+    byte = writer.let("byte", writer.load("u8", MESSAGE))
+    value, after = writer.var("varint", Convert("u64", byte)), writer.var("next", writer.position)
+    _if_more(writer, byte, lambda: further(byte, at), value, after)
+    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
+
+
+def _if_more(writer: Writer, byte: Local, further: Callable[[], tuple[Local, ...]], value: Local, after: Local) -> None:
+    """If the byte is not the last one, the value and the place behind it are others."""
+    with writer.nested() as more:
+        longer, behind = further()
+        writer.assign(value, longer)
+        writer.assign(after, behind)
+    writer.emit(If(Compare("ge", byte, Const("u8", 128)), block(more)))
+
+
+def _read_long(writer: Writer) -> Contract:
+    """At most ten bytes are read, and bits above the 64th are dropped."""
     at, where = writer.parameter("at", "i64"), MESSAGE
     writer.position = at
-    first = writer.let("byte", writer.load("u8", where))
-    value, after = writer.var("varint", Convert("u64", first)), writer.var("next", writer.position)
-    with writer.nested() as more:
-        writer.assign(value, Binary("and", value, SEVEN_BITS))
-        shift, byte = writer.var("shift", index(7)), writer.var("byte", first)
-        with writer.nested() as body:
-            writer.position = after
-            writer.assign(byte, writer.load("u8", where))
-            writer.assign(after, writer.position)
-            bits = Binary("shl", Binary("and", Convert("u64", byte), SEVEN_BITS), Convert("u64", shift))
-            writer.assign(value, Binary("or", value, bits))
-            writer.assign(shift, add(shift, 7))
-        unfinished = Compare("ge", byte, Const("u8", 128))
-        invariant = (
-            Compare("ge", after, BEGIN),
-            Compare("le", after, END),
-            Compare("ge", shift, index(7)),
-            Compare("le", shift, index(70)),
-        )
-        writer.emit(While(Binary("and", unfinished, Compare("lt", shift, index(64))), block(body), invariant, shift))
-        writer.expect(Compare("lt", byte, Const("u8", 128)), "varint", where, "an integer of more than ten bytes")
-    writer.emit(If(Compare("ge", first, Const("u8", 128)), block(more)))
+    byte = writer.var("byte", writer.load("u8", where))
+    value, after = writer.var("varint", Binary("and", Convert("u64", byte), SEVEN_BITS)), writer.var("next", writer.position)
+    shift = writer.var("shift", index(7))
+    with writer.nested() as body:
+        writer.position = after
+        writer.assign(byte, writer.load("u8", where))
+        writer.assign(after, writer.position)
+        bits = Binary("shl", Binary("and", Convert("u64", byte), SEVEN_BITS), Convert("u64", shift))
+        writer.assign(value, Binary("or", value, bits))
+        writer.assign(shift, add(shift, 7))
+    unfinished = Compare("ge", byte, Const("u8", 128))
+    invariant = (
+        *writer.behind(at, after),
+        Compare("ge", shift, index(7)),
+        Compare("le", shift, index(70)),
+    )
+    writer.emit(While(Binary("and", unfinished, Compare("lt", shift, index(64))), block(body), invariant, shift))
+    writer.expect(Compare("lt", byte, Const("u8", 128)), "varint", where, "an integer of more than ten bytes")
     return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
@@ -64,7 +104,7 @@ def write_varint(writer: Writer, value: Expr, where: Where) -> None:
 
 
 def _write(writer: Writer) -> Contract:
-    """One byte is the common case."""
+    """One byte is the common case, here as in reading."""
     at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
     after = writer.var("next", at)
     with writer.nested() as one:
@@ -72,13 +112,15 @@ def _write(writer: Writer) -> Contract:
         writer.store(Convert("u8", value), MESSAGE)
         writer.assign(after, writer.position)
     with writer.nested() as several:
-        _write_several(writer, at, value, after)
+        (behind,) = writer.call("write_long_varint", _write_long, (at, value), MESSAGE)
+        writer.assign(after, behind)
     writer.emit(If(Compare("lt", value, Const("u64", 128)), block(one), block(several)))
     return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
 
 
-def _write_several(writer: Writer, at: Local, value: Local, after: Local) -> None:
-    rest, count = writer.var("rest", value), writer.var("count", index(0))
+def _write_long(writer: Writer) -> Contract:
+    at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
+    after, rest, count = writer.var("next", at), writer.var("rest", value), writer.var("count", index(0))
     with writer.nested() as body:
         writer.position = after
         writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), MESSAGE)
@@ -95,18 +137,31 @@ def _write_several(writer: Writer, at: Local, value: Local, after: Local) -> Non
     writer.position = after
     writer.store(Convert("u8", rest), MESSAGE)
     writer.assign(after, writer.position)
+    return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
 
 
 def _size(writer: Writer) -> Contract:
+    value = writer.parameter("value", "u64")
+    size = writer.var("size", index(1))
+    with writer.nested() as several:
+        (long,) = writer.call("long_varint_size", _long_size, (value,), MESSAGE)
+        writer.assign(size, long)
+    writer.emit(If(Compare("ge", value, Const("u64", 128)), block(several)))
+    return Contract((value,), (size,), (), _bounds(size))
+
+
+def _long_size(writer: Writer) -> Contract:
     value = writer.parameter("value", "u64")
     rest, size = writer.var("rest", value), writer.var("size", index(1))
     with writer.nested() as body:
         writer.assign(rest, Binary("shr", rest, Const("u64", 7)))
         writer.assign(size, add(size, 1))
-    bounds = Compare("ge", size, index(1)), Compare("le", size, index(MAX_BYTES))
-    loop = While(_more(rest, add(size, -1)), block(body), bounds, size)
-    writer.emit(If(Compare("ge", value, Const("u64", 128)), (loop,)))
-    return Contract((value,), (size,), (), bounds)
+    writer.emit(While(_more(rest, add(size, -1)), block(body), _bounds(size), size))
+    return Contract((value,), (size,), (), _bounds(size))
+
+
+def _bounds(size: Local) -> tuple[Expr, Expr]:
+    return Compare("ge", size, index(1)), Compare("le", size, index(MAX_BYTES))
 
 
 def _more(rest: Expr, written: Expr) -> Expr:

@@ -1,0 +1,85 @@
+"""Base-128 integers of all lengths, in messages of few and of many fields: what is read in place, and what a routine reads."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+
+BACKENDS = ["numba", "llvm", "python", "interpreter"]
+MANY = 70
+"""Fields of a message: more than the calls of a routine that stay in place."""
+
+
+def varint(value):
+    groups = []
+    while value >= 0x80:
+        groups.append(value & 0x7F | 0x80)
+        value >>= 7
+    return bytes((*groups, value))
+
+
+def schema(fields):
+    lines = "\n".join(f"  optional uint64 field{number} = {number};" for number in range(1, fields + 1))
+    return {"varints.proto": f"syntax = 'proto2';\nmessage Varints {{\n{lines}\n}}\n"}
+
+
+def programs(fields, backend):
+    options = {"encoding": "protobuf", "schema": schema(fields), "backend": backend}
+    return rj.Decoder.of("Varints", **options), rj.Encoder.of("Varints", **options)
+
+
+def values(fields, seed):
+    """One of each length, the smallest and the largest, and then some."""
+    edges = [each for bits in range(7, 64, 7) for each in (2**bits - 1, 2**bits)]
+    edges += [0, 1, 2**64 - 1]
+    return [edges[(seed + number) % len(edges)] for number in range(fields)]
+
+
+def message_of(numbers):
+    return b"".join(varint(field << 3) + varint(number) for field, number in enumerate(numbers, 1))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("fields", [2, 20, MANY])
+def test_values_of_all_lengths(fields, backend):
+    decode, encode = programs(fields, backend)
+    for seed in range(23):
+        numbers = values(fields, seed)
+        holder = decode(message_of(numbers))
+        assert [getattr(holder, f"field{number}") for number in range(1, fields + 1)] == numbers
+        assert encode(holder) == message_of(numbers)
+
+
+@pytest.mark.parametrize("backend", ["numba", "python"])
+def test_values_of_many_messages(backend):
+    decode, encode = programs(20, backend)
+    messages = [message_of(values(20, seed)) for seed in range(23)]
+    rows = decode.many(b"".join(messages), np.cumsum([0, *map(len, messages)]))
+    assert rows.field3.tolist() == [values(20, seed)[2] for seed in range(23)]
+    assert bytes(encode.many(rows)[0]) == b"".join(messages)
+
+
+@pytest.mark.parametrize("fields", [2, MANY])
+def test_what_ends_too_early_or_never(fields):
+    """Kind, field and place of a failure are the interpreter's, in every backend."""
+    numbers = [2**64 - 1] * fields
+    whole = message_of(numbers)
+    rng = random.Random(fields)
+    places = sorted({*range(1, 24), *(rng.randrange(1, len(whole)) for _ in range(40))} - {len(whole)})
+    broken = [whole[:place] for place in places if place < len(whole)]
+    broken += [whole[:-1] + b"\xff\x01", b"\x80" * 11, b"\xf8" + b"\xff" * 20]
+    said = {backend: [failure(programs(fields, backend)[0], message) for message in broken] for backend in BACKENDS}
+    assert any(each is not None and each[1] for each in said["interpreter"])
+    assert all(each == said["interpreter"] for each in said.values())
+
+
+def failure(decode, message):
+    try:
+        decode(message)
+    except rj.DecodeError as error:
+        return error.kind, error.path, error.offset
+    return None
