@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,11 +31,12 @@ from tests.lowering.random_values import quoted
 
 if TYPE_CHECKING:
     import random
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from tests.lowering.random_wires import Wire
 
-    Values = dict[str, Value]
+
+Values = dict[str, Value]
 
 
 @dataclass
@@ -47,16 +49,26 @@ class Part:
     """Values of the wire's fields that are likely to be taken."""
     holders: Callable[[random.Random], Values] | None = None
 
+    mappings: Mapping[str, tuple[Message, Message, str]] = field(default_factory=dict)
+    """Other mappings that the rules use: the types of their wire and holder, and what they say of them."""
+    parameters: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
+    units: tuple[str, ...] = ()
+    """Fields with their units, as `Src.a: km`."""
+    pack: str = ""
+    """Rules to pack."""
+    is_sure: bool = False
+    """Whether no other values of the wire are asked for: what they are refused as is not said here."""
+
     def some_wire(self, rng: random.Random) -> Values:
-        return chosen(rng, self.wire, self.wires)
+        return chosen(rng, self.wire, self.wires, is_sure=self.is_sure)
 
     def some_holder(self, rng: random.Random) -> Values:
         return chosen(rng, self.holder, self.holders)
 
 
-def chosen(rng: random.Random, kinds: Mapping[str, Kind], likely: Callable[[random.Random], Values] | None) -> Values:
+def chosen(rng: random.Random, kinds: Mapping[str, Kind], likely: Callable[[random.Random], Values] | None, *, is_sure: bool = False) -> Values:
     """Likely values, or any."""
-    if likely is not None and rng.random() < 0.8:
+    if likely is not None and (is_sure or rng.random() < 0.8):
         return likely(rng)
     count = rng.choice([0, 1, 2, 4, 6])
     return {name: value for name, kind in kinds.items() if (value := some(rng, kind, count)) is not None}
@@ -72,12 +84,22 @@ class Relations:
     constant: Callable[[str], str]
     made: int = field(default=0)
 
+    more: tuple[Callable[[Relations, str], Part], ...] = ()
+    """Forms of other modules, for all wires."""
+    more_arrays: tuple[Callable[[Relations, str], Part], ...] = ()
+
+    @property
+    def is_counted(self) -> bool:
+        """Whether arrays need fields for their lengths."""
+        return "lcm" in (self.wire.options["encoding"], self.holder.options["encoding"])
+
     def part(self) -> Part:
         self.made += 1
         name = f"f{self.made}"
         forms = [self.integers, self.integers, self.floats, self.flags, self.texts, self.text_numbers, self.kinds, self.told, self.checked]
-        if self.wire.options["encoding"] != "lcm" and self.holder.options["encoding"] != "lcm":
-            forms += [self.arrays, self.lists, self.structs]
+        forms += [partial(form, self) for form in self.more]
+        if not self.is_counted:
+            forms += [self.arrays, self.lists, self.structs, *(partial(form, self) for form in self.more_arrays)]
         if self.holder.constant:
             forms += [self.enums, self.enums]
         if self.wire.has_optional and self.holder.has_optional:
@@ -388,6 +410,18 @@ class Relations:
             return {name: [{"u": rng.randrange(-1000, 1000), "v": "#" + rng.choice(TEXTS)} for _ in range(rng.randrange(4))]}
 
         return Part({name: inner[0]}, {name: inner[1]}, rules, unpack, holders=holders)
+
+
+def below_all(parts: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """All entries of some dicts."""
+    return {name: value for part in parts for name, value in part.items()}
+
+
+def body(parts: list[Part]) -> str:
+    """What a mapping says beside its types."""
+    declared = "".join(f"parameter {name}: {type_}\n" for part in parts for name, (type_, _) in part.parameters.items())
+    rules, pack = ("".join(getattr(part, which) for part in parts) for which in ("text", "pack"))
+    return f"{declared}rules:\n{rules}" + (f"pack-rules:\n{pack}" if pack else "")
 
 
 def few(name: str) -> Callable[[random.Random], Values]:
