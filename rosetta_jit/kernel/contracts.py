@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.linear import Linear
 from rosetta_jit.kernel.paths import from_begin, variable
+from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.symbolic import Scope, condition, demand, entry, evaluate, oblige, unknown
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ def keep(scope: Scope, routine: Routine) -> None:
 def bind(scope: Scope, routine: Routine, call: Call) -> None:
     """Prove what a call owes, and bind its results.
 
-    A result of type i64 is a position if an argument is one: it is kept as a distance from `begin`.
+    A result of type i64 is a position if an argument is one, and the routine promises something of it: it is kept as a distance from
+    `begin`. One without a promise is a number that was read, and may be multiplied.
     """
     inner = Scope(scope.strides, scope.facts, {name: scope.locals[name] for name in MESSAGE}, scope.used, scope.capacity)
     for parameter, argument in zip(routine.parameters, call.arguments, strict=True):
@@ -46,8 +48,10 @@ def bind(scope: Scope, routine: Routine, call: Call) -> None:
     for required in routine.requires:
         oblige(inner, condition(inner, required), "a call that asks for what may not be there")
     moves = any(isinstance(value, Linear) and from_begin(value) for _, value in (inner.locals[p.name] for p in routine.parameters))
+    told = {name for ensured in routine.ensures for name in locals_in(ensured)}
     for result in routine.results:
-        inner.locals[result.name] = result.type, variable(scope, result.type, relative=moves and result.type == "i64")
+        is_position = moves and result.type == "i64" and result.name in told
+        inner.locals[result.name] = result.type, variable(scope, result.type, relative=is_position)
     for ensured in routine.ensures:
         scope.facts.assume(condition(inner, ensured))
     for local, result in zip(call.results, routine.results, strict=True):

@@ -140,6 +140,9 @@ class WireFields:
         del number
         raise NotInPlaceError(path)
 
+    def scatter(self, path: Path) -> None:
+        raise NotInPlaceError(path)
+
     def appear(self, path: Path) -> None:
         raise NotInPlaceError(path)
 

@@ -94,6 +94,10 @@ class Fields(Protocol):
         """The union at a path has this case, 0 for none: decode says so, encode checks it."""
         ...
 
+    def scatter(self, path: Path) -> None:
+        """Decode: the fields of the struct at a path come in any order, or not at all."""
+        ...
+
     def appear(self, path: Path) -> None:
         """Decode: an optional field is there, whatever is put into it."""
         ...
@@ -210,6 +214,9 @@ class HolderFields:
         else:
             agrees = Compare("eq", Get("i64", place), index(number))
             self.writer.expect(agrees, "union", self.where.members(path[:-1]), "another case is set than the discriminator says")
+
+    def scatter(self, path: Path) -> None:
+        """Lanes take fields in any order."""
 
     def appear(self, path: Path) -> None:
         self.mark(path)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.lowering.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.lowering.related import equal_lengths
-from rosetta_jit.model.expr import Choice, Len, Path
+from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation
-from rosetta_jit.model.walk import Field, fields_of, rebuilt
+from rosetta_jit.model.walk import Field, fields_of, parts, rebuilt
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
@@ -17,8 +17,13 @@ if TYPE_CHECKING:
 
 
 def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops) -> None:
-    """Relations of one field first, then those that have one left when the others are known."""
-    later = [each for each in _relations(rules, loops) if not _solve(known, *each)]
+    """Relations of one field first, then those that have one left when the others are known.
+
+    Where several tell of one field, it is taken from the one that keeps most of it: the others are checks, and what was unpacked
+    must pass them.
+    """
+    solved = {id(rule) for rule, around in sorted(_relations(rules, loops), key=_loss) if _solve(known, rule, around)}
+    later = [each for each in _relations(rules, loops) if id(each[0]) not in solved]
     for _ in range(2):
         later = [each for each in later if not _solve_rest(known, *each)]
 
@@ -34,6 +39,23 @@ def _relations(rules: tuple[Rule, ...], loops: Loops) -> list[tuple[Relation, Lo
         elif isinstance(rule, For):
             found += _relations(rule.body, (*loops, Loop(rule.variable, rule.start, rule.stop)))
     return found
+
+
+def _loss(relation: tuple[Relation, Loops]) -> int:
+    """How much of a field its relation loses: nothing, nothing that is not refused, or perhaps something."""
+    value = relation[0].value
+    return 0 if isinstance(value, Path | Len) else 1 if all(map(_is_reversible, parts(value))) else 2
+
+
+def _is_reversible(part: Expr) -> bool:
+    """Whether an operation gives another value for each, or refuses it, whatever the types."""
+    match part:
+        case Path() | Len() | Literal() | Name() | Unary() | Binary(operator="+" | "-" | "^") | Call(function="divide"):
+            return True
+        case Call(function="int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64", arguments=(_,)):
+            return True
+        case _:
+            return False
 
 
 def _solve(known: Knowledge, rule: Relation, loops: Loops) -> bool:

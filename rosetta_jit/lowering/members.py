@@ -30,6 +30,7 @@ def members(codec: Members, fields: Fields, writer: Writer, walk: Walk) -> None:
     """Read or write all members, and the number of their bytes before them."""
     where, begin = fields.where.members(codec.path), writer.position
     if writer.direction == "decode":
+        fields.scatter(codec.path)
         size = writer.let("size", integer(writer.load("u32", where, codec.order)))
         writer.require(size, where)
         _read(codec, fields, writer, walk, writer.let("stop", Binary("add", writer.position, size)))

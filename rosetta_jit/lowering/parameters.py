@@ -53,6 +53,7 @@ def parameters(codec: Parameters, fields: Fields, writer: Writer, walk: Walk) ->
     """Read or write all members of a mutable struct, and the sentinel behind them."""
     where = fields.where.members(codec.path)
     if writer.direction == "decode":
+        fields.scatter(codec.path)
         _read(codec, fields, writer, walk)
         return
     for member in codec.members:

@@ -62,6 +62,10 @@ class Maker:
     rng: random.Random
     leaves: dict[str, str]
     variables: tuple[str, ...] = ()
+    atoms: tuple[Made, ...] = ()
+    """More that stands where a field does: whether something is there, an enum's number."""
+    arrays: tuple[tuple[str, str], ...] = (("ks", "int32"), ("q", "int16"))
+    """The arrays of integers."""
 
     def of(self, type_: str, depth: int) -> Made:
         """An expression of a type: "int64" (any integer that is computed with), "float32", "float64", "bool" or "string"."""
@@ -84,6 +88,9 @@ class Maker:
         if type_ == "int64" and self.variables and choice < 0.4:
             name = self.rng.choice(self.variables)
             return Made(name, "int64", lambda fields: fields[name])
+        atoms = [each for each in self.atoms if each.type in kinds]
+        if atoms and choice < 0.5:
+            return self.rng.choice(atoms)
         if names and choice < 0.75:
             name = self.rng.choice(names)
             return Made(f".{name}", self.leaves[name], lambda fields: fields[name])
@@ -178,12 +185,12 @@ class Maker:
                 return self.counted(depth)
             case 5:
                 index = self.of("int64", depth - 1)
-                name = self.rng.choice(["ks", "q"])
+                name, kind = self.rng.choice(self.arrays)
                 if index.is_known:
                     index = self.live("int64", 0)
                 return Made(
                     f".{name}[{index.text}]",
-                    "int32" if name == "ks" else "int16",
+                    kind,
                     lambda fields: element(fields[name], index.evaluate(fields), name),
                 )
             case 6:
@@ -437,6 +444,8 @@ def plain(value: Value) -> Value:
     """A value as `to_dict` has it, floats by their bits: NaN is equal to itself, and -0 not to 0."""
     if isinstance(value, list):
         return [plain(each) for each in value]
+    if isinstance(value, dict):
+        return {name: plain(each) for name, each in value.items()}
     if isinstance(value, np.floating | float):
         return "nan" if math.isnan(value) else struct.pack("<d", float(value))
     return int(value) if isinstance(value, np.integer) else value

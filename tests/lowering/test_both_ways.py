@@ -318,6 +318,16 @@ pack-rules:
     assert made.pack(sum=3.0, low=3, values=[1.0, 2.0, 3.0]) == {"a": 1.5, "b": 1.5, "n": 3, "values": [1.0, 2.0, 3.0]}
 
 
+@pytest.mark.parametrize("rules", [".low <-> .n / 7 .n <-> .n", ".n <-> .n .low <-> .n / 7"])
+def test_a_field_is_packed_from_the_relation_that_keeps_it(rules):
+    """The other one is a check, which whatever was unpacked must pass."""
+    made = pair('("n" :int64)', "required int64 n = 1; required int64 low = 2;", f"rules: {rules}")
+    for number in (0, 6, -100, 2**63 - 1):
+        held = made.unpack(n=number)
+        assert made.pack(**held) == {"n": number}
+    assert made.refused(n=6, low=1).kind == "rejected"
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_the_last_unknown_of_several_fields(backend):
     made = pair(

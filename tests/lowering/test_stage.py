@@ -275,3 +275,20 @@ def test_endless_messages_are_not_copied():
     }
     with pytest.raises(rj.MappingError, match="cannot be assigned as a whole"):
         rj.Decoder("copy.mapping", schema=files)
+
+
+@pytest.mark.parametrize("encoding", ["cdr", "cdr2"])
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_members_in_any_order(backend, encoding):
+    """Members of mutable structs come in any order, so that none of them lies at a place that rules could know."""
+    texts = {
+        "a.idl": "module a { @mutable struct Wheel { long turns; string name; }; };",
+        "lab/Turn.msg": "int64 turns\nstring name\n",
+        "m.mapping": 'import "a.idl" import "lab/Turn.msg" data-holder: lab/Turn wire-schema: a::Wheel rules: '
+        "same names .turns <-> .turns * 2",
+    }
+    decode, encode = (kind("m.mapping", schema=texts, encoding=encoding, backend=backend) for kind in (rj.Decoder, rj.Encoder))
+    write = rj.Encoder.of("a::Wheel", schema=texts, imports=["a.idl"], encoding=encoding, backend="interpreter")
+    message = write(write.holder_type.from_dict({"turns": 3, "name": "left"}))
+    assert decode(message).to_dict() == {"turns": 6, "name": "left"}
+    assert encode(decode(message)) == message

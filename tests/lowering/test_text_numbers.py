@@ -109,3 +109,23 @@ def test_packing_numbers(backend):
     assert (found["s"], found["i"], found["x"]) == ("7/1.00", -12, 2.5)
     with pytest.raises(rj.EncodeError, match=re.escape("no such part")):
         run(s="12")
+
+
+@pytest.mark.parametrize("encoding", ["yarp3", "yarp4"])
+def test_an_element_that_a_text_tells(encoding):
+    """The distance of a bottle's elements is known when they are read: it is multiplied with a number that was read."""
+    files = {
+        "a.bottle-schema": '"a" (("xs" (:list :double)) ("t" :string))',
+        "lab/B.msg": "float64 o",
+        "m.mapping": 'import "a.bottle-schema" import "lab/B.msg" data-holder: lab/B wire-schema: a unpack-rules: .o = .xs[integer(.t)]',
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding=encoding, backend="python")
+    write = rj.Encoder.of("a", schema=files, imports=["a.bottle-schema"], encoding=encoding, backend="interpreter")
+    for text, kind in (("1", None), ("-1", "index"), ("2", "index"), ("x", "text"), (str(2**62), "index")):
+        message = write(write.holder_type.from_dict({"xs": [1.5, 2.5], "t": text}))
+        if kind is None:
+            assert decode(message).o == 2.5
+            continue
+        with pytest.raises(rj.DecodeError) as error:
+            decode(message)
+        assert error.value.kind == kind
