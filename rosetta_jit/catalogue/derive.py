@@ -21,6 +21,11 @@ def disagrees(place: str, wanted: str) -> str:
     return f"`{shorten(place)}` is not `{shorten(wanted)}`, as the mapping says"
 
 
+def no_digit(value: str, below: int) -> str:
+    """Why a message or holder is refused that would come back as another: a part of a number is too large for it."""
+    return f"`{shorten(value)}` is not from 0 to {below - 1}"
+
+
 def other_block(condition: str, *, holds: bool) -> str:
     """Why a holder is refused whose message would be unpacked by the other block of a `when`."""
     return f"the message would be unpacked as if `{shorten(condition)}` were {'false' if holds else 'true'}"
@@ -96,6 +101,12 @@ def alike_blocks(span: Span | None, place: str) -> Diagnostic:
         help_=f"relate `{shorten(place)}` to the holder outside of the `when`, relate one field of the holder to other constants in each"
         " block, or write the `when` in `unpack-rules:` and one in `pack-rules:`",
     )
+
+
+def conditional_parts(span: Span | None) -> Diagnostic:
+    """Fields that are parts of one value, within a condition of an expression."""
+    message = "fields that are parts of one value cannot be chosen within an expression"
+    return error("several-fields", message, span, help_="write a `when` with a relation in each block")
 
 
 def too_many_blocks(span: Span | None, most: int) -> Diagnostic:

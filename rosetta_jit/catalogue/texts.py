@@ -19,6 +19,7 @@ KINDS = {
     "pattern": "a text in quotes",
     "quoted": "a text in quotes",
     "integer": "an integer",
+    "moment": "a date as a text, or seconds as a float",
     "size": "a number of bytes",
     "encoding": "an encoding in quotes",
 }

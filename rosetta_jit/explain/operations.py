@@ -39,8 +39,8 @@ OPERATIONS: tuple[Operation, ...] = get_args(Operation)
 Direction = Literal["unpack", "pack"]
 Uses = dict[Operation, tuple[Direction, ...]]
 
-DATES = frozenset(("iso8601", "seconds", "fraction", "nanoseconds"))
-"""Functions of texts that are dates."""
+DATES = frozenset(("iso8601", "timestamp", "seconds", "fraction", "nanoseconds"))
+"""Functions of moments."""
 
 MOMENT = re.compile(r"(?:^|_)(time|timestamp|stamp|duration|date|n?secs?|nanosec|usecs?)(?:_|$)")
 """A field that holds a moment or a duration, by its name, or by that of a field around it."""

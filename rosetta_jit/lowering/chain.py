@@ -156,7 +156,7 @@ def _inner(expr: Expr) -> Expr | None:
             return left
         case Binary(_, Const(), right):
             return right
-        case Call("radians" | "degrees", (argument,)) | Call("divide", (argument, Const())):
+        case Call("radians" | "degrees", (argument,)) | Call("divide" | "floor_divide", (argument, Const())):
             return argument
         case Choice():
             found = table_of(expr)
@@ -179,6 +179,8 @@ def _done(step: Expr, value: _Value) -> _Value:
             return _rounded(replace(_turned(value, -1), type=step.type), 2)
         case Call("divide", (_, Const(divisor))) if divisor:
             return _rounded(replace(_scaled(value, 1 / _fraction(divisor)), type=step.type), 1)
+        case Call("floor_divide", (_, Const(divisor))) if divisor:
+            return _divided(step, value, divisor)
         case Binary("^"):
             return _bijection(step, value)
         case Binary():
@@ -200,12 +202,16 @@ def _computed(step: Binary, value: _Value) -> _Value:
             constant = right if isinstance(right, Const) else left
             return _rounded(_scaled(value, _fraction(_number(constant))), 1)
         case Binary("/", _, Const(number)) if number:
-            divided = _scaled(value, 1 / _fraction(number))
-            if isinstance(step.type, Int) and not _is_whole(divided):
-                raise _LostError("`/` drops remainders")
-            return _rounded(divided, 1)
+            return _divided(step, value, number)
         case _:
             raise _LostError(f"`{step.operator}` gives the same for several values")
+
+
+def _divided(step: Binary | Call, value: _Value, divisor: object) -> _Value:
+    divided = _scaled(value, 1 / _fraction(divisor))
+    if isinstance(step.type, Int) and not _is_whole(divided):
+        raise _LostError(f"`{step.operator if isinstance(step, Binary) else step.function}` drops remainders")
+    return _rounded(divided, 1)
 
 
 def _number(expr: Expr) -> object:

@@ -13,9 +13,11 @@
 | `radians(x)`      | degrees(value), and the reverse   |
 | `float32(x)` …    | the value, as the field holds it  |
 | `divide(x, c)`    | value * c                         |
+| `floor_divide(x, c)` | value * c                      |
 | `table(x) {a = b}`| table(value) {b = a}              |
 
-Those of texts stand in `rosetta_jit.lowering.inverse_texts`, those of arrays in `rosetta_jit.lowering.layouts`.
+Those of texts stand in `rosetta_jit.lowering.inverse_texts`, those of arrays in `rosetta_jit.lowering.layouts`, and those of several fields
+in `rosetta_jit.lowering.inverse_parts`.
 """
 
 from __future__ import annotations
@@ -102,7 +104,7 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return argument, Call(OPPOSITE[function], (value,), span)
         case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
             return argument, value
-        case Call("divide", (argument, divisor), span) if not fields_in(divisor):
+        case Call("divide" | "floor_divide", (argument, divisor), span) if not fields_in(divisor):
             return argument, Binary("*", value, divisor, span)
         case Call(function, (array, *_)) if function in ARGUMENTS:
             return array, put_back(expr, value)

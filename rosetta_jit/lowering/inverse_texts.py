@@ -8,10 +8,12 @@
 | `until_nul(b)`       | the text, NUL behind it where the field has one size   |
 | `padded(s, n)`       | `until_nul(value)`                                     |
 | `"a" + s`, `s + "a"` | `behind(value, "a")`, `before(value, "a")`, and the reverse |
-| `iso8601(ns)`        | `nanoseconds(value)`, and the reverse                  |
-| `seconds(s)`         | `iso8601(value, 0)`                                    |
+| `iso8601(ns)` `timestamp(ns)` | `nanoseconds(value)`                          |
+| `nanoseconds(s)`     | `iso8601(value)`, or `timestamp(value)` for a float    |
+| `seconds(s)`         | `iso8601(value, 0)`, or `timestamp(value, 0)`          |
 
-Two of these depend on the type of the field, which only `rosetta_jit.lowering.resolve` knows: it finds a call of `WRITTEN` or `FILLED`.
+Three of these depend on the type of the field, which only `rosetta_jit.lowering.resolve` knows: it finds a call of `WRITTEN`, `FILLED` or
+`MOMENT`.
 """
 
 from __future__ import annotations
@@ -27,10 +29,10 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Type
 
-WRITTEN, FILLED = "(written)", "(filled)"
-"""The number that a text spells; a text as large as its field. No mapping can write such names."""
+WRITTEN, FILLED, MOMENT = "(written)", "(filled)", "(moment)"
+"""The number that a text spells; a text as large as its field; a point in time. No mapping can write such names."""
 
-SHOWN = {WRITTEN: "number", FILLED: "padded"}
+SHOWN = {WRITTEN: "number", FILLED: "padded", MOMENT: "iso8601"}
 """What they are called where the type of the field does not matter."""
 
 
@@ -54,12 +56,12 @@ def opposite(call: Call, value: Expr) -> tuple[Expr, Expr] | None:
             return inner, Binary("+", start, value, span)
         case "before", (inner, end):
             return inner, Binary("+", value, end, span)
-        case "iso8601", (inner,):
+        case (("iso8601" | "timestamp"), (inner,)):
             return inner, Call("nanoseconds", (value,), span)
         case "nanoseconds", (inner,):
-            return inner, Call("iso8601", (value,), span)
+            return inner, Call(MOMENT, (value,), span)
         case "seconds", (inner,):
-            return inner, Call("iso8601", (value, Literal(0, span)), span)
+            return inner, Call(MOMENT, (value, Literal(0, span)), span)
         case _:
             return None
 
@@ -77,7 +79,7 @@ def without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:
 
 def for_comparison(call: Call) -> Call:
     """A call that was turned round where no field asks for a type: what it is compared with may be any number."""
-    return Call("number", call.arguments, call.span) if call.function == WRITTEN else call
+    return replace(call, function=SHOWN[call.function]) if call.function in (WRITTEN, MOMENT) else call
 
 
 def as_written(expr: Expr) -> Expr:
@@ -101,6 +103,8 @@ def for_type(expr: Expr, type_: Type) -> Expr:
             inner = tuple(for_type(argument, type_) for argument in arguments)
             if name == WRITTEN:
                 return Call("number" if isinstance(type_, Float) else "integer", inner, span)
+            if name == MOMENT:
+                return Call("timestamp" if isinstance(type_, Float) else "iso8601", inner, span)
             if name != FILLED:
                 return Call(name, inner, span)
             size = type_.length if isinstance(type_, Array | Bytes) else None

@@ -15,6 +15,8 @@ from rosetta_jit.model.expr import Call, Expr, Held, Index, Len, Name, Path
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 
 if TYPE_CHECKING:
+    from rosetta_jit.lowering.inverse_parts import Digit
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Relation
 
 
@@ -46,6 +48,15 @@ class Budget:
     parts: int = MAX_PARTS
 
 
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """What must hold besides: for messages, that a relation sets all of its fields; for holders, that two set one field."""
+
+    rule: Relation
+    side: Side
+    digits: tuple[Digit, ...]
+
+
 @dataclass(slots=True)
 class Knowledge:
     """Which relation sets each field of the wire, to what, and what is known of fields by expressions of the holder alone."""
@@ -55,11 +66,12 @@ class Knowledge:
     shapes: dict[Shape, list[Key]] = field(default_factory=dict["Shape", "list[Key]"])
     sizes: dict[Key, int] = field(default_factory=dict["Key", int])
     budget: Budget = field(default_factory=Budget)
+    beside: dict[int, Beside] = field(default_factory=dict[int, "Beside"])
 
     def inside(self) -> Knowledge:
         """The same, for a block that may know more."""
         shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
-        return Knowledge(dict(self.setters), dict(self.values), shapes, dict(self.sizes), self.budget)
+        return Knowledge(dict(self.setters), dict(self.values), shapes, dict(self.sizes), self.budget, self.beside)
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""

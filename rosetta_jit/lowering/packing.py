@@ -21,7 +21,7 @@ from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in
 from rosetta_jit.lowering.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.lowering.learning import learn
 from rosetta_jit.lowering.related import with_layouts
-from rosetta_jit.model.expr import Binary, Call, Held, Len, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.lowering.inverse_parts import Digit
+    from rosetta_jit.lowering.knowledge import Beside
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Span
@@ -63,6 +65,7 @@ class Packing:
 
     problems: list[Diagnostic]
     completed: frozenset[tuple[str, ...]]
+    assigned: frozenset[tuple[str, ...]]
     known: Knowledge = field(default_factory=Knowledge)
     owed: tuple[_Owed, ...] = ()
     blocks: list[Relation] = field(default_factory=list["Relation"])
@@ -72,11 +75,11 @@ class Packing:
     def of(cls, pack_rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Packing:
         """``pack_rules`` are those of the direction's own block."""
         written: dict[Field, Expr] = {rule.place: rule.value for rule in pack_rules if isinstance(rule, Assign)}
-        return cls(problems, frozenset(_set_by(pack_rules)), written=written)
+        return cls(problems, frozenset(_set_by(pack_rules)), frozenset(_set_by(pack_rules, lengths=False)), written=written)
 
     def block(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
         """The rules of a block, when all of its relations are known."""
-        learn(self.known, rules, loops)
+        learn(self.known, rules, loops, self.is_assigned)
         found = self.rules(rules, loops)
         if self.known.budget.parts < 0:
             self.problems.append(words.too_complex(rules[0].span))
@@ -128,9 +131,11 @@ class Packing:
             return ()
         place = with_known_indices(rule.place, self.known, loops)
         fields = fields_in(rule.value)
-        target = next((each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule), None)
-        if target is not None:
-            return self.setting(target, loops, rule)
+        targets = [each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule]
+        if targets:
+            return tuple(found for target in targets for found in self.setting(target, loops, rule))
+        if (beside := self.known.beside.get(id(rule))) is not None:
+            return checks_of(beside)
         wanted = self.known.replaced(rule.value, loops)
         missing = [*fields_of(wanted, "wire"), *fields_of(place, "wire")]
         if not missing:
@@ -169,7 +174,7 @@ class Packing:
             inner = replace(self, known=self.known.inside())
             relation = Relation(rule.place, value, rule.span)
             inner.known.forget(fields_in(value), loops)
-            learn(inner.known, (relation,), loops)
+            learn(inner.known, (relation,), loops, self.is_assigned)
             rest = (When(Binary("==", rule.flag, flag, rule.span), inner.relation(relation, loops), rest, rule.span),)
         return rest
 
@@ -219,7 +224,7 @@ class Packing:
     def enter(self, block: tuple[Rule, ...], loops: Loops, facts: Mapping[Field, Expr] = NOTHING, owed: _Owed | None = None) -> _Block:
         """A block, with the facts that it has set and the conditions that it is owed checked."""
         inner = replace(self, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
-        learn(inner.known, block, loops)
+        learn(inner.known, block, loops, self.is_assigned)
         settings = [inner.fact(place, value, loops) for place, value in facts.items()]
         guards = inner.settle(loops)
         rules = inner.rules(block, loops)
@@ -264,8 +269,28 @@ class Packing:
 
     def is_completed(self, place: Field) -> bool:
         """Whether the rules to pack alone set a field, or something in it or around it."""
-        names = names_of(path_of(place))
-        return any(all(a == b for a, b in zip(names, other, strict=False)) for other in self.completed)
+        return _is_among(place, self.completed)
+
+    def is_assigned(self, place: Field) -> bool:
+        """The same, where a length alone does not count."""
+        return _is_among(place, self.assigned)
+
+
+def _is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:
+    names = names_of(path_of(place))
+    return any(all(a == b for a, b in zip(names, other, strict=False)) for other in fields)
+
+
+def checks_of(beside: Beside) -> tuple[Rule, ...]:
+    """Checks of what must hold besides a relation."""
+    span = beside.rule.span
+    return tuple(_within(digit, span) for digit in beside.digits)
+
+
+def _within(digit: Digit, span: Span | None) -> Rule:
+    is_below, is_above = Binary("<", digit.value, Literal(0, span), span), Binary(">=", digit.value, Literal(digit.below, span), span)
+    reason = words.no_digit(show_expr(digit.value), digit.below)
+    return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
 
 
 def with_known_indices(place: Field, known: Knowledge, loops: Loops) -> Field:
@@ -338,17 +363,19 @@ def _fields_in_rules(rules: tuple[Rule, ...]) -> list[Field]:
     return found
 
 
-def _set_by(rules: tuple[Rule, ...]) -> list[tuple[str, ...]]:
+def _set_by(rules: tuple[Rule, ...], *, lengths: bool = True) -> list[tuple[str, ...]]:
     """The fields that rules set, without indices."""
     found: list[tuple[str, ...]] = []
     for rule in rules:
         match rule:
-            case Assign(place) | SetLength(place) | Default(place):
+            case Assign(place) | Default(place):
+                found.append(names_of(place))
+            case SetLength(place) if lengths:
                 found.append(names_of(place))
             case For(body=body):
-                found += _set_by(body)
+                found += _set_by(body, lengths=lengths)
             case When(then=then, otherwise=otherwise):
-                found += _set_by((*then, *otherwise))
+                found += _set_by((*then, *otherwise), lengths=lengths)
             case _:
                 pass
     return found

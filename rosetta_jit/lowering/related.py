@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.lowering.inverse import fields_in
 from rosetta_jit.lowering.layouts import ARGUMENTS, KEEP_LENGTH
 from rosetta_jit.model.expr import Call, Each, Held, Index, Len, Member, Path
-from rosetta_jit.model.walk import rebuilt
+from rosetta_jit.model.walk import path_of, rebuilt
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,9 +24,9 @@ def equal_lengths(place: Field, value: Expr) -> tuple[Len, Len] | None:
         array = array.arguments[0]
     if not isinstance(place, Path):
         return None
-    if not _has_each(place):
+    if not has_each(place):
         return (Len(array), Len(place, place.span)) if isinstance(array, Path) and _is_plain(array) and _is_plain(place) else None
-    found = [_array(path) for path in fields_in(value) if isinstance(path, Path) and _has_each(path)]
+    found = [_array(path) for path in fields_in(value) if isinstance(path, Path) and has_each(path)]
     wanted = _array(place)
     return (Len(found[0]), Len(wanted, place.span)) if len(found) == 1 and all(map(_is_plain, (found[0], wanted))) else None
 
@@ -47,8 +47,9 @@ def _with_written(expr: Expr, written: Mapping[Field, Expr]) -> Expr:
     return rebuilt(expr, lambda part: _with_written(part, written))
 
 
-def _has_each(path: Path) -> bool:
-    return any(isinstance(step, Each) for step in path.steps)
+def has_each(place: Field) -> bool:
+    """Whether a field, or its length, is meant of each element."""
+    return any(isinstance(step, Each) for step in path_of(place).steps)
 
 
 def _array(path: Path) -> Path:

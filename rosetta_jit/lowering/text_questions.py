@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Compare, Unary, index
-from rosetta_jit.lowering.dates import SECOND, read_date
+from rosetta_jit.kernel.ir import Compare, Unary
+from rosetta_jit.lowering.moments import moment
 from rosetta_jit.lowering.number_text import Read, read_float, read_integer
 from rosetta_jit.lowering.text_search import compared, find, has_at, parts
 from rosetta_jit.lowering.text_values import expect, placed_of, quoted
@@ -36,21 +36,10 @@ def number_of(call: typed.TextCall, values: Values) -> Expr:
             return _read(read_integer(writer, placed_of(arguments[0], values)), "an integer", "int64", values)
         case "number":
             return _read(read_float(writer, placed_of(arguments[0], values)), "a number", "float64", values)
-        case "seconds" | "fraction" | "nanoseconds":
-            return _time(call, values)
+        case "seconds" | "fraction" | "nanoseconds" | "timestamp":
+            return moment(call, values, placed_of)
         case _:
             raise AssertionError(call)
-
-
-def _time(call: typed.TextCall, values: Values) -> Expr:
-    """What a date says, from 1970 on: whole seconds, the nanoseconds behind them, or all of it in nanoseconds."""
-    read = read_date(values.writer, placed_of(call.arguments[0], values))
-    expect(values, Unary("not", read.is_none), "text", "the text is no date with a time and its offset")
-    expect(values, Unary("not", read.is_too_fine), "range", "the date is finer than nanoseconds")
-    if call.function != "nanoseconds":
-        return read.seconds if call.function == "seconds" else read.nanoseconds
-    whole = values.writer.checked("mul", read.seconds, index(SECOND), values.where, line=values.line)
-    return values.writer.checked("add", whole, read.nanoseconds, values.where, line=values.line)
 
 
 def _read(read: Read, what: str, target: str, values: Values) -> Expr:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Place, Unary, Used, Wire, index
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, split, written_date
 from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.images import bytes_of
+from rosetta_jit.lowering.moments import dated
 from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
 from rosetta_jit.lowering.sides import HolderSide
 from rosetta_jit.lowering.text_making import padded, replaced, with_case
@@ -170,7 +170,7 @@ def _called(call: typed.TextCall, values: Values) -> Text:
         case "decoded" | "bytes":
             return _recoded(call, values)
         case "iso8601":
-            return _dated(call, values)
+            return dated(call, values)
         case _:
             raise AssertionError(call)
 
@@ -252,20 +252,6 @@ def _recoded(call: typed.TextCall, values: Values) -> View:
             made = to_utf16(writer, view, big=encoding.endswith("be"))
     expect(values, made.good, "text", f"not valid {encoding}" if call.function == "decoded" else f"a character that {encoding} lacks")
     return made.view
-
-
-def _dated(call: typed.TextCall, values: Values) -> View:
-    """A point in time: nanoseconds, or seconds and the nanoseconds behind them."""
-    writer = values.writer
-    if len(call.arguments) == 1:
-        seconds, nanoseconds = split(writer, values.of(call.arguments[0]))
-    else:
-        seconds, nanoseconds = (writer.let("time", values.of(each)) for each in call.arguments)
-        within = Binary("and", Compare("ge", nanoseconds, index(0)), Compare("lt", nanoseconds, index(SECOND)))
-        expect(values, within, "range", "the nanoseconds are not less than a second")
-    years = Binary("and", Compare("ge", seconds, index(LEAST_SECONDS)), Compare("le", seconds, index(MOST_SECONDS)))
-    expect(values, years, "range", "a time before the year 0 or after 9999")
-    return written_date(writer, seconds, nanoseconds)
 
 
 def placed_of(value: typed.Expr, values: Values) -> View:

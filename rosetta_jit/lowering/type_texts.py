@@ -2,8 +2,9 @@
 
 lower upper until_nul (s)   strip (s [, "chars"])   replace (s, "old", "new")   slice (s, start, stop)   part (s, "by", n)   padded (s, 16)
 behind (s, "begin")   before (s, "end")
-text (number)   text (float, decimals)   text (bytes, "encoding")   bytes (s, "encoding")   iso8601 (ns)   iso8601 (secs, nsecs)
-integer number seconds fraction nanoseconds (s)   parts (s, "by")   starts_with ends_with (s, t)   contains (s, "t")
+text (number)   text (float, decimals)   text (bytes, "encoding")   bytes (s, "encoding")
+iso8601 timestamp (ns)   iso8601 timestamp nanoseconds (secs, nsecs)   seconds fraction nanoseconds (s or float)
+integer number (s)   parts (s, "by")   starts_with ends_with (s, t)   contains (s, "t")
 
 A text is a string, bytes, or an array of 8-bit integers. What is computed from a string is one, and from anything else bytes.
 """
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.conversions import FLOAT64, as_int64, describe
+from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe
 from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, Convert, TextCall
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 
@@ -71,10 +72,14 @@ FORMS: dict[TextFunction, Form] = {
     "number": Form(("text",), FLOAT64),
     "bytes": Form(("text", "encoding"), BYTES),
     "iso8601": Form(("integer", "integer"), TEXT, optional=1),
-    "seconds": Form(("text",), INT64),
-    "fraction": Form(("text",), INT64),
-    "nanoseconds": Form(("text",), INT64),
+    "timestamp": Form(("integer", "integer"), FLOAT64, optional=1),
+    "seconds": Form(("moment",), INT64),
+    "fraction": Form(("moment",), INT64),
+    "nanoseconds": Form(("moment",), INT64),
 }
+PUT_TOGETHER = Form(("integer", "integer"), INT64)
+"""`nanoseconds` of seconds and the nanoseconds behind them."""
+
 WRITING = "text"
 """The function whose arguments are told apart by their types."""
 
@@ -101,7 +106,7 @@ def type_text_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr 
     if expr.function == WRITING:
         return _written(expr, known, scope)
     function: TextFunction = next(name for name in FORMS if name == expr.function)
-    form = FORMS[function]
+    form = PUT_TOGETHER if function == "nanoseconds" and len(known) == 2 else FORMS[function]
     if not len(form.takes) - form.optional <= len(known) <= len(form.takes):
         scope.problems.append(resolve.arguments(expr.span, function, words.listed(form.takes, form.optional), len(known)))
         return None
@@ -172,6 +177,10 @@ def _argument(function: str, kind: str, value: Expr, scope: Scope) -> Expr | Non
             if number is None:
                 scope.problems.append(resolve.integer_needed(value.span, f"an argument of `{function}`", describe(value.type)))
             return number
+        case "moment" if isinstance(value.type, Float):
+            return convert(value, FLOAT64)
+        case "moment":
+            return value if _usable(function, value, scope) else None
         case "size":
             fits = isinstance(value, Const) and isinstance(value.type, Int) and 0 <= int(value.value) <= MAX_PADDED
             problem = None if fits else words.written_size(value.span, function, MAX_PADDED)

@@ -62,7 +62,7 @@ OfTexts = OneOf[
 FromText = OneOf[
     "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
 ]
-TextFunction = OneOf[OfTexts, FromText, "written", "iso8601"]
+TextFunction = OneOf[OfTexts, FromText, "written", "iso8601", "timestamp"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +220,7 @@ class HostCall:
 
 @dataclass(frozen=True, slots=True)
 class TextCall:
-    """A function that takes texts or gives one: strings, bytes, arrays of 8-bit integers. ``compared`` is below, at or above 0."""
+    """A function of texts (strings, bytes, arrays of 8-bit integers) or moments. ``compared`` is below, at or above 0."""
 
     function: TextFunction
     arguments: tuple[Expr, ...]
