@@ -1,23 +1,29 @@
-"""`dataclass` as the standard library's, made in a sixth of the time: processes that start quickly cannot spend theirs on making classes.
+"""`dataclass` as the standard library's, made in a tenth of the time: processes that start quickly cannot spend theirs on making classes.
 
-The standard one compiles six methods for each class, half a millisecond a class. Here `__init__` alone is compiled; comparison, hash,
-repr and the refusal to be changed are the same few functions for all, over the fields' values. What is asked for beyond the `OPTIONS`,
-classes without slots, and those that inherit fields or bring such methods themselves, are left to the standard library.
+The standard one compiles six methods for each class, half a millisecond a class. Here `__init__` is the code of a class of the same shape
+with other names; comparison, hash, repr and the refusal to be changed are the same few functions for all, over the fields' values; and what
+the standard library knows of a class it works out when it is asked for. What is asked for beyond the `OPTIONS`, classes without slots, and
+those that inherit fields or bring such methods themselves, are left to the standard library.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from functools import cache
 from operator import attrgetter
-from typing import TYPE_CHECKING
+from types import FunctionType
+from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
     from dataclasses import dataclass as dataclass  # noqa: PLC0414 - what others import from here
+    from types import CodeType
     from typing import Any
 
 OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
 _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__", "__getstate__", "__setstate__"))
+_DESCRIBED = ("__dataclass_fields__", "__dataclass_params__")
+"""Where the standard library keeps what it knows of a class."""
 
 
 if not TYPE_CHECKING:
@@ -30,46 +36,96 @@ if not TYPE_CHECKING:
 
 
 def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
-    inherits = any(dataclasses.is_dataclass(base) for base in plain.__mro__[1:])
-    if inherits or not _OWN.isdisjoint(vars(plain)) or any("InitVar" in str(each) for each in plain.__annotations__.values()):
+    annotated = {name: str(each) for name, each in plain.__annotations__.items() if not str(each).startswith("ClassVar")}
+    inherits = any(hasattr(base, _DESCRIBED[0]) for base in plain.__bases__)
+    if inherits or not _OWN.isdisjoint(vars(plain)) or any("InitVar" in each for each in annotated.values()):
         return dataclasses.dataclass(**options)(plain)
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
-    frozen, eq, weak = options.get("frozen", False), options.get("eq", True), options.get("weakref_slot", False)
-    made: Any = dataclasses.dataclass(plain, init=False, repr=False, eq=False, slots=True, weakref_slot=weak)
-    fields = dataclasses.fields(made)
-    made.__init__ = _init(fields, has_post_init=hasattr(made, "__post_init__"))
-    if options.get("repr", True):
-        made.__repr__ = _repr(tuple(each.name for each in fields if each.repr))
-    if eq:
-        values = _values(tuple(each.name for each in fields if each.compare))
-        made.__eq__ = _eq(values)
-        made.__hash__ = _hash(values) if frozen else None
-    if frozen:
-        made.__setattr__, made.__delattr__ = _refuse_to_set, _refuse_to_delete
-        made.__getstate__, made.__setstate__ = _state, _set_state
-    made.__dataclass_params__.frozen, made.__dataclass_params__.eq = frozen, eq
+    fields = {name: _field(vars(plain).get(name, dataclasses.MISSING)) for name in annotated}
+    names: dict[str, Any] = {"MISSING": dataclasses.MISSING}
+    kept = {name: each for name, each in vars(plain).items() if name not in fields and name not in ("__dict__", "__weakref__")}
+    described = {name: _Described(name, plain, options) for name in _DESCRIBED}
+    slots = {"__slots__": (*fields, "__weakref__") if options.get("weakref_slot") else tuple(fields), "__qualname__": plain.__qualname__}
+    methods = _methods(fields, options, _init(fields, names, has_post_init=hasattr(plain, "__post_init__")))
+    kind: Any = type(plain)
+    made: Any = kind(plain.__name__, plain.__bases__, {**kept, **slots, **methods, **described})
+    for number, name in enumerate(fields):
+        names[f"set{number}"] = getattr(made, name).__set__
+    for each in described.values():
+        each.made = made
     return made
 
 
-def _init(fields: Sequence[dataclasses.Field[Any]], *, has_post_init: bool) -> Callable[..., None]:
-    """The one method that is compiled: objects are made often, and generic code would be slow at it."""
-    names: dict[str, Any] = {"set_": object.__setattr__, "MISSING": dataclasses.MISSING}
-    parameters, body = ["self"], [" self.__post_init__()"] if has_post_init else [" pass"]
-    for number, field in reversed(tuple(enumerate(fields))):
-        default, value = "", field.name
-        if field.default_factory is not dataclasses.MISSING:
-            names[f"make{number}"] = field.default_factory
-            default, value = "=MISSING", f"make{number}() if {field.name} is MISSING else {field.name}" if field.init else f"make{number}()"
-        elif field.default is not dataclasses.MISSING:
-            names[f"default{number}"] = field.default
-            default, value = f"=default{number}", field.name if field.init else f"default{number}"
-        if field.init:
-            parameters.insert(1, field.name + default)
-        if field.init or default:
-            body.insert(0, f" set_(self, {field.name!r}, {value})")
-    exec(f"def __init__({', '.join(parameters)}):\n" + "\n".join(body), names)  # noqa: S102 - the names of fields of our own classes
-    return names["__init__"]
+def _methods(fields: Mapping[str, dataclasses.Field[Any]], options: Mapping[str, bool], init: Callable[..., None]) -> dict[str, Any]:
+    """All that a class gets; given to it at once, because a class that is changed tells all that have looked at it."""
+    methods: dict[str, Any] = {"__init__": init, "__match_args__": tuple(name for name, each in fields.items() if each.init)}
+    if options.get("repr", True):
+        methods["__repr__"] = _repr(tuple(name for name, each in fields.items() if each.repr))
+    if options.get("eq", True):
+        values = _values(tuple(name for name, each in fields.items() if each.compare))
+        methods |= {"__eq__": _eq(values), "__hash__": _hash(values) if options.get("frozen") else None}
+    if options.get("frozen"):
+        state = tuple(fields)
+        methods |= {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete}
+        methods |= {"__getstate__": _state(state), "__setstate__": _set_state(state)}
+    return methods
+
+
+def _field(default: Any) -> dataclasses.Field[Any]:
+    """What a field's declaration says of it."""
+    return cast("dataclasses.Field[Any]", default if isinstance(default, dataclasses.Field) else dataclasses.field(default=default))
+
+
+class _Described:
+    """What the standard library knows of a class, worked out from the class without slots when somebody asks."""
+
+    __slots__ = ("_name", "_options", "_plain", "made")
+
+    def __init__(self, name: str, plain: type[Any], options: Mapping[str, bool]) -> None:
+        self._name, self._plain, self.made = name, plain, plain
+        self._options = {"frozen": options.get("frozen", False), "eq": options.get("eq", True)}
+
+    def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
+        described = dataclasses.dataclass(init=False, repr=False, match_args=False, **self._options)(self._plain)
+        for name in _DESCRIBED:
+            setattr(self.made, name, getattr(described, name))
+        return getattr(described, self._name)
+
+
+def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
+    """Objects are made often, and generic code would be slow at it: each class has its own, with ``names`` of its own for what it needs."""
+    kinds: list[tuple[bool, bool, bool]] = []
+    defaults: list[Any] = []
+    for number, (name, field) in enumerate(fields.items()):
+        is_made = field.default_factory is not dataclasses.MISSING
+        is_optional = is_made or field.default is not dataclasses.MISSING
+        kinds.append((field.init, is_made, is_optional))
+        names[f"default{number}"], names[f"make{number}"] = field.default, field.default_factory
+        if field.init and is_optional:
+            defaults.append(field.default)
+        elif field.init and defaults:
+            raise TypeError(f"non-default argument {name!r} follows default argument")
+    code = _stores(tuple(kinds), has_post_init=has_post_init)
+    parameters = ("self", *(name for name, each in fields.items() if each.init))
+    return FunctionType(code.replace(co_varnames=parameters), names, "__init__", tuple(defaults))
+
+
+@cache
+def _stores(kinds: tuple[tuple[bool, bool, bool], ...], *, has_post_init: bool) -> CodeType:
+    """The code of an `__init__`: for each field, whether it is a parameter, is made anew where none is given, and has a default at all."""
+    parameters, body = ["self"], list[str]()
+    for number, (is_parameter, is_made, has_default) in enumerate(kinds):
+        given, made = f"a{number}", f"make{number}()"
+        if is_parameter:
+            parameters.append(given)
+            body.append(f" set{number}(self, {f'{made} if {given} is MISSING else {given}' if is_made else given})")
+        elif has_default:
+            body.append(f" set{number}(self, {made if is_made else f'default{number}'})")
+    body.append(" self.__post_init__()" if has_post_init else " pass")
+    made_by: dict[str, Any] = {}
+    exec(f"def __init__({', '.join(parameters)}):\n" + "\n".join(body), made_by)  # noqa: S102 - our own text, without a name from elsewhere
+    return made_by["__init__"].__code__
 
 
 def _values(names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
@@ -108,10 +164,16 @@ def _refuse_to_delete(self: Any, name: str) -> None:  # noqa: ARG001 - whichever
     raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
 
 
-def _state(self: Any) -> list[Any]:
-    return [getattr(self, field.name) for field in dataclasses.fields(self)]
+def _state(names: tuple[str, ...]) -> Callable[[Any], list[Any]]:
+    def __getstate__(self: Any) -> list[Any]:  # noqa: N807 - what it becomes
+        return [getattr(self, name) for name in names]
+
+    return __getstate__
 
 
-def _set_state(self: Any, state: list[Any]) -> None:
-    for field, value in zip(dataclasses.fields(self), state, strict=True):
-        object.__setattr__(self, field.name, value)
+def _set_state(names: tuple[str, ...]) -> Callable[[Any, list[Any]], None]:
+    def __setstate__(self: Any, state: list[Any]) -> None:  # noqa: N807 - what it becomes
+        for name, value in zip(names, state, strict=True):
+            object.__setattr__(self, name, value)
+
+    return __setstate__

@@ -10,6 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
+from rosetta_jit.garbage import seldom_collected
 from rosetta_jit.request import GivenFunction, Request, plain_parameters
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
@@ -241,7 +242,8 @@ def _loaded(request: Request) -> Loaded:
     if name is not None:
         with suppress(KeyError):
             return _shared(name, cache)
-    return _compiled(_build(request), cache, asked)
+    with seldom_collected():
+        return _compiled(_build(request), cache, asked)
 
 
 def _compiled(build: Build, cache: Cache, asked: str) -> Loaded:

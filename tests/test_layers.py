@@ -28,6 +28,7 @@ ANYTHING = MIDDLE | {
     "recording",
     "explain",
     "cells",
+    "garbage",
     "sha",
     "cli",
     "demo",
@@ -37,6 +38,7 @@ ANYTHING = MIDDLE | {
 MAY_IMPORT = {
     "dataclass": set(),
     "sha": set(),
+    "garbage": set(),
     "source": set(),
     "errors": {"diagnostics"},
     "cells": set(),

@@ -16,6 +16,7 @@ from rosetta_jit.backends import llvm_decimals
 from rosetta_jit.backends.llvm_frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
 from rosetta_jit.backends.llvm_utf8 import is_text_function
 from rosetta_jit.kernel.ir import (
+    BEGIN,
     WIDTH,
     Address,
     Binary,
@@ -118,16 +119,32 @@ def pointer(frame: Frame, address: Address) -> ir.Value:
 
 def wire_pointer(frame: Frame, at: Expr) -> ir.Value:
     """The machine address of a byte of the message."""
-    return frame.builder.gep(frame.parameters.buffer, [expression(frame, at)], source_etype=I8)
+    base, offset = _parts(at)
+    if base == BEGIN:
+        return _moved(frame, frame.message(), offset)
+    return _moved(frame, frame.builder.gep(frame.parameters.buffer, [expression(frame, base)], source_etype=I8), offset)
 
 
 def place_pointer(frame: Frame, place: Place) -> ir.Value:
     """The machine address of a field of a row."""
     builder, stride = frame.builder, frame.strides[place.lane]
-    row = expression(frame, place.row)
-    offset = row if stride == 1 else builder.mul(row, constant(stride), flags=("nsw",))
-    start = builder.gep(frame.address(place.lane), [offset], source_etype=I8)
-    return builder.gep(start, [constant(place.offset)], source_etype=I8) if place.offset else start
+    base, rows = _parts(place.row)
+    row = expression(frame, base)
+    start = row if stride == 1 else builder.mul(row, constant(stride), flags=("nsw",))
+    return _moved(frame, builder.gep(frame.address(place.lane), [start], source_etype=I8), rows * stride + place.offset)
+
+
+def _parts(index: Expr) -> tuple[Expr, int]:
+    """What is computed of an index, and the constant behind it: LLVM would find it with more effort."""
+    match index:
+        case Binary("add", base, Const("i64", offset)):
+            return base, int(offset)
+        case _:
+            return index, 0
+
+
+def _moved(frame: Frame, address: ir.Value, offset: int) -> ir.Value:
+    return frame.builder.gep(address, [constant(offset)], source_etype=I8) if offset else address
 
 
 def place_alignment(frame: Frame, place: Place, type_: Scalar) -> int:

@@ -37,6 +37,9 @@ LLVM_TYPES: dict[str, ir.Type] = {
     "f64": F64,
 }
 
+MESSAGE = (-1, 0)
+"""Among what is loaded at the start, by lane and word, the address of the message."""
+
 CROWDED = 64
 """Lanes from which on a function keeps what it knows of them in memory."""
 
@@ -126,6 +129,12 @@ class Frame:
     caller: tuple[Frame, Call] | None = None
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
+
+    def message(self) -> ir.Value:
+        """Where the message begins."""
+        if MESSAGE not in self.loaded:
+            self.loaded[MESSAGE] = self.entry.gep(self.parameters.buffer, [self.parameters.begin], source_etype=I8, name="message")
+        return self.loaded[MESSAGE]
 
     def address(self, lane: int) -> ir.Value:
         """Where the lane's rows start."""
