@@ -108,7 +108,11 @@ def parameter(relations: Relations, name: str) -> Part:
         case 0:
             kinds: dict[str, Kind] = {name: Scalar("int64")}
             return Part(
-                kinds, kinds, f".{name} <-> .{name} + {given}\n", lambda fields: {name: fits(fields[name] + number)}, parameters={given: ("int64", number)}
+                kinds,
+                kinds,
+                f".{name} <-> .{name} + {given}\n",
+                lambda fields: {name: fits(fields[name] + number)},
+                parameters={given: ("int64", number)},
             )
         case 1:
             kinds = {name: Scalar("int64")}

@@ -66,7 +66,9 @@ class Part:
         return chosen(rng, self.holder, self.holders)
 
 
-def chosen(rng: random.Random, kinds: Mapping[str, Kind], likely: Callable[[random.Random], Values] | None, *, is_sure: bool = False) -> Values:
+def chosen(
+    rng: random.Random, kinds: Mapping[str, Kind], likely: Callable[[random.Random], Values] | None, *, is_sure: bool = False
+) -> Values:
     """Likely values, or any."""
     if likely is not None and (is_sure or rng.random() < 0.8):
         return likely(rng)
