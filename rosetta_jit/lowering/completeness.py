@@ -155,7 +155,7 @@ class _Checker:
         struct = self.target.value_type(element)
         parts = [write for write in writes if len(write.steps) > 1]
         if not isinstance(struct, Struct) or not parts:
-            for group in self.fill(where, extent, writes):
+            for group in self.fill(where, where.level, extent, writes):
                 self.value(where.element(), element, group)
             return
         whole = [write for write in writes if len(write.steps) == 1]
@@ -166,7 +166,7 @@ class _Checker:
             if not mine or field.constant is not None:
                 self.field(name, field, [])
                 continue
-            for group in self.fill(name, extent, mine, optional=not self.must_be_set(field)):
+            for group in self.fill(name, where.level, extent, mine, optional=not self.must_be_set(field)):
                 self.part(name, field, group)
 
     def part(self, where: _Where, field: Field, group: list[Write]) -> None:
@@ -178,12 +178,15 @@ class _Checker:
         else:
             self.field(where, field, parts)
 
-    def fill(self, where: _Where, extent: _Extent, writes: list[Write], *, optional: bool = False) -> list[list[Write]]:
-        """Check that writes fill an array; the writes to one element, for each kind of element that they tell apart."""
+    def fill(self, where: _Where, level: int, extent: _Extent, writes: list[Write], *, optional: bool = False) -> list[list[Write]]:
+        """Check that writes fill an array; the writes to one element, for each kind of element that they tell apart.
+
+        ``level`` is how many arrays are around it.
+        """
         groups: dict[Run, list[Write]] = {}
         for write in writes:
             try:
-                entered = enter(write, where.level)
+                entered = enter(write, level)
             except TooComplexError:
                 self.problems.append(words.too_complex(write.span))
                 return []

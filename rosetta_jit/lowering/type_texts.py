@@ -110,6 +110,8 @@ def type_text_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr 
     if not len(form.takes) - form.optional <= len(known) <= len(form.takes):
         scope.problems.append(resolve.arguments(expr.span, function, words.listed(form.takes, form.optional), len(known)))
         return None
+    if function in ("behind", "before") and _quoted(known[1]) == "":
+        return _argument(function, "text", known[0], scope)  # a parameter may be empty, and then nothing is taken away
     taken = [_argument(function, kind, argument, scope) for kind, argument in zip(form.takes, known, strict=False)]
     fitting = [argument for argument in taken if argument is not None]
     if len(fitting) < len(taken):

@@ -180,3 +180,29 @@ def test_mappings_that_use_each_other_too_often_are_refused():
     }
     with pytest.raises(rj.MappingError, match="more than 1000 times"):
         rj.Decoder("many.mapping", schema=files)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("rules", "order"),
+    [
+        (".xs <-> reversed(.xs)", [3, 2, 1, 0]),
+        (".xs <-> planar(.xs, 2)", [0, 2, 1, 3]),
+        (".xs <-> permuted(.xs, [1, 0])", [1, 0, 3, 2]),
+        ("len(.xs) <-> len(.xs) for i from 0 to len(.xs) .xs[len(.xs) - 1 - i] <-> .xs[i] end", [3, 2, 1, 0]),
+    ],
+)
+def test_arrays_in_another_order_in_each_message(rules, order, backend):
+    """The checker tells the elements of an inner array from those of the array around it."""
+    head = 'import "lab/A.msg" import "lab/B.msg" '
+    texts = {
+        **{"lab/Row.msg": "float64[] xs\n", "lab/Line.msg": "float64[] xs\n", "lab/A.msg": "Row[] rows\n", "lab/B.msg": "Line[] rows\n"},
+        "row.mapping": f"{head} data-holder: lab/Line wire-schema: lab/Row rules: {rules}",
+        "m.mapping": f'{head} data-holder: lab/B wire-schema: lab/A rules: .rows <-> .rows via "row.mapping"',
+    }
+    decode, encode = (kind("m.mapping", schema=texts, encoding="ros1", backend=backend) for kind in (rj.Decoder, rj.Encoder))
+    write = rj.Encoder.of("lab/A", schema=texts, imports=["lab/A.msg"], encoding="ros1", backend="interpreter")
+    rows = [[1.0, 2.0, 3.0, 4.0], [], [5.0, 6.0, 7.0, 8.0]]
+    message = write(write.holder_type.from_dict({"rows": [{"xs": row} for row in rows]}))
+    assert decode(message).to_dict() == {"rows": [{"xs": [row[i] for i in order] if row else []} for row in rows]}
+    assert encode(decode(message)) == message

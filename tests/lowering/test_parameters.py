@@ -286,3 +286,18 @@ def test_places_that_choose_items_are_bounded():
     with pytest.raises(rj.MappingError) as error:
         rj.Decoder("m.mapping", schema=files(rules), encoding="yarp3", backend="interpreter", parameters={"xs": [1.0] * 500})
     assert [problem.code for problem in error.value.diagnostics if problem.severity == "error"] == ["many-cases"]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("prefix", ["", "map/"])
+def test_a_prefix_that_may_be_empty(prefix, backend):
+    texts = {
+        "a.bottle-schema": '"a" (("frame" :string) ("tool" :string))',
+        "lab/B.msg": "string frame\nstring tool\n",
+        "m.mapping": 'import "a.bottle-schema" import "lab/B.msg" parameter prefix: string = "" data-holder: lab/B wire-schema: a '
+        "rules: .frame <-> prefix + .frame .tool <-> .tool + prefix",
+    }
+    given = {"schema": texts, "encoding": "yarp4", "backend": backend, "parameters": {"prefix": prefix}}
+    decode, encode = rj.Decoder("m.mapping", **given), rj.Encoder("m.mapping", **given)
+    values = {"frame": f"{prefix}arm", "tool": f"hand{prefix}"}
+    assert decode(encode(encode.holder_type.from_dict(values))).to_dict() == values
