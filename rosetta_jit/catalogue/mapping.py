@@ -121,6 +121,11 @@ def number(span: Span, target: str) -> Diagnostic:
     return error("number", f"the number does not fit {target}", span, "too large", help_="write a smaller one")
 
 
+def key_field(span: Span | None) -> Diagnostic:
+    """A key that is no plain field of the elements."""
+    return error("key-field", "elements are known by a field, or a field of one", span, "this is none", help_='write `.a[.key = "x"]`')
+
+
 def picked(span: Span | None) -> Diagnostic:
     """An element of a list of elements that is no number."""
     return error(

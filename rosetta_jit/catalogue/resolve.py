@@ -77,6 +77,23 @@ def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
     return error("no-fields", f"`.{shorten(name)}` of {found}, which has no fields", span, f"this is {found}", help_=hint)
 
 
+def no_keys(span: Span | None, found: str) -> Diagnostic:
+    """A key of what has no elements with fields."""
+    message = f"{shorten(found)} has no elements that a field tells apart"
+    return error("no-keys", message, span, "here", help_="name an array of messages, or a map")
+
+
+def key_to_set(span: Span | None) -> Diagnostic:
+    """An element that is set by a key that is not known."""
+    help_ = "write the key down, or set the elements by their numbers, each with its key"
+    return error("key-to-set", "a key of an element that is set must be known when the mapping is compiled", span, "here", help_=help_)
+
+
+def no_number_of(span: Span | None) -> Diagnostic:
+    """`index` of what is not searched for."""
+    return error("arguments", "`index` takes an element that a key tells", span, "this is none", help_='write `index(.a[.key = "x"])`')
+
+
 def not_indexable(span: Span | None, found: str) -> Diagnostic:
     """An element of something that has none."""
     return error("not-indexable", f"{found} cannot be indexed", span, help_="only arrays and bytes have elements")

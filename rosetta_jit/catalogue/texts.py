@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 KINDS = {
     "text": "a text",
+    "texts": "an array of texts",
     "characters": "characters in quotes",
     "pattern": "a text in quotes",
     "quoted": "a text in quotes",
@@ -40,6 +41,12 @@ def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
         else "name a text, bytes, or an array of 8-bit integers"
     )
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
+
+
+def texts_needed(span: Span | None, function: str, found: str) -> Diagnostic:
+    """Something else than an array of texts."""
+    help_ = "name an array of strings or bytes"
+    return error("text-needed", f"`{function}` takes an array of texts, not {shorten(found)}", span, f"this is {shorten(found)}", help_=help_)
 
 
 def wide_text(span: Span | None) -> Diagnostic:

@@ -107,7 +107,7 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "image compression"
         case typed.Told() | typed.HostCall():
             yield "generators"
-        case typed.Has():
+        case typed.Has() | typed.Search():
             yield "predicate assignment"
         case typed.BytesCall():
             yield "array reorder"

@@ -14,7 +14,24 @@ from lark import Token, Tree
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frontend.templates import pieces_of
-from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Item, Len, List, Literal, Member, Name, Path, Pick, Slice, Unary
+from rosetta_jit.model.expr import (
+    Binary,
+    Call,
+    Choice,
+    Each,
+    Index,
+    Item,
+    Keyed,
+    Len,
+    List,
+    Literal,
+    Member,
+    Name,
+    Path,
+    Pick,
+    Slice,
+    Unary,
+)
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Parameter, Reject, Relation, SameNames, SetLength, Via, When
 from rosetta_jit.source import Span
 
@@ -199,6 +216,8 @@ def _step(step: Tree[Token] | Token, context: Context) -> Step:
         return Member(str(step)[1:].strip('"'), context.span(step))
     span, parts = context.span(step), [_expr(part, context) for part in _trees(step)]
     match str(step.data), parts:
+        case "keyed", [Path(steps=steps, span=place), value]:
+            return Keyed(_names(steps, place, context), value, span)
         case "each", _:
             return Each(span)
         case "slice", [start, *bounds]:
@@ -210,6 +229,13 @@ def _step(step: Tree[Token] | Token, context: Context) -> Step:
             return Index(index, span)
         case _:
             raise AssertionError(step)
+
+
+def _names(steps: tuple[Step, ...], span: Span | None, context: Context) -> tuple[str, ...]:
+    """The field of an element by which it is known."""
+    if not all(isinstance(step, Member) for step in steps):
+        context.problems.append(words.key_field(span))
+    return tuple(step.name for step in steps if isinstance(step, Member))
 
 
 def _numbers(items: tuple[Expr, ...], context: Context) -> tuple[int, ...]:

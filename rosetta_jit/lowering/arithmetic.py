@@ -88,6 +88,23 @@ def floored(writer: Writer, function: str, left: Expr, right: Expr, where: Where
     return binary(writer, "-", quotient, more, where, line)
 
 
+def others(writer: Writer, number: Expr, without: list[Expr], where: Where, line: str = "") -> Expr:
+    """The integer of a number, from 0, among those that are not left out: each that is left out and not above it moves it on by one."""
+    ordered = [writer.once(each) for each in without]
+    for turn in range(len(ordered)):
+        for low in range(turn % 2, len(ordered) - 1, 2):
+            one, other = ordered[low : low + 2]
+            ordered[low], ordered[low + 1] = writer.let("lower", Binary("min", one, other)), writer.let("upper", Binary("max", one, other))
+    found, before = writer.let("number", number), None
+    for each in ordered:
+        is_passed: Expr = Compare("le", each, found)
+        if before is not None:  # twice the same counts once
+            is_passed = Binary("and", is_passed, Compare("ne", each, before))
+        step = writer.let("step", Select(is_passed, index(1), index(0)))
+        found, before = writer.once(writer.checked("add", found, step, where, line=line)), each
+    return found
+
+
 def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str = "") -> Expr:
     """``number`` rounded up to a multiple of ``quantum``; a quantum of 1 or less changes nothing."""
     number = writer.once(number)

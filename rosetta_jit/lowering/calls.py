@@ -6,7 +6,8 @@ int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate | saturate])     of a float
 float32 float64 (x [, exact])   bool (x)   enum.name (x)
 radians degrees sqrt sin cos tan asin acos atan (x) atan2 (y, x) of float64
-floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide floor_divide modulo (x, y)
+floor ceil round (x)   abs (x)   min max (x, y, …)   align (n, quantum)   divide floor_divide modulo (x, y)   others (n, x, …)
+index (.a[.key = x]) stands in `lowering.expressions`
 """
 
 from __future__ import annotations
@@ -60,7 +61,10 @@ FUNCTIONS = (
     "divide",
     "floor_divide",
     "modulo",
+    "others",
 )
+MAX_OTHERS = 16
+"""Numbers that are left out."""
 
 
 def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -83,7 +87,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     if expr.function in NUMBERS_AT:
         return type_number_at(expr, NUMBERS_AT[expr.function], scope, type_expr)
     if expr.function not in FUNCTIONS:
-        own = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, *NAMES, *IMAGE_FUNCTIONS, *NUMBERS_AT, "bool", "byte", "has", "len"}
+        own = {*INTEGERS, *FLOATS, *FUNCTIONS, *ARGUMENTS, *NAMES, *IMAGE_FUNCTIONS, *NUMBERS_AT, "bool", "byte", "has", "index", "len"}
         known = own | {*scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
@@ -170,6 +174,8 @@ def _arity(expr: model.Call, scope: Scope) -> bool:
     match expr.function:
         case "min" | "max":
             fits, expected = found >= 2, "two or more values"
+        case "others":
+            fits, expected = 2 <= found <= MAX_OTHERS + 1, f"a number and 1 to {MAX_OTHERS} that are left out"
         case "now" | "counter":
             fits, expected = found == 0, "no values"
         case "align":
@@ -198,7 +204,7 @@ def _function(expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | N
 def _candidates(function: str) -> tuple[Int | Float, ...]:
     """The types in which a function is computed, narrowest first."""
     match function:
-        case "align" | "floor_divide" | "modulo":
+        case "align" | "floor_divide" | "modulo" | "others":
             return (INT64,)
         case "abs" | "min" | "max" | "divide":
             return (INT64, Float(32), FLOAT64)
@@ -245,5 +251,7 @@ def _of_integers(function: Function, numbers: list[int]) -> int | None:
             return number // divisor
         case "modulo", [number, divisor]:
             return number % divisor
+        case "others", [number, *without]:
+            return reduce(lambda number, each: number + (each <= number), sorted(set(without)), number)
         case _:
             return abs(numbers[0])

@@ -7,6 +7,8 @@ is reported and gives None; whoever asked stops there, so that one mistake makes
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
@@ -17,9 +19,10 @@ from rosetta_jit.lowering.functions import type_host_call
 from rosetta_jit.lowering.held import type_held
 from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
 from rosetta_jit.lowering.listed import compared_text, type_listed
-from rosetta_jit.lowering.scope import Broken, resolve_path
+from rosetta_jit.lowering.scope import Broken, Sought, resolve_path
+from rosetta_jit.lowering.type_search import is_found, type_search
 from rosetta_jit.lowering.type_texts import concatenation, is_textual
-from rosetta_jit.lowering.typed import INT64, Access, Binary, Const, FieldStep, Has, LenOf, Local, Unary
+from rosetta_jit.lowering.typed import BOOL, INT64, Access, Binary, Const, FieldStep, Has, IndexStep, LenOf, Local, Search, Unary
 from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
@@ -60,8 +63,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return _binary(expr, scope)
         case model.Call(function) if function in scope.functions:
             return type_host_call(expr, scope.functions[function], scope, type_expr)
-        case model.Call("has", (model.Path() as path,)):
-            return _presence(path, expr.span, scope)
+        case model.Call("has" | "index" as function, (model.Path() as path,)):
+            return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
         case model.Call():
             return type_call(for_comparison(expr), scope, type_expr)
         case model.Choice():
@@ -85,8 +88,10 @@ def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
     return integer
 
 
-def type_index(expr: model.Expr, scope: Scope) -> Expr | None:
+def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
     """The index of an element."""
+    if isinstance(expr, Sought):
+        return type_search(expr, scope, type_expr)
     return type_integer(expr, scope, "an index")
 
 
@@ -135,10 +140,26 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     if isinstance(place, Broken):
         return None
     schema = scope.messages[place.side].schema
+    asked = is_found(place)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
-        return Has(place, span=span)
+        asked.append(Has(place, span=span))
+    if asked:
+        return reduce(lambda left, right: Binary("and", left, right, BOOL, span), asked)
     scope.problems.append(words.always_there(span, describe(place.type)))
     return None
+
+
+def _number_of(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
+    """The number of an element that a key tells."""
+    place = resolve_path(path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    match place.steps:
+        case (*_, IndexStep(Search() as search)):
+            return replace(search, span=span)
+        case _:
+            scope.problems.append(words.no_number_of(span))
+            return None
 
 
 def _negative(expr: model.Unary, scope: Scope) -> Expr | None:

@@ -15,15 +15,16 @@ from rosetta_jit.lowering.units import in_unit
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.lowering.scope import Scope
+    from rosetta_jit.lowering.scope import Scope, Sought
     from rosetta_jit.lowering.typed import Expr
     from rosetta_jit.model import expr as model
     from rosetta_jit.model.types import Type
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+    TypeIndex = Callable[[model.Expr | Sought, Scope], Expr | None]
 
 
-def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: TypeExpr) -> Expr | None:
+def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> Expr | None:
     """The typed form of a value in the unit and of the type of a place; what cannot be is reported where the place is set."""
     place = resolve_path(expr.place, scope, type_index)
     if isinstance(place, Broken):

@@ -31,6 +31,7 @@ from rosetta_jit.lowering.typed import (
     LenOf,
     Listed,
     Local,
+    Search,
     TextCall,
     Told,
     Unary,
@@ -182,6 +183,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
         case Has(place):
             return atom(f"has {_path_shape(place)}", *_indices(place))
+        case Search(place, _, condition):
+            return atom(f"in {_path_shape(place)}", *_indices(place), polynomial_of(condition))
         case Choice() | Listed() | Given():
             return _chosen(expr)
         case Const(value=value):

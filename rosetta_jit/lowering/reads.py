@@ -116,7 +116,7 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Access(place) | typed.LenOf(place) | typed.IsText(place) | typed.Has(place):
             yield place
             yield from _in_indices(place)
-        case typed.Unary(_, operand) | typed.Convert(operand):
+        case typed.Unary(_, operand) | typed.Convert(operand) | typed.Search(_, _, operand):
             yield from _in(operand)
         case typed.Binary(_, left, right):
             yield from _in(left)

@@ -25,7 +25,9 @@ from rosetta_jit.lowering.typed import (
     Listed,
     Local,
     Reject,
+    Search,
     SetLength,
+    TextCall,
     Unary,
     When,
 )
@@ -42,11 +44,13 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
     match expr:
         case Access(place) | LenOf(place) | IsText(place) | Has(place):
             return replace(expr, place=placed(place, change))
+        case Search(place, _, condition):
+            return replace(expr, place=placed(place, change), condition=change(condition))
         case Unary(operand=operand) | Convert(operand=operand):
             return replace(expr, operand=change(operand))
         case Binary(left=left, right=right):
             return replace(expr, left=change(left), right=change(right))
-        case Call(arguments=arguments) | BytesCall(arguments=arguments):
+        case Call(arguments=arguments) | BytesCall(arguments=arguments) | TextCall(arguments=arguments):
             return replace(expr, arguments=tuple(map(change, arguments)))
         case Choice(cases, otherwise):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)

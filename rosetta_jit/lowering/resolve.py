@@ -21,6 +21,7 @@ from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.functions import signatures
 from rosetta_jit.lowering.held import fitted
 from rosetta_jit.lowering.inverse_texts import for_type
+from rosetta_jit.lowering.keyed import numbered
 from rosetta_jit.lowering.lengths_first import lengths_first
 from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
@@ -137,7 +138,7 @@ class _Block:
 
     def whole(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
         """All rules of one mapping for a direction."""
-        return self.rules(elementwise(rules, scope, self.broken), scope)
+        return self.rules(elementwise(numbered(rules, scope), scope, self.broken), scope)
 
     def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
         for rule, behind in pairwise(rules):

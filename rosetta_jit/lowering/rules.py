@@ -19,6 +19,7 @@ from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
 from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
+from rosetta_jit.lowering.searching import look_ahead
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import place_of
 from rosetta_jit.lowering.text_values import checked, text_of
@@ -105,6 +106,7 @@ class Runner:
         self.writer.expect(Compare("ge", stop, start), "count", values.where, "the loop ends before it starts", line=values.line)
         count = stop if start == index(0) else binary(self.writer, "-", stop, start, values.where, values.line)
         number = Local("i64", self.writer.fresh(rule.variable.name))
+        look_ahead(rule.body, values)
         with self.forgetting(), self.writer.nested() as body:
             variable = number if start == index(0) else self.writer.let(rule.variable.name, add(number, start))
             self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))

@@ -10,7 +10,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.typed import Const, FieldStep, IndexStep, Place
-from rosetta_jit.model.expr import Each, Index, Member, Pick, Slice
+from rosetta_jit.model.expr import Each, Index, Keyed, Member, Pick, Slice
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bytes, Enum, Int, Map, Optional, Struct, Union
 
@@ -99,7 +99,16 @@ class Broken:
     fields: tuple[str, ...]
 
 
-def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Expr | None]) -> Place | Broken:
+@dataclass(frozen=True, slots=True)
+class Sought:
+    """An element that is known by a key: the array, the message of each element, and which one it is."""
+
+    array: Place
+    element: Message
+    step: Keyed
+
+
+def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped | Sought, Scope], Expr | None]) -> Place | Broken:
     """The place that a path names; ``index`` types the expressions within."""
     message, base = scope.messages[path.side], scope.base(path.side)
     type_: Type = message.root
@@ -111,6 +120,8 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped, Scope], Exp
                 found = _member(step, type_, message, scope, path.side)
             case Index():
                 found = _element(step, type_, scope, index)
+            case Keyed():
+                found = _sought(step, Place(base.side, tuple(steps), type_, path.span), message, scope, index)
             case Slice() | Pick() | Each():
                 scope.problems.append(layouts.out_of_place(step.span))
                 found = Broken(())
@@ -161,6 +172,17 @@ def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, S
     if index is None or not _in_range(index, type_, scope):
         return Broken(())
     return [IndexStep(index, step.span)], element_type(type_)
+
+
+def _sought(
+    step: Keyed, array: Place, message: Message, scope: Scope, typed: Callable[[Untyped | Sought, Scope], Expr | None]
+) -> tuple[list[Step], Type] | Broken:
+    element = message.value_type(element_type(array.type)) if isinstance(array.type, Array | Map) else None
+    if not isinstance(element, Struct):
+        scope.problems.append(words.no_keys(step.span, describe(array.type)))
+        return Broken(())
+    index = typed(Sought(array, Message(element, message.schema), step), scope)
+    return Broken(()) if index is None else ([IndexStep(index, step.span)], element)
 
 
 def _in_range(index: Expr, type_: Array | Bytes | Map, scope: Scope) -> bool:

@@ -169,16 +169,16 @@ def _array_places(node: object) -> list[typed.Place]:
         case typed.When(condition, then, otherwise):
             return _array_places((condition, *then, *otherwise))
         case typed.IsText(place):
-            return [place]
+            return [place, *_indexed(place)]
         case typed.Choice(cases, otherwise):
             return _array_places((*cases, otherwise))
         case typed.Listed(items, at):
             return _array_places((*items, at))
         case typed.LenOf(place):
             return [place]
-        case typed.Access(place):
+        case typed.Access(place) | typed.Has(place):
             return _indexed(place)
-        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _) | typed.Search(_, _, operand):
             return _array_places(operand)
         case typed.Binary(_, left, right):
             return _array_places((left, right))

@@ -1,7 +1,7 @@
 """Types of text expressions: the functions that take or give texts, concatenation, and comparison.
 
 lower upper until_nul (s)   strip (s [, "chars"])   replace (s, "old", "new")   slice (s, start, stop)   part (s, "by", n)   padded (s, 16)
-behind (s, "begin")   before (s, "end")
+behind (s, "begin")   before (s, "end")   join (texts, "by")   split (s, "by"), which gives an array
 text (number)   text (float, decimals)   text (bytes, "encoding")   bytes (s, "encoding")
 iso8601 timestamp (ns)   iso8601 timestamp nanoseconds (secs, nsecs)   seconds fraction nanoseconds (s or float)
 integer number (s)   parts (s, "by")   starts_with ends_with (s, t)   contains (s, "t")
@@ -11,13 +11,14 @@ A text is a string, bytes, or an array of 8-bit integers. What is computed from 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe
-from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, Convert, TextCall
+from rosetta_jit.lowering.typed import BOOL, INT64, Access, Binary, Const, Convert, TextCall
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 
 if TYPE_CHECKING:
@@ -64,6 +65,8 @@ FORMS: dict[TextFunction, Form] = {
     "before": Form(("text", "pattern"), None),
     "until_nul": Form(("text",), None),
     "padded": Form(("text", "size"), None),
+    "join": Form(("texts", "pattern"), None),
+    "split": Form(("text", "pattern"), None),
     "parts": Form(("text", "pattern"), INT64),
     "starts_with": Form(("text", "text"), BOOL),
     "ends_with": Form(("text", "text"), BOOL),
@@ -116,7 +119,8 @@ def type_text_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr 
     fitting = [argument for argument in taken if argument is not None]
     if len(fitting) < len(taken):
         return None
-    return TextCall(function, tuple(fitting), form.gives or _kind(fitting[0]), expr.span)
+    gives = form.gives or _kind(fitting[0])
+    return TextCall(function, tuple(fitting), Array(gives) if function == "split" else gives, expr.span)
 
 
 def type_length(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -166,7 +170,8 @@ def type_pieces(pieces: tuple[model.Expr, ...], scope: Scope, type_expr: TypeExp
 
 
 def _kind(value: Expr) -> String | Bytes:
-    return TEXT if isinstance(value.type, String) else BYTES
+    type_ = value.type.element if isinstance(value.type, Array) else value.type
+    return TEXT if isinstance(type_, String) else BYTES
 
 
 def _argument(function: str, kind: str, value: Expr, scope: Scope) -> Expr | None:
@@ -174,6 +179,8 @@ def _argument(function: str, kind: str, value: Expr, scope: Scope) -> Expr | Non
     match kind:
         case "text":
             return value if _usable(function, value, scope) else None
+        case "texts":
+            return _texts(function, value, scope)
         case "integer":
             number = as_int64(value)
             if number is None:
@@ -194,6 +201,16 @@ def _argument(function: str, kind: str, value: Expr, scope: Scope) -> Expr | Non
         scope.problems.append(problem)
         return None
     return value
+
+
+def _texts(function: str, value: Expr, scope: Scope) -> Expr | None:
+    """An array of texts that lies in a message, with the type of its elements resolved."""
+    if isinstance(value, Access) and isinstance(value.type, Array):
+        element = scope.messages[value.place.side].value_type(value.type.element)
+        if isinstance(element, String | Bytes) and is_textual(element):
+            return replace(value, type=replace(value.type, element=element))
+    scope.problems.append(words.texts_needed(value.span, function, describe(value.type)))
+    return None
 
 
 def _usable(function: str, value: Expr, scope: Scope) -> bool:

@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Choice | Listed | Given | Calls
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Search | Choice | Listed | Given | Calls
     each with `type`
     Calls = Call | TextCall | BytesCall | Asked
     Asked = Told | HostCall | ImageCall
@@ -54,10 +54,11 @@ Function = OneOf[
     "divide",
     "floor_divide",
     "modulo",
+    "others",
 ]
 
 OfTexts = OneOf[
-    "lower", "upper", "strip", "replace", "slice", "part", "behind", "before", "until_nul", "padded", "concatenated", "decoded", "bytes"
+    "lower", "upper", "strip", "replace", "slice", "part", "behind", "before", "until_nul", "padded", "concatenated", "decoded", "bytes", "join", "split"
 ]
 FromText = OneOf[
     "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
@@ -190,6 +191,22 @@ class Has:
 
 
 @dataclass(frozen=True, slots=True)
+class Search:
+    """The number of the one element of an array for which a condition on it, by the number ``variable``, holds; int64.
+
+    None, or several, are an error of kind ``index``, whose text is ``wanted``; unless it is ``required``, none give -1 and several -2.
+    """
+
+    place: Place
+    variable: Local
+    condition: Expr
+    wanted: str
+    required: bool
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class BytesCall:
     """A number within a string or bytes field (`float32_at`: field, place, whether its high byte comes first), or a `byte` of a number."""
 
@@ -285,7 +302,7 @@ Asked = Told | HostCall | ImageCall
 """What the kernel's host answers."""
 
 Calls = Call | TextCall | BytesCall | Asked
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Choice | Listed | Given | Calls
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Search | Choice | Listed | Given | Calls
 
 
 @dataclass(frozen=True, slots=True)

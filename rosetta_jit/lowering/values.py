@@ -30,13 +30,14 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored, others
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.fields import converted, scalar_name
 from rosetta_jit.lowering.number_bytes import of_bytes
 from rosetta_jit.lowering.rebuild import rebuilt
 from rosetta_jit.lowering.rejections import reject_with
+from rosetta_jit.lowering.searching import number_in
 from rosetta_jit.lowering.text_questions import number_of
 from rosetta_jit.lowering.text_values import forgetting
 from rosetta_jit.lowering.texts import is_text
@@ -86,8 +87,9 @@ class Values:
     decided: dict[typed.Expr, tuple[list[Stmt], Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[Stmt], Expr]"])
 
     def of(self, value: typed.Expr) -> Expr:
-        """The kernel expression of a number. A choice is made once, where what it has decided is known: nothing that rules read changes."""
-        if not isinstance(value, typed.IsText | typed.Choice) or asks_others(value):
+        """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
+        is_kept = isinstance(value, typed.Search) or (isinstance(value, typed.IsText | typed.Choice) and not asks_others(value))
+        if not is_kept:
             return self.computed(value)
         block, found = self.decided.get(value, (None, None))
         if block is None or found is None or not self.writer.is_around(block):
@@ -125,8 +127,8 @@ class Values:
                 return is_text(self, place, text.encode())
             case typed.TextCall() | typed.BytesCall():
                 return number_of(value, self) if isinstance(value, typed.TextCall) else of_bytes(value, self)
-            case typed.Has(place):
-                return self.source.present(place, self)
+            case typed.Has() | typed.Search():
+                return self.source.present(value.place, self) if isinstance(value, typed.Has) else number_in(value, self)
             case typed.Choice() | typed.Listed() | typed.Given():
                 return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
             case typed.Told() | typed.HostCall() | typed.ImageCall():
@@ -239,6 +241,8 @@ class Values:
                 return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
             case "floor_divide" | "modulo":
                 return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
+            case "others":
+                return others(self.writer, arguments[0], arguments[1:], self.where, self.line)
             case "align":
                 return align(self.writer, arguments[0], arguments[1], self.where, self.line)
             case _:

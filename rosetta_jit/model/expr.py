@@ -1,7 +1,7 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
     Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held
-    Path = Root, Step*         Step = Member(name) | Index(Expr) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
+    Path = Root, Step*         Step = Member(name) | Index(Expr) | Keyed(name*, Expr) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
 constant) the side is always ``wire``.
@@ -61,6 +61,15 @@ class Index:
 
 
 @dataclass(frozen=True, slots=True)
+class Keyed:
+    """``[.key = value]``: the one element whose field has this value; ``names`` are those on the way to the field."""
+
+    names: tuple[str, ...]
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Slice:
     """``[start to stop by step]``: these elements, as an array; to the last one where ``stop`` is None."""
 
@@ -85,7 +94,7 @@ class Each:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Step = Member | Index | Slice | Pick | Each
+Step = Member | Index | Keyed | Slice | Pick | Each
 
 
 @dataclass(frozen=True, slots=True)

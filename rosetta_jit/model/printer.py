@@ -111,6 +111,8 @@ def _step(step: expr.Step) -> str:
             return f".{name}"
         case expr.Index(index):
             return f"[{show_expr(index)}]"
+        case expr.Keyed(names, key):
+            return f"[{''.join(f'.{name}' for name in names)} = {show_expr(key)}]"
         case expr.Slice(start, stop, by):
             end = "" if stop is None else f" {show_expr(stop)}"
             return f"[{show_expr(start)} to{end}{'' if by == expr.Literal(1) else f' by {show_expr(by)}'}]"

@@ -9,7 +9,24 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.model import mapping
-from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Index, Item, Len, List, Literal, Member, Name, Path, Slice, Unary
+from rosetta_jit.model.expr import (
+    Binary,
+    Call,
+    Choice,
+    Given,
+    Held,
+    Index,
+    Item,
+    Keyed,
+    Len,
+    List,
+    Literal,
+    Member,
+    Name,
+    Path,
+    Slice,
+    Unary,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -89,6 +106,8 @@ def _with_indices_in(step: Step, change: Callable[[Expr], Expr]) -> Step:
     match step:
         case Index(index):
             return replace(step, index=change(index))
+        case Keyed(value=value):
+            return replace(step, value=change(value))
         case Slice(start, stop, by):
             return replace(step, start=change(start), stop=None if stop is None else change(stop), step=change(by))
         case _:

@@ -13,7 +13,7 @@ from rosbags.typesys import Stores, get_typestore
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
 BACKENDS = ["llvm", "numba", "python", "interpreter"]
-FLOAT32, UINT16 = 7, 4
+FLOAT32, FLOAT64, UINT16 = 7, 8, 4
 
 
 def theirs(name, /, **fields):
@@ -27,18 +27,24 @@ def field(name, offset, datatype=FLOAT32, count=1):
 FIELDS = [field("x", 2), field("y", 6), field("z", 12), field("ring", 0, UINT16)]
 
 
-def cloud(points, *, big=False, padding=0, fields=FIELDS, **changed):
-    """A message, and the coordinates as float32."""
+def cloud(points, *, big=False, padding=0, fields=FIELDS, layout=FIELDS, kind="f4", size=19, **changed):
+    """A message whose points lie as a layout says, and its fields tell."""
     order = ">" if big else "<"
     kind = np.dtype(
-        {"names": ["ring", "x", "y", "z"], "formats": [f"{order}u2", *[f"{order}f4"] * 3], "offsets": [0, 2, 6, 12], "itemsize": 19}
+        {
+            "names": [each.name for each in layout],
+            "formats": [f"{order}u2" if each.name == "ring" else f"{order}{kind}" for each in layout],
+            "offsets": [each.offset for each in layout],
+            "itemsize": size,
+        }
     )
     height, width, _ = points.shape
     rows = np.zeros((height, width), kind)
-    rows["ring"] = 0xABCD
+    if "ring" in kind.fields:
+        rows["ring"] = 0xABCD
     for axis, name in enumerate("xyz"):
         rows[name] = points[:, :, axis]
-    data = np.pad(rows.view(np.uint8).reshape(height, 19 * width), ((0, 0), (0, padding)), constant_values=0xFF)
+    data = np.pad(rows.view(np.uint8).reshape(height, size * width), ((0, 0), (0, padding)), constant_values=0xFF)
     stamp = theirs("builtin_interfaces/msg/Time", sec=5, nanosec=6)
     made = {
         "header": theirs("std_msgs/msg/Header", seq=3, stamp=stamp, frame_id="lidar"),
@@ -46,7 +52,7 @@ def cloud(points, *, big=False, padding=0, fields=FIELDS, **changed):
         "width": width,
         "fields": fields,
         "is_bigendian": big,
-        "point_step": 19,
+        "point_step": size,
         "row_step": data.shape[1],
         "data": data.ravel(),
         "is_dense": True,
@@ -81,6 +87,24 @@ def test_points(big, padding, backend):
     assert [each.x for each in decode(encode(found)).points][1:] == [each.x for each in found.points][1:]
 
 
+ORDERS = {
+    "colours first": ([field("rgb", 0), field("intensity", 4), field("z", 8), field("y", 12), field("x", 16)], "f4", 24),
+    "doubles": ([field("z", 0, FLOAT64), field("ring", 8, UINT16), field("x", 10, FLOAT64), field("y", 18, FLOAT64)], "f8", 26),
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("big", [False, True], ids=["little", "big"])
+@pytest.mark.parametrize("order", ORDERS)
+def test_fields_in_any_order(order, big, backend):
+    fields, kind, size = ORDERS[order]
+    decode, _ = programs(backend)
+    points = random_points(2, 3)
+    found = decode(cloud(points, big=big, fields=fields, layout=fields, kind=kind, size=size))
+    held = np.array([[point.x, point.y, point.z] for point in found.points], np.float32)
+    assert np.array_equal(held, points.reshape(-1, 3), equal_nan=True)
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_clouds_without_points(backend):
     decode, encode = programs(backend)
@@ -94,7 +118,9 @@ def test_clouds_without_points(backend):
     ("changed", "kind"),
     [
         ({"fields": FIELDS[:2]}, "rejected"),
-        ({"fields": [*FIELDS[1:], FIELDS[0]]}, "rejected"),
+        ({"fields": [*FIELDS[:2], FIELDS[3]]}, "rejected"),
+        ({"fields": [*FIELDS, FIELDS[1]]}, "index"),
+        ({"fields": [field("x", 2, FLOAT64), *FIELDS[1:]]}, "rejected"),
         ({"fields": [field("x", 2, UINT16), *FIELDS[1:]]}, "rejected"),
         ({"fields": [field("x", 2, count=2), *FIELDS[1:]]}, "rejected"),
         ({"fields": [field("x", 2), field("y", 6), field("z", 16)]}, "index"),

@@ -133,9 +133,13 @@ def test_diagnostic_status(backend):
     wanted = [{"key": key, "value": {"type": "STRING", "string": value, "array": []}} for key, value in text]
     assert found == [{"key": "level", "value": {"type": "INT", "int": 2, "array": []}}, *wanted]
     assert encode(decode(raw(status))) == raw(status)
+    mixed = [found[number] for number in (4, 3, 1, 5, 6, 0, 7, 2, 8)]
+    assert encode(encode.holder_type.from_dict({"entries": mixed})) == raw(status)
     for change, words in (
-        (found[1:], "begins with its level"),
-        (found[:3], "begins with level, name"),
+        (found[1:], "an entry `level`, an integer"),
+        (found[:3], "an entry `hardware_id`, a text"),
+        ([{**found[0], "value": found[1]["value"]}, *found[1:]], "an entry `level`, an integer"),
+        ([*found, found[1]], 'has more than one element whose `.key` is "name"'),
         ([*found, {"key": "x", "value": {"type": "BOOL", "bool": True, "array": []}}], "the value is no text"),
     ):
         with pytest.raises(rj.EncodeError, match=words):
