@@ -100,7 +100,7 @@ def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *
     for number, (name, field) in enumerate(fields.items()):
         is_made = field.default_factory is not dataclasses.MISSING
         is_optional = is_made or field.default is not dataclasses.MISSING
-        kinds.append((field.init, is_made, is_optional))
+        kinds.append((field.init, is_made, is_optional and not field.init))
         names[f"default{number}"], names[f"make{number}"] = field.default, field.default_factory
         if field.init and is_optional:
             defaults.append(field.default)
@@ -113,7 +113,7 @@ def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *
 
 @cache
 def _stores(kinds: tuple[tuple[bool, bool, bool], ...], *, has_post_init: bool) -> CodeType:
-    """The code of an `__init__`: for each field, whether it is a parameter, is made anew where none is given, and has a default at all."""
+    """The code of an `__init__`: for each field, whether it is a parameter, is made anew if not given, and has a value of its own."""
     parameters, body = ["self"], list[str]()
     for number, (is_parameter, is_made, has_default) in enumerate(kinds):
         given, made = f"a{number}", f"make{number}()"

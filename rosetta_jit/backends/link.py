@@ -15,7 +15,7 @@ from llvmlite import binding, ir
 
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
-from rosetta_jit.kernel.shape import calls_to_host, is_large, is_told, our_functions
+from rosetta_jit.kernel.shape import are_long_and_straight, calls_to_host, is_large, is_told, our_functions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -85,7 +85,10 @@ def optimised(
     with_numba: bool,
     functions: Sequence[UserFunction] = (),
 ) -> binding.ModuleRef:
-    """The program's module after one run of LLVM's O3."""
+    """The program's module after one run of LLVM's passes.
+
+    They are those of O3. Where nothing loops, those of O1 find the same, vectors included, and O3's look at every store for every load.
+    """
     typed = with_numba and not is_large(kernels[0]) and not calls_to_host(kernels)
     module = _typed(kernels[0]) if typed else _emitted(kernels[0], FUNCTIONS[0])
     for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False):
@@ -99,7 +102,7 @@ def optimised(
     templates = (*TEMPLATES[entry], "told.ll" if is_told(kernels) else "untold.ll")
     module.link_in(binding.parse_assembly("\n".join(map(_template, templates))))
     _make_private(module, (*SYMBOLS[entry], TABLE))
-    options = binding.create_pipeline_tuning_options(speed_level=3)
+    options = binding.create_pipeline_tuning_options(speed_level=1 if are_long_and_straight(kernels) else 3)
     options.loop_vectorization, options.slp_vectorization = True, True
     passes = binding.create_pass_builder(machine, options)
     passes.getModulePassManager().run(module, passes)

@@ -180,12 +180,17 @@ def manners_of(place: str) -> Manners:
 @cache
 def installed() -> Mapping[str, Framework]:
     """Every framework by name: ours, and those of installed packages."""
-    from importlib.metadata import entry_points  # slow to import, and a warm start needs none
-
+    from rosetta_jit.frameworks.offered import may_be_offered
     from rosetta_jit.frameworks.table import FRAMEWORKS
 
-    offered = [cast("Framework", each.load()) for each in entry_points(group=GROUP)]
-    return {framework.name: framework for framework in (*FRAMEWORKS, *offered)}
+    frameworks = (*FRAMEWORKS, *_offered()) if may_be_offered(GROUP) else FRAMEWORKS
+    return {framework.name: framework for framework in frameworks}
+
+
+def _offered() -> list[Framework]:
+    from importlib.metadata import entry_points  # slow to import
+
+    return [cast("Framework", each.load()) for each in entry_points(group=GROUP)]
 
 
 def _lazy(place: str) -> FrontEnd:

@@ -59,6 +59,9 @@ if TYPE_CHECKING:
 MAX_BLOCKS = 100
 MAX_EXPRESSION = 100
 
+LONG = 128
+"""Statements from which on it is worth while to compile kernels another way, if that suits them."""
+
 LARGE = 4_000
 """Statements of a kernel from which on work that is done twice takes seconds."""
 
@@ -92,6 +95,16 @@ def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
 def is_large(kernel: Kernel) -> bool:
     """Whether a kernel is so large that it is not worth while to improve it again and again."""
     return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
+
+
+def are_long_and_straight(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels have many statements, and neither loops nor what stands for loops: each statement runs once at most."""
+    blocks = (block for kernel in kernels for block in (*kernel.bodies, *(routine.body for routine in kernel.routines)))
+    every = [each for block in blocks for each, _ in statements(block)]
+    if len(every) <= LONG or any(isinstance(each, For | While) for each in every):
+        return False
+    parts = (part for each in every for expr in expressions_of(each) for part in subexpressions(expr))
+    return not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
 
 
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:

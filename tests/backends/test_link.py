@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import pytest
 
 from rosetta_jit.backends.link import SYMBOLS, assembly, compile_program, llvm_text
+from rosetta_jit.kernel.ir import BEGIN, ROW, Binary, Const, Convert, Let, Load, Local, Place, SetField, add
+from rosetta_jit.kernel.shape import are_long_and_straight
 from rosetta_jit.runtime import native
 from tests.backends import kernels
 
@@ -43,3 +46,17 @@ def test_no_arithmetic_is_relaxed(with_numba):
     text = llvm_text([kernels.specialised()], "decode", with_numba=with_numba)
     assert not re.search(r"\b(fast|contract|reassoc|nnan|ninf|nsz|arcp|afn)\b", text)
     assert "fma" not in assembly([kernels.specialised()], "decode", with_numba=with_numba)
+
+
+def test_long_kernels_without_loops_have_vectors_too():
+    """Fewer of LLVM's passes run for them; a loop, or what stands for one, wants all."""
+    (body,) = kernels.fixed(300).bodies
+    read = tuple(Let(f"value{each}", Load("f64", add(BEGIN, 8 * each))) for each in range(300))
+    scaled = [Convert("f32", Binary("mul", Local("f64", f"value{each}"), Const("f64", 0.1))) for each in range(300)]
+    written = tuple(SetField(Place(0, ROW, 4 * each), value) for each, value in enumerate(scaled))
+    long = replace(kernels.fixed(300), bodies=((*body[:2], *read, *written, body[-1]),))
+    assert are_long_and_straight([long])
+    assert not are_long_and_straight([kernels.fixed(3)])
+    for other in (kernels.specialised(), kernels.text()):
+        assert not are_long_and_straight([long, other])
+    assert re.search(r"fmul <\d+ x double>", llvm_text([long], "decode", with_numba=False))
