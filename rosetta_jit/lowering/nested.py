@@ -170,9 +170,9 @@ def _element(place: Place, number: Local, scope: Scope) -> Place:
 
 
 def _may_lack(place: Place, scope: Scope) -> bool:
-    """Whether a message can be absent, where that can be asked for: in elements, all rounds of a loop set the same."""
+    """Whether a message can be absent."""
     last = place.steps[-1]
-    if any(isinstance(step, IndexStep) for step in place.steps) or isinstance(last, IndexStep):
+    if isinstance(last, IndexStep) or last.field.required:
         return False
     return isinstance(scope.messages[place.side].schema.resolve(last.field.type), Optional)
 

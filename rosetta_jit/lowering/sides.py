@@ -89,7 +89,7 @@ class HolderSide:
     def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
         """What reading gives: the value; where it is absent, its default, or an error if it is required."""
         if last.required:
-            self.writer.expect(present, "missing", values.where.member(last.name), "a required field is not set", line=values.line)
+            self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
             return value
         scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
         return Select(present, value, Const(scalar_name(scalar), _number(last.default)))

@@ -1,7 +1,7 @@
 """A block with `when`s as the blocks without, one for each way through it: each way must set everything, once.
 
 A way that ends in a rejection owes nothing. In a loop each round may go another way; there all ways must set the same places, so that
-what one way sets over all rounds is what any mixture sets.
+what one way sets over all rounds is what any mixture sets. What an element of an array may lack, a round may leave out.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
-from rosetta_jit.lowering.typed import Assign, Default, For, Ignore, Reject, SetLength, When
+from rosetta_jit.lowering.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
+from rosetta_jit.model.types import Optional, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -58,9 +59,37 @@ def _ways_of(rule: Rule, problems: list[Diagnostic]) -> Ways:
             return ways(then, problems) + ways(otherwise, problems)
         case For(body=body):
             inside = ways(body, problems)
-            if len({frozenset(_set_by(way)) for way in inside}) > 1:
+            if _is_uneven([_set_by(way) for way in inside]):
                 problems.append(words.uneven_rounds(rule.span))
             return [(replace(rule, body=way),) for way in inside]
+
+
+def _is_uneven(ways_set: list[list[tuple[bool, tuple[Step, ...]]]]) -> bool:
+    """Whether rounds that go different ways do not all set the same places, or set what may be absent in other elements."""
+    owed: set[frozenset[tuple[bool, tuple[Step, ...]]]] = set()
+    free: dict[tuple[str, ...], tuple[Step, ...]] = {}
+    for places in ways_set:
+        cuts = [(is_length, steps, _may_lack(steps)) for is_length, steps in places]
+        owed.add(frozenset((is_length, steps) for is_length, steps, cut in cuts if not cut))
+        for _, steps, cut in cuts:
+            if (
+                cut
+                and free.setdefault(tuple(each.field.name for each in steps[:cut] if isinstance(each, FieldStep)), steps[:cut])
+                != steps[:cut]
+            ):
+                return True
+    return len(owed) > 1
+
+
+def _may_lack(steps: tuple[Step, ...]) -> int:
+    """How many steps lead to what an element of an array may lack; 0 if nothing on the way may be absent."""
+    inside = False
+    for number, step in enumerate(steps, 1):
+        if not isinstance(step, FieldStep):
+            inside = True
+        elif inside and isinstance(step.field.type, Optional | Union) and not step.field.required:
+            return number
+    return 0
 
 
 def _set_by(way: tuple[Rule, ...]) -> list[tuple[bool, tuple[Step, ...]]]:

@@ -1,4 +1,4 @@
-"""What hostile hands and other writers make of messages: cut and altered bytes; protobuf in another order, with fields that nobody knows."""
+"""What hostile hands and other writers make of messages: cut and altered bytes; protobuf in another order, with unknown fields."""
 
 from __future__ import annotations
 

@@ -196,7 +196,9 @@ def test_arrays_in_another_order_in_each_message(rules, order, backend):
     """The checker tells the elements of an inner array from those of the array around it."""
     head = 'import "lab/A.msg" import "lab/B.msg" '
     texts = {
-        **{"lab/Row.msg": "float64[] xs\n", "lab/Line.msg": "float64[] xs\n", "lab/A.msg": "Row[] rows\n", "lab/B.msg": "Line[] rows\n"},
+        **dict.fromkeys(("lab/Row.msg", "lab/Line.msg"), "float64[] xs\n"),
+        "lab/A.msg": "Row[] rows\n",
+        "lab/B.msg": "Line[] rows\n",
         "row.mapping": f"{head} data-holder: lab/Line wire-schema: lab/Row rules: {rules}",
         "m.mapping": f'{head} data-holder: lab/B wire-schema: lab/A rules: .rows <-> .rows via "row.mapping"',
     }
@@ -206,3 +208,38 @@ def test_arrays_in_another_order_in_each_message(rules, order, backend):
     message = write(write.holder_type.from_dict({"rows": [{"xs": row} for row in rows]}))
     assert decode(message).to_dict() == {"rows": [{"xs": [row[i] for i in order] if row else []} for row in rows]}
     assert encode(decode(message)) == message
+
+
+ROWS = """syntax = "proto2"; package PACKAGE; message Spot { required int32 n = 1; }
+message Row { optional string name = 1; optional Spot spot = 2; oneof which { int32 a = 3; string b = 4; } required int32 kind = 5; }
+message Rows { repeated Row rows = 1; LABEL Spot first = 2; }"""
+ROW_RULES = """rules:
+  when has(.name) .name <-> .name else default .name end
+  .spot <-> .spot via "spot.mapping"
+  .kind <-> .kind
+  when .kind == 1 .a <-> .a else .b <-> .b end
+"""
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_what_elements_may_lack(backend):
+    """Each element has what its own message had: a text, a message, one case or the other."""
+    head = 'import "wire.proto" import "holder.proto" data-holder: holder.{0} wire-schema: wire.{0} '
+    texts = {
+        "wire.proto": ROWS.replace("PACKAGE", "wire").replace("LABEL", "optional"),
+        "holder.proto": ROWS.replace("PACKAGE", "holder").replace("LABEL", "required"),
+        "spot.mapping": head.format("Spot") + "rules: .n <-> int32(.n + 1)",
+        "row.mapping": head.format("Row") + ROW_RULES,
+        "m.mapping": head.format("Rows") + 'rules: .rows <-> .rows via "row.mapping" .first <-> .first via "spot.mapping"',
+    }
+    decode, encode = (kind("m.mapping", schema=texts, backend=backend) for kind in (rj.Decoder, rj.Encoder))
+    write = rj.Encoder.of("wire.Rows", schema=texts, imports=["wire.proto"], backend="interpreter")
+    rows = [{"kind": 1, "a": 5}, {"name": "", "spot": {"n": 3}, "kind": 2, "b": "x"}, {"spot": {"n": 4}, "kind": 3, "b": ""}]
+    for some in (rows, rows[::-1], rows):
+        message = write(write.holder_type.from_dict({"rows": some, "first": {"n": 0}}))
+        unpacked = [{**row, **({"spot": {"n": row["spot"]["n"] + 1}} if "spot" in row else {})} for row in some]
+        assert decode(message).to_dict() == {"rows": unpacked, "first": {"n": 1}}
+        assert encode(decode(message)) == message
+    with pytest.raises(rj.DecodeError, match="the required `n` is not there") as error:
+        decode(write(write.holder_type.from_dict({"rows": rows})))
+    assert (error.value.kind, error.value.path) == ("missing", ".first.n")
