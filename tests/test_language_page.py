@@ -27,6 +27,7 @@ WIRE = {
     "d": ":blob",
     "p": "(:list :uint8 (:length 16))",
     "l": "(:list :double)",
+    "w": "(:list :string)",
 }
 HOLDER = {
     "n": "required int64",
@@ -39,6 +40,7 @@ HOLDER = {
     "d": "required bytes",
     "p": "required bytes",
     "l": "repeated double",
+    "w": "repeated string",
 }
 COLORS = "enum Color { GRAY = 0; RGB = 1; BGR = 2; }"
 """The types of fields, by name, as the page says above its table."""

@@ -46,7 +46,9 @@ def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
 def texts_needed(span: Span | None, function: str, found: str) -> Diagnostic:
     """Something else than an array of texts."""
     help_ = "name an array of strings or bytes"
-    return error("text-needed", f"`{function}` takes an array of texts, not {shorten(found)}", span, f"this is {shorten(found)}", help_=help_)
+    return error(
+        "text-needed", f"`{function}` takes an array of texts, not {shorten(found)}", span, f"this is {shorten(found)}", help_=help_
+    )
 
 
 def wide_text(span: Span | None) -> Diagnostic:

@@ -8,6 +8,7 @@
 | `until_nul(b)`       | the text, NUL behind it where the field has one size   |
 | `padded(s, n)`       | `until_nul(value)`                                     |
 | `"a" + s`, `s + "a"` | `behind(value, "a")`, `before(value, "a")`, and the reverse |
+| `join(texts, "by")`  | `split(value, "by")`, and the reverse                  |
 | `iso8601(ns)` `timestamp(ns)` | `nanoseconds(value)`                          |
 | `nanoseconds(s)`     | `iso8601(value)`, or `timestamp(value)` for a float    |
 | `seconds(s)`         | `iso8601(value, 0)`, or `timestamp(value, 0)`          |
@@ -56,6 +57,8 @@ def opposite(call: Call, value: Expr) -> tuple[Expr, Expr] | None:
             return inner, Binary("+", start, value, span)
         case "before", (inner, end):
             return inner, Binary("+", value, end, span)
+        case (("join" | "split") as function, (inner, separator)):
+            return inner, Call("split" if function == "join" else "join", (value, separator), span)
         case (("iso8601" | "timestamp"), (inner,)):
             return inner, Call("nanoseconds", (value,), span)
         case "nanoseconds", (inner,):

@@ -307,6 +307,8 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         return value
     if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
         return value
+    if isinstance(value, TextCall) and value.function == "split" and _holds_texts(target, scope):
+        return value
     if isinstance(value, TextCall) and is_textual(value.type):
         if is_textual(target):
             return value
@@ -318,6 +320,14 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if fitting is None:
         scope.problems.append(_mismatch(value, target))
     return fitting
+
+
+def _holds_texts(target: Type, scope: Scope) -> bool:
+    """Whether a type is an array of texts."""
+    if not isinstance(target, Array):
+        return False
+    element = scope.messages[scope.target].value_type(target.element)
+    return isinstance(element, String | Bytes) and is_textual(element)
 
 
 def _adapted(value: Choice, target: Type) -> Choice:

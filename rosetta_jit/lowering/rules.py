@@ -20,9 +20,10 @@ from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.copies import copy, is_endless
 from rosetta_jit.lowering.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.searching import look_ahead
+from rosetta_jit.lowering.separated import count_of_parts, parts_of
 from rosetta_jit.lowering.sides import HolderSide, Side, WireSide, presence, wire_key
 from rosetta_jit.lowering.supplies import place_of
-from rosetta_jit.lowering.text_values import checked, text_of
+from rosetta_jit.lowering.text_values import checked, placed_of, quoted, text_of
 from rosetta_jit.lowering.views import placed
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
@@ -120,6 +121,8 @@ class Runner:
                 self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
+            case Array(), typed.TextCall("split"):
+                self.assign_parts(place, value, values)
             case ((String() | Bytes() | Array()), (typed.TextCall() | typed.ImageCall())):
                 self.assign_computed(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
@@ -173,6 +176,23 @@ class Runner:
         size = self.count(view.size)
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
+
+    def assign_parts(self, place: typed.Place, call: typed.TextCall, values: Values) -> None:
+        """The parts of a text, each as an element. What is between separators is whole characters."""
+        if isinstance(self.target, WireSide):
+            raise NotInPlaceError
+        assert isinstance(place.type, Array)
+        text, pattern = placed_of(call.arguments[0], values), quoted(call.arguments[1])
+        view = checked(text, values) if isinstance(place.type.element, String) else text
+        count = self.count(count_of_parts(self.writer, view, pattern))
+        self.take(place, count, values)
+        variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
+        element = typed.Place(place.side, (*place.steps, typed.IndexStep(variable)), place.type.element)
+        with self.forgetting(), parts_of(self.writer, view, pattern, count) as (number, part):
+            inner = replace(values, variables={**values.variables, variable.name: number}, where=values.where.element(number))
+            size = self.count(part.size)
+            self.take(element, size, inner)
+            self.writer.emit(Copy(self.target.address(element, inner), part.address, size))
 
     def copy(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """A message, union or map as a whole."""

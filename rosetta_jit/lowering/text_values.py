@@ -12,13 +12,14 @@ from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_a
 from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.moments import dated
 from rosetta_jit.lowering.number_writing import is_special, written_float, written_integer
+from rosetta_jit.lowering.separated import between_separators
 from rosetta_jit.lowering.sides import HolderSide
 from rosetta_jit.lowering.text_making import padded, replaced, with_case
 from rosetta_jit.lowering.text_search import find, has_at, part, stripped
 from rosetta_jit.lowering.type_texts import BLANKS
 from rosetta_jit.lowering.views import LOST, TRUE, Quoted, Text, View, byte_at, joined, lane_of, lies_in, placed, sound
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.types import Float, String
+from rosetta_jit.model.types import Array, Float, String
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -162,6 +163,8 @@ def _called(call: typed.TextCall, values: Values) -> Text:
             return found
         case "behind" | "before" as side:
             return _without(side, placed_of(arguments[0], values), quoted(arguments[1]), values)
+        case "join":
+            return _joined_elements(call, values)
         case "until_nul":
             view = placed_of(arguments[0], values)
             return sound(writer, replace(view, after=find(writer, view.lane, view.first, view.after, b"\0")))
@@ -173,6 +176,22 @@ def _called(call: typed.TextCall, values: Values) -> Text:
             return dated(call, values)
         case _:
             raise AssertionError(call)
+
+
+def _joined_elements(call: typed.TextCall, values: Values) -> View:
+    """The elements of an array as one text."""
+    array, pattern = call.arguments
+    assert isinstance(array, typed.Access)
+    assert isinstance(array.type, Array)
+    place, variable = array.place, typed.Local(f"(text {len(values.variables)})")
+    element = typed.Place(place.side, (*place.steps, typed.IndexStep(variable)), array.type.element)
+
+    def of_number(number: Local) -> View:
+        return _field(element, replace(values, variables={**values.variables, variable.name: number}))
+
+    with forgetting(values.source):
+        count = values.source.count(place, values)
+        return between_separators(values.writer, count, quoted(pattern), of_number, lambda good, why: expect(values, good, "text", why))
 
 
 def _written(call: typed.TextCall, values: Values) -> View:

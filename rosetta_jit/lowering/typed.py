@@ -58,7 +58,21 @@ Function = OneOf[
 ]
 
 OfTexts = OneOf[
-    "lower", "upper", "strip", "replace", "slice", "part", "behind", "before", "until_nul", "padded", "concatenated", "decoded", "bytes", "join", "split"
+    "lower",
+    "upper",
+    "strip",
+    "replace",
+    "slice",
+    "part",
+    "behind",
+    "before",
+    "until_nul",
+    "padded",
+    "concatenated",
+    "decoded",
+    "bytes",
+    "join",
+    "split",
 ]
 FromText = OneOf[
     "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
