@@ -40,6 +40,14 @@ def bind(mapping: Mapping, given: Dictionary[str, object] | None, problems: list
     return replace(mapping, rules=blocks[0], unpack_rules=blocks[1], pack_rules=blocks[2])
 
 
+def handed_on(mapping: Mapping, given: Dictionary[str, object] | None) -> Dictionary[str, object] | None:
+    """The values of a mapping's parameters that the mappings it uses have too: those given, and its defaults for the rest."""
+    if given is None:
+        return None
+    defaults = {each.name: written(folded(each.default)) for each in mapping.parameters if each.default is not None}
+    return {**defaults, **given}
+
+
 def _values(mapping: Mapping, given: Dictionary[str, object] | None, problems: list[Diagnostic]) -> dict[str, Expr]:
     declared = {parameter.name: parameter for parameter in mapping.parameters}
     problems.extend(words.unknown(mapping.holder_span, name, declared) for name in (given or {}) if name not in declared)

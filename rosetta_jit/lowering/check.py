@@ -13,7 +13,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.annotate import annotated
-from rosetta_jit.lowering.bind import bind
+from rosetta_jit.lowering.bind import bind, handed_on
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.lowering.file_name import misnamed
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.search import SearchPath
     from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.imports import Imported
-    from rosetta_jit.lowering.others import Use
+    from rosetta_jit.lowering.others import Others, Use
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.mapping import Mapping
@@ -81,30 +81,42 @@ def check(
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
     problems: list[Diagnostic] = []
-    mapping, reading = derive(bind(mapping, parameters, problems), problems), reading or Reading()
-    derived = len(problems)
-    others = read_others(mapping, search, reading, problems, parameters)
+    bound: list[Diagnostic] = []
+    underived: list[Diagnostic] = []
+    mapping, reading = derive(bind(mapping, parameters, bound), underived), reading or Reading()
+    others = read_others(mapping, search, reading, problems, handed_on(mapping, parameters))
     imports = Imports(mapping.source, front_ends, search, reading)
     imported = read_imports(mapping, imports, problems)
     theirs = [each for other in others.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
     merged = merge([*imported, *theirs], problems)
-    complete = not any(problem.severity == "error" for problem in problems[derived:])
+    complete = not _errors(problems)
+    problems += [*_without_handed_on(bound, mapping, others), *underived]
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
         raise MappingError(_sorted([*problems, *resolved]))
     problems += resolved.problems
-    problems += _directions(mapping, resolved, packs=not derived)
+    problems += _directions(mapping, resolved, packs=not _errors(underived))
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += _unused(imported, resolved)
     problems += misnamed(mapping, schema)
-    errors = [problem for problem in problems if problem.severity == "error"]
-    if errors:
+    if _errors(problems):
         raise MappingError(_sorted(problems))
     problems += _silent_losses(mapping, resolved)
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     functions, uses = dict(resolved.functions), tuple(others.uses)
     return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(problems), uses)
+
+
+def _errors(problems: list[Diagnostic]) -> list[Diagnostic]:
+    return [problem for problem in problems if problem.severity == "error"]
+
+
+def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: Others) -> list[Diagnostic]:
+    """Without the warnings about parameters that no rule uses, but a mapping that is used."""
+    declared = {each.name for other in others.mappings() for each in other.parameters}
+    spans = [each.span for each in mapping.parameters if each.name in declared]
+    return [each for each in problems if each.code != "parameter-unused" or each.span not in spans]
 
 
 def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Diagnostic]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import random
     from collections.abc import Callable
 
-    from tests.lowering.random_relations import Relations
+    from tests.lowering.random_blocks import Relations
 
 UNITS = {("km", "m"): 1000.0, ("m", "mm"): 1000.0, ("minute", "s"): 60.0, ("hour", "s"): 3600.0, ("kg", "g"): 1000.0, ("m", "m"): 1.0}
 """Units that become each other by one product."""

@@ -301,3 +301,30 @@ def test_a_prefix_that_may_be_empty(prefix, backend):
     decode, encode = rj.Decoder("m.mapping", **given), rj.Encoder("m.mapping", **given)
     values = {"frame": f"{prefix}arm", "tool": f"hand{prefix}"}
     assert decode(encode(encode.holder_type.from_dict(values))).to_dict() == values
+
+
+def test_an_unused_parameter_hides_no_mistake():
+    texts = {
+        "lab/A.msg": "int64 x\nint64 y\n",
+        "m.mapping": 'import "lab/A.msg" parameter p: int64 = 1 data-holder: lab/A wire-schema: lab/A '
+        "unpack-rules: same names pack-rules: .x = .x",
+    }
+    with pytest.raises(rj.MappingError) as error:
+        rj.Encoder("m.mapping", schema=texts, encoding="ros1", backend="python")
+    assert [each.code for each in error.value.diagnostics if each.severity == "error"] == ["never-set"]
+
+
+@pytest.mark.parametrize(("inner", "given", "added"), [("= 7", {}, 3), ("", {}, 3), ("= 7", {"p": 9}, 9)])
+def test_a_mapping_hands_its_defaults_on(inner, given, added):
+    """And what is handed on is not unused."""
+    head = 'import "lab/A.msg" import "lab/B.msg" '
+    texts = {
+        **dict.fromkeys(("lab/In.msg", "lab/Inner.msg"), "int64 x"),
+        "lab/A.msg": "In a",
+        "lab/B.msg": "Inner a",
+        "i.mapping": f"{head} parameter p: int64 {inner} data-holder: lab/Inner wire-schema: lab/In rules: .x <-> .x + p",
+        "m.mapping": f'{head} parameter p: int64 = 3 data-holder: lab/B wire-schema: lab/A rules: .a <-> .a via "i.mapping"',
+    }
+    decode = rj.Decoder("m.mapping", schema=texts, encoding="ros1", backend="python", parameters=given)
+    assert decode(bytes(8)).to_dict() == {"a": {"x": added}}
+    assert decode.mapping.warnings == ()
