@@ -242,6 +242,32 @@ def permutations(draw: st.DrawFn) -> Part:
     return Part(kind, "repeated double", "\n  ".join(rules), lambda value: [value[origin] for origin in order], values, values)
 
 
+@st.composite
+def orders(draw: st.DrawFn) -> Part:
+    size = draw(st.integers(1, 4))
+    order = draw(st.permutations(range(size)))
+    groups = st.lists(st.lists(DOUBLES, min_size=size, max_size=size), max_size=3).map(
+        lambda found: [each for some in found for each in some]
+    )
+
+    def permuted(value: Any) -> Any:
+        return [value[at + origin] for at in range(0, len(value), size) for origin in order]
+
+    rule, unpack = draw(
+        st.sampled_from(
+            [
+                ("reversed(.NAME)", lambda value: value[::-1]),
+                (
+                    f"reversed(.NAME, {size})",
+                    lambda value: [each for at in range(0, len(value), size) for each in value[at : at + size][::-1]],
+                ),
+                (f"permuted(.NAME, {list(order)})", permuted),
+            ]
+        )
+    )
+    return Part("(:list :double)", "repeated double", f".NAME <-> {rule}", unpack, groups, groups)
+
+
 SHORT = st.text("ab,é", max_size=6)
 NUMBERS = st.integers(-(2**63), 2**63 - 1)
 SPELT = NUMBERS.map(str) | st.sampled_from(["007", "-0", "+5"])
@@ -305,7 +331,9 @@ def meant(part: Part, value: Any) -> Any:
 @given(data=st.data())
 def test_laws_hold(data):
     made = data.draw(
-        st.lists(st.one_of(floats(), floats(), integers(), tables(), permutations(), wordings(), wordings()), min_size=1, max_size=5)
+        st.lists(
+            st.one_of(floats(), floats(), integers(), tables(), permutations(), orders(), wordings(), wordings()), min_size=1, max_size=5
+        )
     )
     parts = {f"f{number}": part for number, part in enumerate(made)}
     texts = files(
