@@ -279,6 +279,12 @@ def no_default(span: Span | None, found: str) -> Diagnostic:
     return error("no-default", f"there is no default for {found}", span, why, help_="set each of them")
 
 
+def default_count(span: Span | None, array: str) -> Diagnostic:
+    """The number of elements of an array, left at 0 where there are some."""
+    message = f"this tells how many elements `{shorten(array)}` has, and its default is 0"
+    return error("no-default", message, span, "here", help_="set it to the number of elements: `... = len(...)`")
+
+
 def many_cases(span: Span | None, most: int) -> Diagnostic:
     """A longer table than is compiled."""
     return error("many-cases", f"a choice here has at most {most} cases", span, help_="compute the value, or split the table with `when`")

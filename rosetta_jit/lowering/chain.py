@@ -18,7 +18,8 @@ from typing import Literal as OneOf
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import EXACT_BITS, bounds
-from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, Unary
+from rosetta_jit.lowering.text_laws import inner_text, undone
+from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, TextCall, Unary
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
 if TYPE_CHECKING:
@@ -161,6 +162,8 @@ def _inner(expr: Expr) -> Expr | None:
         case Choice():
             found = table_of(expr)
             return found[0] if found is not None else None
+        case TextCall():
+            return inner_text(expr)
         case _:
             return None
 
@@ -171,7 +174,7 @@ def _done(step: Expr, value: _Value) -> _Value:
             return _converted(value, type_, rule)
         case Unary("-"):
             return replace(_scaled(value, Fraction(-1)), type=step.type)
-        case Unary() | Choice():
+        case Unary() | Choice() | TextCall():
             return _bijection(step, value)
         case Call("radians"):
             return _rounded(replace(_turned(value, 1), type=step.type), 2)
@@ -327,6 +330,11 @@ def _undoes(step: Expr, opening: Expr) -> bool:
             return _constant_of(step) == _constant_of(opening)
         case Choice(), Choice():
             return _tables_undo(step, opening)
+        case TextCall(), TextCall():
+            found = undone(step, opening)
+            if isinstance(found, str):
+                raise _LostError(found)
+            return found
         case _:
             return False
 

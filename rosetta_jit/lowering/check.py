@@ -15,6 +15,7 @@ from rosetta_jit.frontend.search import Reading
 from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.bind import bind, handed_on
 from rosetta_jit.lowering.completeness import check_complete
+from rosetta_jit.lowering.default_counts import defaulted_counts
 from rosetta_jit.lowering.derive import derive
 from rosetta_jit.lowering.file_name import misnamed
 from rosetta_jit.lowering.hand_factors import wrong_factors
@@ -132,6 +133,8 @@ def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Di
         problems += check_complete(resolved.unpack, holder, "holder", mapping.holder_span)
     if packs and mapping.pack_rules and resolved.pack is not None:
         problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
+    for block, target in ((resolved.unpack, holder), (resolved.pack, wire)):
+        problems += [] if block is None else defaulted_counts(block.rules, target)
     return problems
 
 

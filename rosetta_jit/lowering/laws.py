@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.lowering.matching import reads_other, same_number
+from rosetta_jit.lowering.matching import reads_other, same_number, same_place
 from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
@@ -161,7 +161,7 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
-        case _ if value == goal or any(value == other for other in trip.equal_to(goal)):
+        case _ if same_place(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
             return None
         case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
             return None

@@ -64,6 +64,17 @@ def same_number(value: Expr, goal: Expr) -> bool:
         return False
 
 
+def same_place(value: Expr, goal: Expr) -> bool:
+    """Whether two values lie at one place, whatever its indices look like."""
+    if not isinstance(value, Access) or not isinstance(goal, Access) or len(value.place.steps) != len(goal.place.steps):
+        return False
+    pairs = zip(value.place.steps, goal.place.steps, strict=True)
+    return value.place.side == goal.place.side and all(
+        same_number(one.index, other.index) if isinstance(one, IndexStep) and isinstance(other, IndexStep) else one == other
+        for one, other in pairs
+    )
+
+
 def same_ranges(left: Ranges, right: Ranges) -> bool:
     """Whether loops run over the same numbers."""
     pairs = [(a, b) for one, other in zip(left, right, strict=False) for a, b in zip(one, other, strict=True)]

@@ -13,6 +13,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
 from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify
+from rosetta_jit.lowering.part_laws import simplified
 from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
 from rosetta_jit.lowering.typed import (
@@ -20,6 +21,7 @@ from rosetta_jit.lowering.typed import (
     Access,
     Assign,
     Binary,
+    Call,
     Choice,
     Const,
     Convert,
@@ -32,6 +34,7 @@ from rosetta_jit.lowering.typed import (
     Local,
     Reject,
     SetLength,
+    TextCall,
     Unary,
     When,
 )
@@ -266,7 +269,9 @@ class Trip:
             case Choice(cases, otherwise):
                 return _decided(cases, otherwise, expr)
             case Convert() | Unary() | Binary():
-                return _itself(expr) or expr
+                return _itself(expr) or simplified(expr, self.truths) or expr
+            case Call() | TextCall():
+                return simplified(expr, self.truths) or expr
             case _:
                 return expr
 

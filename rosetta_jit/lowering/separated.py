@@ -50,7 +50,9 @@ def between_separators(
         append(writer, Quoted(pattern))
         whole = sound(writer, View(lane, first, writer.let("end", Used(lane))))
         found = find(writer, lane, whole.first, whole.after, pattern)
-        must(Compare("eq", found, after), "an element holds the separator, or ends as it begins")
+        is_last = Compare("eq", add(number, 1), count)
+        beyond = Binary("and", is_last, Compare("gt", found, add(after, -len(pattern))))  # behind the last one stands none
+        must(Binary("or", Compare("eq", found, after), beyond), "an element holds the separator, or ends as it begins")
         alone = Binary("and", Compare("eq", count, index(1)), Compare("eq", first, after))
         must(Unary("not", alone), "one empty text cannot be told from none")
     writer.emit(For(number.name, count, block(body)))

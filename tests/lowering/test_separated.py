@@ -38,11 +38,23 @@ def split(line, separator):
 
 
 def can_be_joined(names, separator):
-    """Whether each name, with a separator behind it, has that as its first; and there is not one empty name alone."""
-    return names != [""] and all((name + separator).index(separator) == len(name) for name in names)
+    """Whether Python gets the same names back."""
+    return split(separator.join(names), separator) == names
 
 
-NAMES = [[], ["a"], ["a", ""], ["", ""], ["", "b", ""], ["été", "ä€", "x"], ["a,", "b"], ["a", "ab"], [",", " "], ["x" * 300] * 20]
+NAMES = [
+    [],
+    ["a"],
+    ["c", "ba"],
+    ["a", ""],
+    ["", ""],
+    ["", "b", ""],
+    ["été", "ä€", "x"],
+    ["a,", "b"],
+    ["a", "ab"],
+    [",", " "],
+    ["x" * 300] * 20,
+]
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -61,7 +73,7 @@ def test_both_directions(separator, backend):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_what_could_not_be_split_again(backend):
     decode, encode, make = programs("aa", backend)
-    for names in (["baab"], ["b", "aa"], ["ba", "c"], ["c", "ba"]):
+    for names in (["baab"], ["b", "aa"], ["ba", "c"], ["aa", "c"]):
         assert not can_be_joined(names, "aa")
         with pytest.raises(rj.DecodeError, match="holds the separator") as error:
             decode(make(names, ""))
