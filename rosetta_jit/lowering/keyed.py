@@ -7,6 +7,7 @@ of as many, unless a rule sets that.
 from __future__ import annotations
 
 from dataclasses import field, replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.scope import Scope
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.source import Span
 
 Key = tuple[tuple[str, ...], "Expr"]
 """The field of an element, and what it has."""
@@ -39,7 +39,7 @@ class _Block:
     """The arrays of a block whose elements are set by keys, and those whose length a rule sets."""
 
     scope: Scope
-    arrays: dict[Path, dict[Key, Span | None]] = field(default_factory=dict["Path", "dict[Key, Span | None]"])
+    arrays: dict[Path, dict[Key, Index]] = field(default_factory=dict["Path", "dict[Key, Index]"])
     measured: set[Path] = field(default_factory=set["Path"])
 
     def rules(self, rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
@@ -66,9 +66,10 @@ class _Block:
 
     def loop(self, rule: For) -> For:
         """Arrays of which each round has its own are made in the loop; the others around it."""
-        around, self.scope = self.scope, self.scope.inside(rule.variable)
+        known, around = len(self.arrays), self.scope
+        self.scope = around.inside(rule.variable)
         body = [self.rule(each) for each in rule.body]
-        own = [array for array in self.arrays if _varies(array, rule.variable)]
+        own = [array for array in islice(self.arrays, known, None) if _varies(array, rule.variable)]
         body += [each for array in own for each in self.made(array)]
         for array in own:
             del self.arrays[array]
@@ -88,8 +89,7 @@ class _Block:
         if not is_constant(value):
             self.scope.problems.append(words.key_to_set(step.value.span))
         keys = self.arrays.setdefault(array, {})
-        keys.setdefault((step.names, value), step.span)
-        return Index(Literal(list(keys).index((step.names, value)), step.span), step.span)
+        return keys.setdefault((step.names, value), Index(Literal(len(keys), step.span), step.span))
 
     def made(self, array: Path) -> list[Rule]:
         """The rules for the keys of an array, and for its length."""
@@ -97,9 +97,9 @@ class _Block:
         found: list[Rule] = []
         if array not in self.measured and not self.is_fixed(array):
             found.append(SetLength(array, Literal(len(keys)), array.span))
-        for number, ((names, value), span) in enumerate(keys.items()):
-            members = tuple(Member(name, span) for name in names)
-            found.append(Assign(Path(array.side, (*array.steps, Index(Literal(number), span), *members), span), value, span))
+        for (names, value), index in keys.items():
+            members = tuple(Member(name, index.span) for name in names)
+            found.append(Assign(Path(array.side, (*array.steps, index, *members), index.span), value, index.span))
         return found
 
     def is_fixed(self, array: Path) -> bool:

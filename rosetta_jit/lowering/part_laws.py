@@ -8,9 +8,10 @@ seconds(iso8601(x, y)) = x          fraction(iso8601(x, y)) = y
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.lowering.typed import INT64, Binary, Call, Const, Convert, TextCall
+from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Call, Const, Convert, TextCall
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.lowering.typed import Expr
 
-SECOND = Const(10**9, INT64)
+SECOND, ZERO = Const(10**9, INT64), Const(0, INT64)
 
 Parts = tuple["Expr", "Expr", Const]
 """A number as x · c + y, with x, y and c."""
@@ -67,14 +68,13 @@ def _sum(number: Expr, truths: Mapping[Expr, bool]) -> Parts | None:
 
 def _is_digit(value: Expr, factor: Const, truths: Mapping[Expr, bool]) -> bool:
     """Whether a value is known to be from 0 to below a number."""
-    known = {"<": False, ">=": False}
-    for condition, holds in truths.items():
-        match condition:
-            case Binary("<" | ">=" as operator, left, Const(limit)) if not holds and bare(left) == bare(value):
-                known[operator] |= limit == (0 if operator == "<" else factor.value)
-            case _:
-                pass
-    return all(known.values())
+    number = bare(value)
+    for each in (number, Convert(number, INT64, "widen")):  # as it is compared with what its type holds, or does not
+        below = Binary("<", each, replace(ZERO, type=each.type), BOOL)
+        above = Binary(">=", each, replace(factor, type=each.type), BOOL)
+        if truths.get(below) is False and truths.get(above) is False:
+            return True
+    return False
 
 
 def _added(product: Expr, rest: Expr) -> Expr | None:
