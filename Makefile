@@ -81,7 +81,7 @@ YARP_RELEASE := yarp_middleware-3.5.0
 YARP_HEADERS := utility cstdint limits memory iterator sstream functional mutex algorithm string
 YARP_WITHOUT := GUIS TESTS BINDINGS EXAMPLES libYARP_math CARRIER_PLUGINS DEVICE_PLUGINS PORTMONITOR_PLUGINS
 $(YARP)/cmake/.built: | $(BIN)/python
-	$(BIN)/python -m pip download --quiet --disable-pip-version-check --no-deps --no-binary :all: --dest $(YARP) $(subst _,-,$(subst -,==,$(YARP_RELEASE)))
+	$(BIN)/python -m pip download --quiet --disable-pip-version-check --no-deps --no-binary yarp-middleware --dest $(YARP) $(subst _,-,$(subst -,==,$(YARP_RELEASE)))
 	tar -xzf $(YARP)/$(YARP_RELEASE).tar.gz -C $(YARP)
 	cmake -S $(YARP)/$(YARP_RELEASE) -B $(YARP)/cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$(YARP_HEADERS:%=-include %)" \
 		$(YARP_WITHOUT:%=-DYARP_COMPILE_%=OFF) > $(YARP)/configure.log 2>&1
