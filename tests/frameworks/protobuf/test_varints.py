@@ -72,7 +72,8 @@ def test_what_ends_too_early_or_never(fields):
     places = sorted({*range(1, 24), *(rng.randrange(1, len(whole)) for _ in range(40))} - {len(whole)})
     broken = [whole[:place] for place in places if place < len(whole)]
     broken += [whole[:-1] + b"\xff\x01", b"\x80" * 11, b"\xf8" + b"\xff" * 20]
-    said = {backend: [failure(programs(fields, backend)[0], message) for message in broken] for backend in BACKENDS}
+    decoders = {backend: programs(fields, backend)[0] for backend in BACKENDS}
+    said = {backend: [failure(decode, message) for message in broken] for backend, decode in decoders.items()}
     assert any(each is not None and each[1] for each in said["interpreter"])
     assert all(each == said["interpreter"] for each in said.values())
 
