@@ -60,10 +60,18 @@ class Runner:
                     self.writer.emit(If(holds, self.branch(then, values), self.branch(otherwise, values)))
                 case typed.Reject(text, _, pieces):
                     here.reject(text, pieces)
-                case typed.Ignore() | typed.Default():
+                case typed.Default(place):
+                    self.leave(place, here)
+                case typed.Ignore():
                     pass
                 case _:
                     assert_never(rule)
+
+    def leave(self, place: typed.Place, values: Values) -> None:
+        """Leave a place as it is; what the schema requires is there."""
+        last = place.steps[-1]
+        if isinstance(last, typed.FieldStep) and last.field.required and isinstance(self.target, HolderSide):
+            self.target.appear(place, values)
 
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
         """Rules that run or not; what is looked up within them is forgotten behind them."""

@@ -34,7 +34,7 @@ from rosetta_jit.lowering.fields import converted, has_gaps, member_of, presence
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
-from rosetta_jit.model.types import Array
+from rosetta_jit.model.types import Array, Struct
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering import typed
@@ -155,6 +155,14 @@ class HolderSide:
     def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
         fields, path, _ = self.descend(place, values)
         fields.put(path, value)
+
+    def appear(self, place: typed.Place, values: Values) -> None:
+        """What can be absent is there, as it was born."""
+        fields, path, _ = self.descend(place, values)
+        if isinstance(place.type, Struct) and isinstance(fields.find(path).slot, Span):
+            self.single(fields, path, values)
+        else:
+            fields.appear(path)
 
     def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
         """Take room for the elements; those that are structs begin empty."""

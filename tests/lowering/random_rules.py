@@ -32,8 +32,6 @@ class Filler:
     maker: Maker
     constant: Callable[[str], str]
     depth: int = 4
-    has_required: bool = False
-    """Whether what is left to its default is absent, though it is required."""
 
     def message(self, message: Message, path: str = "") -> Rules:
         return joined([self.field(name, kind, path) for name, kind in message.fields.items()])
@@ -42,7 +40,7 @@ class Filler:
         at, rng = below(path, name, kind), self.maker.rng
         match kind:
             case Scalar(type_):
-                return self.left_out(name, type_, at) if rng.random() < 0.05 and not self.has_required else self.assigned(name, type_, at)
+                return self.left_out(name, type_, at) if rng.random() < 0.05 else self.assigned(name, type_, at)
             case Message():
                 inner = self.message(kind, at)
                 return Rules(inner.text, lambda fields: {name: inner.run(fields)})
