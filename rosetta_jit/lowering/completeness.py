@@ -65,6 +65,14 @@ class _Where:
     def field(self, name: str) -> _Where:
         return _Where(f"{self.text}.{name}", (*self.fields, name), self.level)
 
+    def around(self) -> str:
+        """What a union, which is named by its cases, stands in."""
+        return self.text.removesuffix(f".{self.fields[-1]}")
+
+    def case(self, name: str) -> _Where:
+        """A case of a union: named as a field of what is around."""
+        return _Where(f"{self.around()}.{name}", (*self.fields, name), self.level)
+
     def element(self) -> _Where:
         return _Where(f"{self.text}[]", self.fields, self.level + 1)
 
@@ -119,20 +127,21 @@ class _Checker:
         match self.target.value_type(type_):
             case Struct() as struct:
                 self.struct(where, struct, writes)
-            case Union(cases=cases):
-                self.union(where, cases, writes)
+            case Union() as union:
+                self.union(where, union, writes)
             case (Array() | Bytes() | Map()) as sequence:
                 self.sequence(where, sequence, writes)
             case _:
                 pass
 
-    def union(self, where: _Where, cases: tuple[Field, ...], writes: list[Write]) -> None:
+    def union(self, where: _Where, union: Union, writes: list[Write]) -> None:
         by_field = _by_field(writes)
+        shown = where.around() if union.discriminator else where.text
         for first, second in pairwise(by_field):
-            self.problems.append(words.cases(by_field[second][0].span, where.text, first, second))
-        for case in cases:
+            self.problems.append(words.cases(by_field[second][0].span, shown, first, second))
+        for case in union.cases:
             if case.name in by_field:
-                self.field(where.field(case.name), case, by_field[case.name])
+                self.field(where.case(case.name), case, by_field[case.name])
 
     def sequence(self, where: _Where, type_: Array | Bytes | Map, writes: list[Write]) -> None:
         lengths = [write for write in writes if write.length is not None and not write.steps]

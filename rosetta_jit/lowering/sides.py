@@ -118,7 +118,7 @@ class HolderSide:
         present = presence(fields, path)
         count = self.writer.let("count", size if present is None else Select(present, size, index(0)))
         known = Binary("and", Compare("ge", count, index(0)), Compare("le", count, size))  # true anyway; said for the proof
-        self.writer.expect(known, "length", fields.where.members(path), "the holder is damaged")
+        self.writer.expect(known, "length", fields.shown(path), "the holder is damaged")
         return count
 
     def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
@@ -133,14 +133,14 @@ class HolderSide:
                 case IndexStep(at):
                     elements, count = self.array(_prefix(place, done), values)
                     number = self.writer.once(values.of(at))
-                    where = fields.where.members(path).element(number)
+                    where = fields.shown(path).element(number)
                     self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
                     fields, path, last = elements.at(number), (), None
         return fields, path, last
 
     def single(self, fields: HolderFields, path: Path, values: Values) -> HolderFields:
         """A message that has a row of its own, since it can contain itself: it is there, or it comes now."""
-        where = fields.where.members(path)
+        where = fields.shown(path)
         if self.births is not None:
             with self.writer.nested() as new:
                 elements = fields.open(path, index(1))
@@ -167,7 +167,7 @@ class HolderSide:
     def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
         """Take room for the elements; those that are structs begin empty."""
         fields, path, _ = self.descend(place, values)
-        where = fields.where.members(path)
+        where = fields.shown(path)
         self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
         elements = fields.open(path, count)
         self.arrays[_key(place)] = elements, count

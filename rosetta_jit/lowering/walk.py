@@ -97,7 +97,7 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
 
 def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
     elements, count = begin_elements(writer, fields, repeat)
-    where, size = fields.where.members(repeat.path), fixed_size(repeat.item)
+    where, size = fields.shown(repeat.path), fixed_size(repeat.item)
     if size is None:
         _each_in_turn(writer, repeat.item, elements, count)
     else:
@@ -106,7 +106,7 @@ def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
 
 def begin_elements(writer: Writer, fields: Fields, repeat: Repeat) -> tuple[Elements, Expr]:
     """The count and what stands before the first element; the elements, and how many there are."""
-    where = fields.where.members(repeat.path)
+    where = fields.shown(repeat.path)
     if writer.direction == "decode":
         total = leaves.read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
         count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
@@ -174,7 +174,7 @@ def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
     if writer.direction != "decode":
         _write_choice(writer, fields, choice)
         return
-    where, scalar, begin = fields.where.members(choice.path), scalar_name(choice.scalar), writer.position
+    where, scalar, begin = fields.shown(choice.path), scalar_name(choice.scalar), writer.position
     code = writer.let("code", integer(writer.load(scalar, where, choice.order)))
     fields.branch(choice)
     at = writer.var("next", writer.position)
@@ -188,7 +188,7 @@ def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
 
 
 def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
-    where = fields.where.members(choice.path)
+    where = fields.shown(choice.path)
     if choice.labels:
         _write_labelled(writer, fields, choice, where)
         return
@@ -293,7 +293,7 @@ def _maybe(writer: Writer, fields: Fields, maybe: Maybe) -> None:
 
 def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Codec], object]) -> None:
     """The flag, and what is done if the field is there; otherwise with an empty codec."""
-    where, begin = fields.where.members(maybe.path), writer.position
+    where, begin = fields.shown(maybe.path), writer.position
     if writer.direction == "decode":
         flag = writer.let("flag", writer.load("u8", where))
         writer.expect(Compare("le", flag, Const("u8", 1)), "constant", where, "must be 0 or 1", at=begin)
@@ -312,7 +312,7 @@ def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Cod
 
 
 def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
-    where, begin = fields.where.members(delimited.path), writer.position
+    where, begin = fields.shown(delimited.path), writer.position
     if writer.direction == "decode":
         size = writer.let("size", integer(writer.load("u32", where, delimited.order)))
         writer.require(size, where)
