@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.cases import contradictions, implied
 from rosetta_jit.lowering.coverage import coverage
+from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.lowering.scope import element_type
 from rosetta_jit.lowering.typed import Const
@@ -49,7 +51,8 @@ def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, side: 
     problems: list[Diagnostic] = []
     broken = set(rules.broken)
     writes = writes_of(way, problems, broken)
-    checker = _Checker(target, side, span, broken, problems)
+    told = frozenset(field_names(place) for place in places_in(rules.rules))
+    checker = _Checker(target, side, span, broken, problems, told)
     checker.struct(_Where("", (), 0), target.root, writes)
     return problems
 
@@ -94,11 +97,19 @@ class _Checker:
     span: Span | None
     broken: set[tuple[str, ...]]
     problems: list[Diagnostic]
+    told: frozenset[tuple[str, ...]]
 
     def struct(self, where: _Where, struct: Struct, writes: list[Write]) -> None:
         by_field = _by_field(writes)
+        told = self.implied(where, struct, by_field)
         for field in struct.fields:
-            self.field(where.field(field.name), field, by_field.get(field.name, []))
+            if field.name not in told:
+                self.field(where.field(field.name), field, by_field.get(field.name, []))
+        self.problems.extend(contradictions(where.text, struct, by_field, self.target))
+
+    def implied(self, where: _Where, struct: Struct, by_field: dict[str, list[Write]], step: int = 0) -> set[str]:
+        """Discriminators that no rule sets, and that a case implies."""
+        return {name for name in implied(struct, by_field, step) if (*where.fields, name) not in self.told}
 
     def field(self, where: _Where, field: Field, writes: list[Write]) -> None:
         if field.constant is not None:
@@ -169,13 +180,19 @@ class _Checker:
             return
         whole = [write for write in writes if len(write.steps) == 1]
         by_field = _by_field(parts, 1)
+        told = self.implied(where, struct, by_field, 2)
         for field in struct.fields:
+            if field.name in told:
+                continue
             name = where.element().field(field.name)
             mine = whole + by_field.get(field.name, [])
             if not mine or field.constant is not None:
                 self.field(name, field, [])
                 continue
-            for group in self.fill(name, where.level, extent, mine, optional=not self.must_be_set(field)):
+            teller = field.type.discriminator if isinstance(field.type, Union) else ""
+            owed = self.must_be_set(field) or teller in told
+            filled = where.element().field(teller) if teller in told else name
+            for group in self.fill(filled, where.level, extent, mine, optional=not owed):
                 self.part(name, field, group)
 
     def part(self, where: _Where, field: Field, group: list[Write]) -> None:

@@ -50,6 +50,9 @@ class Stored:
     start: Expr | None = None
 
 
+OTHER_CASE = "another case is set than the discriminator says"
+
+
 class Fields(Protocol):
     """Where the values of one message or element live."""
 
@@ -225,7 +228,7 @@ class HolderFields:
             self.writer.emit(SetField(place, index(number)))
         else:
             agrees = Compare("eq", Get("i64", place), index(number))
-            self.writer.expect(agrees, "union", self.shown(path[:-1]), "another case is set than the discriminator says")
+            self.writer.expect(agrees, "union", self.shown(path[:-1]), OTHER_CASE)
 
     def scatter(self, path: Path) -> None:
         """Lanes take fields in any order."""

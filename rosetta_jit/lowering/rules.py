@@ -46,6 +46,8 @@ class Runner:
     def run(self, rules: tuple[typed.Rule, ...], values: Values) -> None:
         for rule in rules:
             here = replace(values, where=place_of(rule, values)).at_rule(rule.span)
+            if isinstance(rule, typed.Assign | typed.SetLength) and isinstance(self.target, HolderSide):
+                self.target.choose(rule.place, here)
             match rule:
                 case typed.Assign(place, value):
                     self.assign(place, value, here, rule.change)
@@ -206,6 +208,7 @@ class Runner:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
+        chosen = self.target.case_of(place, values)
         source, path, _ = self.source.descend(origin, values)
         target, target_path, _ = self.target.descend(place, values)
         if is_endless(source.layout, source.find(path).slot):
@@ -216,6 +219,8 @@ class Runner:
             copy(source, path, target, target_path, change)
         present = presence(source, path, outer=True)
         self.writer.emit(*there if present is None else (If(present, block(there)),))
+        if chosen is not None:
+            self.target.expect_case(*chosen, values)
 
     def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""

@@ -18,7 +18,6 @@ from rosetta_jit.kernel.ir import (
     For,
     If,
     Local,
-    Select,
     Switch,
     While,
     add,
@@ -26,6 +25,7 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 from rosetta_jit.lowering import leaves
+from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.members import members, store_size
 from rosetta_jit.lowering.parameters import parameter, parameters
@@ -209,7 +209,7 @@ def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
 
 
 def _write_labelled(writer: Writer, fields: Fields, choice: Choice, where: Where) -> None:
-    label = integer(_required(fields.get(choice.path)))
+    label = integer(_got(fields, choice.path))
     fields.branch(choice)
     at = writer.var("next", writer.position)
     blocks: list[Block] = []
@@ -245,7 +245,7 @@ def _cases(writer: Writer, fields: Fields, cases: Cases) -> None:
 
 def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[Codec], object]) -> None:
     """What is done in the case that the discriminator names, after it has come; where it names none, with an empty codec."""
-    value = _first_label(writer, cases, integer(_required(fields.get(discriminator_path(cases.discriminator)))))
+    value = _first_label(writer, cases, integer(_got(fields, discriminator_path(cases.discriminator))))
     blocks: list[tuple[int, Block]] = []
     default: Block | None = None
     for number, (labels, codec) in enumerate(cases.cases):
@@ -267,11 +267,12 @@ def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[C
 def _first_label(writer: Writer, cases: Cases, value: Expr) -> Expr:
     """The first label of the case that a value names, so that each case is written once."""
     value = writer.let("label", value)
-    first: Expr = value
-    for number, (labels, _) in enumerate(cases.cases):
-        for other in labels[1:] if number != cases.default else ():
-            first = Select(Compare("eq", value, index(other)), index(labels[0]), first)
-    return writer.let("case", first)
+    others = [(other, labels[0]) for number, (labels, _) in enumerate(cases.cases) for other in labels[1:] if number != cases.default]
+    if not others:
+        return value
+    first = writer.var("case", value)
+    writer.emit(Switch(value, tuple((other, (Assign(first.name, index(label)),)) for other, label in others), ()))
+    return first
 
 
 def discriminator_path(codec: Codec) -> tuple[str, ...]:
@@ -327,6 +328,9 @@ def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
     store_size(writer, begin, inside, where, delimited.order)
 
 
-def _required(value: Expr | None) -> Expr:
-    assert value is not None
+def _got(fields: Fields, path: tuple[str, ...]) -> Expr:
+    """A number that tells what follows; that of an element is not known where rules write it in its place."""
+    value = fields.get(path)
+    if value is None:
+        raise NotInPlaceError(path)
     return value

@@ -99,16 +99,17 @@ class Filler:
     def choice(self, name: str, kind: Choice, at: str) -> Rules:
         """Rules that set one of the cases, or one of two, or none."""
         rng = self.maker.rng
-        cases = [self.case(kind, each, at) for each in rng.sample(list(kind.cases), 2)]
+        is_told = rng.random() < 0.6
+        cases = [self.case(kind, each, at, is_told=is_told) for each in rng.sample(list(kind.cases), 2)]
         if not kind.is_named:
             cases.append(Rules(f"default .{joint(at, f'{name}_of')}\n", lambda _: {}))
         made = rng.choice(cases) if rng.random() < 0.4 else self.when(*rng.sample(cases, 2))
         return Rules(made.text, lambda fields: {name: made.run(fields)}) if kind.is_named else made
 
-    def case(self, kind: Choice, case: str, at: str) -> Rules:
-        """A case, and the discriminator of unions that have one, in some order."""
+    def case(self, kind: Choice, case: str, at: str, *, is_told: bool) -> Rules:
+        """A case, and the discriminator of unions that have one, before or behind it, or left to the case."""
         type_ = kind.cases[case].type
-        if not kind.is_named:
+        if not (kind.is_named and is_told):
             return self.assigned(case, type_, joint(at, case))
         made = self.assigned(case, type_, joint(at, case))
         label = f".{at}._d = {list(kind.cases).index(case) + 1}\n"
