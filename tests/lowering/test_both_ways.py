@@ -502,3 +502,20 @@ def test_the_sign_of_a_zero_that_tells_a_block(backend):
     made = pair('("kind" :int)', "required double a = 1;", rules + "pack-rules:\n.kind = 1 if .a == 0.0 else 2\n", backend)
     assert made.pack(a=0.0) == {"kind": 1}
     assert made.refused(a=-0.0).kind == "rejected"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rules", [".v <-> .v", ".v[] <-> .v[]"])
+@pytest.mark.parametrize(
+    ("narrow", "wide", "values", "beyond"),
+    [(":int16", "int32", [1, -2, 32767], 32768), (":int", "int64", [-(2**31)], 2**31), (":int", "double", [-5, 7], 0.5)],
+)
+def test_arrays_whose_elements_become_wider(rules, narrow, wide, values, beyond, backend):
+    """As scalars do, whole arrays come back where each number fits."""
+    made = pair(f'("v" (:list {narrow}))', f"repeated {wide} v = 1;", f"rules:\n{rules}\n", backend)
+    assert made.unpack(v=values) == {"v": values}
+    assert made.pack(v=values) == {"v": values}
+    assert made.pack(v=[]) == {"v": []}
+    assert made.decode.mapping.laws.holders.kind == "exact"
+    error = made.refused(v=[*values, beyond])
+    assert (error.kind, error.path) == ("range", f".v[{len(values)}]")
