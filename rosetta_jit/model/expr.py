@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Side = OneOf["holder", "wire"]
 Operator = OneOf["+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "==", "!=", "<", "<=", ">", ">=", "differs", "and", "or"]
-"""`/` and `%` of two integers truncate toward zero, as in C; of anything else they are floating."""
+"""`/` and `%` of two integers truncate toward zero, as in C; of anything else they are floating. No text has `differs`: `!=` to the bit."""
 
 COMPARISONS: frozenset[str] = frozenset(("==", "!=", "<", "<=", ">", ">=", "differs"))
 LOGIC: frozenset[str] = frozenset(("and", "or"))
