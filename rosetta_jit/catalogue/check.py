@@ -46,6 +46,23 @@ def cases(span: Span | None, path: str, first: str, second: str) -> Diagnostic:
     return error("set-twice", f"`{path}` can hold `{first}` or `{second}`, not both", span, help_="remove one of the rules")
 
 
+def other_case(span: Span | None, path: str, case: str, labels: tuple[int, int]) -> Diagnostic:
+    """A discriminator that selects another case than the one that is set; ``labels`` are what it says, and what it would without a rule."""
+    told, label = labels
+    hint = f"leave the rule out: without one, it is {label}"
+    return error("other-case", f"`{path}` is {told}, which does not select `{case}`", span, f"`{case}` is set", help_=hint)
+
+
+def late_discriminator(span: Span | None, path: str) -> Diagnostic:
+    """A discriminator in an array that begins to be filled before its own rule can run."""
+    return error("other-case", f"`{path}` is set after cases that it selects", span, help_="set it beside the case")
+
+
+def many_labels(span: Span | None, most: int) -> Diagnostic:
+    """More labels than computed discriminators are compared with."""
+    return error("too-complex", f"discriminators are computed that select by more than {most} labels", span, help_="use constants")
+
+
 def constant(span: Span | None, path: str, value: str) -> Diagnostic:
     """Another value for a field that the schema fixes."""
     return error(

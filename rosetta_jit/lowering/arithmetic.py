@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Comparison, Const, Expr, Fits, Select, add, index, mul, type_of
+from rosetta_jit.kernel.ir import Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select, add, index, mul, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Arithmetic
@@ -43,6 +43,14 @@ def binary(writer: Writer, operator: Operator, left: Expr, right: Expr, where: W
             return _division(writer, operator, left, right, where, line)
         case _:
             raise AssertionError(operator)
+
+
+def differ(writer: Writer, left: Expr, right: Expr) -> Expr:
+    """Whether two floats are not the same to the bit; all NaNs are the same, -0 and 0 are not."""
+    word = "u32" if type_of(left) == "f32" else "u64"
+    left, right = writer.once(left), writer.once(right)
+    bits = Compare("ne", Bits(word, left), Bits(word, right))
+    return Binary("and", bits, Binary("or", Compare("eq", left, left), Compare("eq", right, right)))
 
 
 def _shift(writer: Writer, operator: str, left: Expr, right: Expr, where: Where, line: str) -> Expr:

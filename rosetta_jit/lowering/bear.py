@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.kernel.ir import Fill, For, Local, Place, SetField, add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.fields import member_of
+from rosetta_jit.lowering.places import rules_within
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.births import FirstCase, FixedArray
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.lowering.fields import HolderFields
     from rosetta_jit.model.births import Birth
@@ -57,7 +56,7 @@ def bear_each(fields: HolderFields, births: tuple[Birth, ...], first: Expr, coun
 def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side: str) -> frozenset[int]:
     """The lanes whose rows rules take themselves: those of lengths that they set, and below what they set as a whole."""
     found: set[int] = set()
-    for rule in _single(rules):
+    for rule in rules_within(rules):
         match rule:
             case typed.SetLength(place) if place.side == side:
                 slot = _slot_at(place, layout, root)
@@ -71,19 +70,7 @@ def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side
 
 def places_left(rules: tuple[typed.Rule, ...]) -> list[typed.Place]:
     """The places that are meant to be left alone."""
-    return [rule.place for rule in _single(rules) if isinstance(rule, typed.Default)]
-
-
-def _single(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Rule]:
-    """The rules in all blocks."""
-    for rule in rules:
-        match rule:
-            case typed.For(body=body):
-                yield from _single(body)
-            case typed.When(_, then, otherwise):
-                yield from _single((*then, *otherwise))
-            case _:
-                yield rule
+    return [rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)]
 
 
 def _slot_at(place: typed.Place, layout: Layout, root: Slot) -> Slot:

@@ -76,6 +76,9 @@ class WireFields:
     passing: dict[Path, Expr] = field(default_factory=dict[Path, Expr])
     outer: WireFields | None = None
 
+    def shown(self, path: Path) -> Where:
+        return self.where.members(path)
+
     def put(self, path: Path, value: Expr) -> None:
         key = self.path + path
         if self.element:
@@ -118,11 +121,11 @@ class WireFields:
     def open(self, path: Path, count: Expr) -> WireElements:
         key = self.path + path
         self.found.counts[key] = self.bind(key, "count", count)
-        return WireElements(self, key, self.where.members(path))
+        return WireElements(self, key, self.shown(path))
 
     def elements(self, path: Path, stored: Stored) -> WireElements:
         del stored
-        return WireElements(self, self.path + path, self.where.members(path))
+        return WireElements(self, self.path + path, self.shown(path))
 
     def branch(self, choice: Choice) -> None:
         """Declare the variables that every alternative is going to bind."""

@@ -17,6 +17,7 @@ from rosetta_jit.lowering.bind import bind, handed_on
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.default_counts import defaulted_counts
 from rosetta_jit.lowering.derive import derive
+from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
 from rosetta_jit.lowering.file_name import misnamed
 from rosetta_jit.lowering.hand_factors import wrong_factors
 from rosetta_jit.lowering.imports import Imports, merge, reached, read_imports
@@ -134,7 +135,9 @@ def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Di
     if packs and mapping.pack_rules and resolved.pack is not None:
         problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
     for block, target in ((resolved.unpack, holder), (resolved.pack, wire)):
-        problems += [] if block is None else defaulted_counts(block.rules, target)
+        if block is not None:
+            problems += defaulted_counts(block.rules, target)
+            discriminators_first(block.rules, told_unions(block.rules, target), problems)
     return problems
 
 

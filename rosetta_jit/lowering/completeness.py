@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.cases import contradictions, implied
 from rosetta_jit.lowering.coverage import coverage
+from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError, number
 from rosetta_jit.lowering.scope import element_type
 from rosetta_jit.lowering.typed import Const
@@ -49,7 +51,8 @@ def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, side: 
     problems: list[Diagnostic] = []
     broken = set(rules.broken)
     writes = writes_of(way, problems, broken)
-    checker = _Checker(target, side, span, broken, problems)
+    told = frozenset(field_names(place) for place in places_in(rules.rules))
+    checker = _Checker(target, side, span, broken, problems, told)
     checker.struct(_Where("", (), 0), target.root, writes)
     return problems
 
@@ -64,6 +67,14 @@ class _Where:
 
     def field(self, name: str) -> _Where:
         return _Where(f"{self.text}.{name}", (*self.fields, name), self.level)
+
+    def around(self) -> str:
+        """What a union, which is named by its cases, stands in."""
+        return self.text.removesuffix(f".{self.fields[-1]}")
+
+    def case(self, name: str) -> _Where:
+        """A case of a union: named as a field of what is around."""
+        return _Where(f"{self.around()}.{name}", (*self.fields, name), self.level)
 
     def element(self) -> _Where:
         return _Where(f"{self.text}[]", self.fields, self.level + 1)
@@ -86,11 +97,19 @@ class _Checker:
     span: Span | None
     broken: set[tuple[str, ...]]
     problems: list[Diagnostic]
+    told: frozenset[tuple[str, ...]]
 
     def struct(self, where: _Where, struct: Struct, writes: list[Write]) -> None:
         by_field = _by_field(writes)
+        told = self.implied(where, struct, by_field)
         for field in struct.fields:
-            self.field(where.field(field.name), field, by_field.get(field.name, []))
+            if field.name not in told:
+                self.field(where.field(field.name), field, by_field.get(field.name, []))
+        self.problems.extend(contradictions(where.text, struct, by_field, self.target))
+
+    def implied(self, where: _Where, struct: Struct, by_field: dict[str, list[Write]], step: int = 0) -> set[str]:
+        """Discriminators that no rule sets, and that a case implies."""
+        return {name for name in implied(struct, by_field, step) if (*where.fields, name) not in self.told}
 
     def field(self, where: _Where, field: Field, writes: list[Write]) -> None:
         if field.constant is not None:
@@ -119,20 +138,21 @@ class _Checker:
         match self.target.value_type(type_):
             case Struct() as struct:
                 self.struct(where, struct, writes)
-            case Union(cases=cases):
-                self.union(where, cases, writes)
+            case Union() as union:
+                self.union(where, union, writes)
             case (Array() | Bytes() | Map()) as sequence:
                 self.sequence(where, sequence, writes)
             case _:
                 pass
 
-    def union(self, where: _Where, cases: tuple[Field, ...], writes: list[Write]) -> None:
+    def union(self, where: _Where, union: Union, writes: list[Write]) -> None:
         by_field = _by_field(writes)
+        shown = where.around() if union.discriminator else where.text
         for first, second in pairwise(by_field):
-            self.problems.append(words.cases(by_field[second][0].span, where.text, first, second))
-        for case in cases:
+            self.problems.append(words.cases(by_field[second][0].span, shown, first, second))
+        for case in union.cases:
             if case.name in by_field:
-                self.field(where.field(case.name), case, by_field[case.name])
+                self.field(where.case(case.name), case, by_field[case.name])
 
     def sequence(self, where: _Where, type_: Array | Bytes | Map, writes: list[Write]) -> None:
         lengths = [write for write in writes if write.length is not None and not write.steps]
@@ -160,13 +180,19 @@ class _Checker:
             return
         whole = [write for write in writes if len(write.steps) == 1]
         by_field = _by_field(parts, 1)
+        told = self.implied(where, struct, by_field, 2)
         for field in struct.fields:
+            if field.name in told:
+                continue
             name = where.element().field(field.name)
             mine = whole + by_field.get(field.name, [])
             if not mine or field.constant is not None:
                 self.field(name, field, [])
                 continue
-            for group in self.fill(name, where.level, extent, mine, optional=not self.must_be_set(field)):
+            teller = field.type.discriminator if isinstance(field.type, Union) else ""
+            owed = self.must_be_set(field) or teller in told
+            filled = where.element().field(teller) if teller in told else name
+            for group in self.fill(filled, where.level, extent, mine, optional=not owed):
                 self.part(name, field, group)
 
     def part(self, where: _Where, field: Field, group: list[Write]) -> None:

@@ -80,7 +80,7 @@ def _elements(source: HolderFields, origin: Path, target: HolderFields, path: Pa
     writer, stored = source.writer, source.stored(origin)
     taken = source.elements(origin, stored)
     lane = source.layout.lanes[taken.lane]
-    writer.expect(Compare("le", stored.size, index(MAX_SIZE // lane.stride)), "count", source.where.members(origin), "too many elements")
+    writer.expect(Compare("le", stored.size, index(MAX_SIZE // lane.stride)), "count", source.shown(origin), "too many elements")
     made = target.open(path, stored.size)
     if isinstance(lane.element, Number) and change is None:
         writer.emit(Copy(Place(made.lane, made.start), Place(taken.lane, taken.start), mul(stored.size, lane.stride)))

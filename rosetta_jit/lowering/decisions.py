@@ -6,6 +6,7 @@ byte, an enum with its constants, a bool with another.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
@@ -60,6 +61,8 @@ def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr, texts
     left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
     if left is None or right is None or not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
         return None
+    if expr.operator == "differs" and not any(isinstance(each.type, Float) for each in (left, right)):
+        expr = replace(expr, operator="!=")
     found = texts(left, right, expr) if expr.operator in EQUALITY else None
     if found is not None:
         return found
@@ -78,7 +81,7 @@ def _comparison(expr: model.Binary, left: Expr, right: Expr) -> Expr | None:
     return _compared(left, right, expr.operator, expr)
 
 
-MIRRORED: dict[str, model.Operator] = {"==": "==", "!=": "!=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
+MIRRORED: dict[str, model.Operator] = {"==": "==", "!=": "!=", "<": ">", "<=": ">=", ">": "<", ">=": "<=", "differs": "differs"}
 """The comparison that holds where the operands change places."""
 
 

@@ -1,4 +1,7 @@
-"""``default .place``: the values that the schema gives what nothing was said of, as rules."""
+"""``default .place``: the values that the schema gives what nothing was said of, as rules.
+
+What the schema requires is there (proto2): with its default, else 0 or empty.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,8 @@ MAX_NESTED = 20
 def default_rules(place: Place, message: Message, span: Span | None) -> list[Rule]:
     """Assignments of the defaults at and below a place; the rest is left alone."""
     last = place.steps[-1]
+    if isinstance(last, FieldStep) and _may_lack(last.field):
+        return [Default(place, span)]
     known = _default(last.field, place, span) if isinstance(last, FieldStep) else None
     if known is not None:
         return [known]
@@ -30,10 +35,10 @@ def default_rules(place: Place, message: Message, span: Span | None) -> list[Rul
 
 
 def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
-    """The rule for a field that has a default, and cannot be absent instead."""
-    if isinstance(field.type, Optional) or field.default is None:
-        return None
+    """The rule for a field that has a default."""
     match place.type, field.default:
+        case Enum(values=((_, number), *_), closed=True), None if field.required:
+            return Assign(place, Const(number, place.type, span), span)
         case Enum(values=values), str(name):
             number = dict(values).get(name)
             return None if number is None else Assign(place, Const(number, place.type, span), span)
@@ -43,15 +48,31 @@ def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
             return Assign(place, Const(float(number), place.type, span), span)
         case ((String() | Bytes()), str(text)):
             return Assign(place, Const(text, String(), span), span)
+        case Bytes(), bytes(data) if _is_text(data):
+            return Assign(place, Const(data.decode(), String(), span), span)
         case _:
             return None
 
 
+def _may_lack(field: Field) -> bool:
+    return isinstance(field.type, Optional) and not field.required
+
+
+def _is_text(data: bytes) -> bool:
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
 def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
     for field in struct.fields:
-        inner = message.schema.resolve(field.type)
-        if not isinstance(field.type, Optional) and field.default is not None:
+        if _may_lack(field):
+            continue
+        if field.required or field.default is not None:
             return True
+        inner = message.schema.resolve(field.type)
         if isinstance(inner, Struct) and depth < MAX_NESTED and _has_defaults(inner, message, depth + 1):
             return True
     return False

@@ -160,14 +160,14 @@ class Descent:
         if self.writer.direction == "decode":
             return fields.open(path, index(1))
         stored = fields.stored(path)
-        self.writer.expect(Compare("eq", stored.size, index(1)), "missing", fields.where.members(path), "it is not set")
+        self.writer.expect(Compare("eq", stored.size, index(1)), "missing", fields.shown(path), "it is not set")
         return fields.elements(path, stored)
 
     # --- sizes before what they are of -----------------------------------------------------------------------------------
 
     def open(self, codec: Delimited, fields: HolderFields, piece: Piece) -> None:
         """Note where it must end, or where its size will be written; then what is in it."""
-        writer, where = self.writer, fields.where.members(codec.path)
+        writer, where = self.writer, fields.shown(codec.path)
         if writer.direction == "decode":
             size = writer.let("size", integer(writer.load("u32", where, codec.order)))
             writer.require(size, where)
@@ -181,7 +181,7 @@ class Descent:
 
     def close(self, codec: Delimited, fields: HolderFields, piece: Piece) -> None:
         """Check the end, or write the size."""
-        writer, where = self.writer, fields.where.members(codec.path)
+        writer, where = self.writer, fields.shown(codec.path)
         noted = writer.let("noted", self.noted(piece))
         if writer.direction == "decode":
             writer.expect(Compare("eq", writer.position, noted), "length", where, "its content is not as long as it says")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.array_parts import has_each, is_many, sources_in
+from rosetta_jit.lowering.conversions import same, widens
 from rosetta_jit.lowering.counts import LayoutError, times
 from rosetta_jit.lowering.layouts import ARGUMENTS, PADDED, view_of
 from rosetta_jit.lowering.moves import Moves
@@ -85,6 +86,8 @@ class _Expansion:
     def assign(self, rule: Assign, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         if rule.via is None and isinstance(rule.value, Path) and self.are_unlike_maps(rule.place, rule.value):
             return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
+        if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.fits):
+            rule = _each(rule, rule.value)
         if not any(is_many(part) for side in (rule.place, rule.value) for part in parts(side)):
             return (rule,)
         is_each = any(has_each(part) for side in (rule.place, rule.value) for part in parts(side))
@@ -164,6 +167,14 @@ class _Expansion:
         types = self.type_of(one), self.type_of(other)
         return isinstance(types[0], Map) and isinstance(types[1], Map) and types[0] != types[1]
 
+    def are_unlike_numbers(self, one: Path, other: Path, *, fits: bool) -> bool:
+        """Whether two places are arrays of different numbers, which become each other one by one: freely, or where each ``fits``."""
+        match self.type_of(one), self.type_of(other):
+            case Array((Int() | Float()) as wanted, length), Array((Int() | Float()) as element, other_length):
+                return not same(element, wanted) and (fits or (widens(element, wanted) and length == other_length))
+            case _:
+                return False
+
     def type_of(self, path: Path) -> Type | None:
         """The type of a place without slices; None where there is none, which others report."""
         message = self.scope.messages[path.side]
@@ -187,6 +198,12 @@ class _Expansion:
         while name in self.names:
             name += "_"
         return name
+
+
+def _each(rule: Assign, value: Path) -> Assign:
+    """A rule for arrays as one for each element."""
+    step = Each(rule.span)
+    return replace(rule, place=replace(rule.place, steps=(*rule.place.steps, step)), value=replace(value, steps=(*value.steps, step)))
 
 
 def _entries(rule: Assign, value: Path) -> list[Assign]:

@@ -50,12 +50,19 @@ class Stored:
     start: Expr | None = None
 
 
+OTHER_CASE = "another case is set than the discriminator says"
+
+
 class Fields(Protocol):
     """Where the values of one message or element live."""
 
     @property
     def where(self) -> Where:
         """Its place in the message, for errors."""
+        ...
+
+    def shown(self, path: Path) -> Where:
+        """The place of a field, for errors."""
         ...
 
     def put(self, path: Path, value: Expr) -> None:
@@ -151,6 +158,14 @@ class HolderFields:
     def scope(self) -> HolderFields:
         return self.owner or self
 
+    def shown(self, path: Path) -> Where:
+        """As users name it: a case of a union stands among the fields around the union."""
+        where, slot = self.where, self.cell.slot
+        for number, name in enumerate(path, 1):
+            slot = member_of(slot, name).slot
+            where = where.member(name) if number == len(path) or not isinstance(slot, Variant) else where
+        return where
+
     def put(self, path: Path, value: Expr) -> None:
         cell = self.mark(path)
         match cell.slot:
@@ -179,7 +194,7 @@ class HolderFields:
 
     def stored(self, path: Path, fixed: int | None = None) -> Stored:
         del fixed
-        start, count = self.read_span(self.find(path), self.where.members(path))
+        start, count = self.read_span(self.find(path), self.shown(path))
         return Stored(count, start)
 
     def copy_bytes(self, path: Path, stored: Stored) -> None:
@@ -194,13 +209,13 @@ class HolderFields:
         self.set_span(cell, start, count)
         if has_gaps(self.layout.lanes[lane].element):
             stride = self.layout.lanes[lane].stride
-            self.writer.expect(Compare("le", count, index(MAX_SIZE // stride)), "count", self.where.members(path), "too many elements")
+            self.writer.expect(Compare("le", count, index(MAX_SIZE // stride)), "count", self.shown(path), "too many elements")
             self.clear(lane, start, count)
-        return HolderElements(self, lane, start, self.where.members(path))
+        return HolderElements(self, lane, start, self.shown(path))
 
     def elements(self, path: Path, stored: Stored) -> HolderElements:
         assert stored.start is not None
-        return HolderElements(self, span_of(self.find(path)).lane, stored.start, self.where.members(path))
+        return HolderElements(self, span_of(self.find(path)).lane, stored.start, self.shown(path))
 
     def branch(self, choice: Choice) -> None:
         """Fields of a holder are written in whichever branch they come."""
@@ -213,7 +228,7 @@ class HolderFields:
             self.writer.emit(SetField(place, index(number)))
         else:
             agrees = Compare("eq", Get("i64", place), index(number))
-            self.writer.expect(agrees, "union", self.where.members(path[:-1]), "another case is set than the discriminator says")
+            self.writer.expect(agrees, "union", self.shown(path[:-1]), OTHER_CASE)
 
     def scatter(self, path: Path) -> None:
         """Lanes take fields in any order."""

@@ -25,7 +25,7 @@ def folded(expr: Expr) -> Expr:
             return _logic(operator == "and", left, right, expr)
         case Binary("+" | "-" | "*" | "<" | "<=" | ">" | ">=", Literal(int() as a), Literal(int() as b)):
             return _computed(expr, a, b)
-        case Binary("==" | "!=", left, right):
+        case Binary("==" | "!=" | "differs", left, right):
             return _compared(expr, _bare(left), _bare(right))
         case _:
             return expr

@@ -77,7 +77,7 @@ def leaf(codec: Leaf, fields: Fields, writer: Writer) -> None:
 
 
 def _number(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, order: str) -> None:
-    where = fields.where.members(path)
+    where = fields.shown(path)
     if writer.direction == "decode":
         fields.put(path, writer.load(scalar, where, order))
         return
@@ -93,7 +93,7 @@ def _table(writer: Writer, fields: Fields, table: Table) -> None:
     if table.scalar is None:
         _implied(writer, fields, table)
         return
-    where, scalar = fields.where.members(table.path), scalar_name(table.scalar)
+    where, scalar = fields.shown(table.path), scalar_name(table.scalar)
     if writer.direction == "decode":
         at = writer.position
         wire = writer.let("code", integer(writer.load(scalar, where, table.order)))
@@ -133,7 +133,7 @@ def _numbers(table: Table) -> str:
 
 
 def _number_constant(writer: Writer, fields: Fields, constant: Constant) -> None:
-    where = fields.where.members(constant.path)
+    where = fields.shown(constant.path)
     scalar = scalar_name(constant.scalar)
     value = Const(scalar, constant.value if isinstance(constant.value, int | float) else 0)
     if writer.direction == "decode":
@@ -147,7 +147,7 @@ def _number_constant(writer: Writer, fields: Fields, constant: Constant) -> None
 
 
 def _text_constant(writer: Writer, fields: Fields, path: tuple[str, ...], value: bytes) -> None:
-    where = fields.where.members(path)
+    where = fields.shown(path)
     writer.require(len(value), where)
     for offset, number, scalar in _words(value):
         at = add(writer.position, offset)
@@ -162,7 +162,7 @@ def _text_constant(writer: Writer, fields: Fields, path: tuple[str, ...], value:
 
 
 def _computed(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, value: expr.Expr, order: str) -> None:
-    where = fields.where.members(path)
+    where = fields.shown(path)
     if writer.direction == "size":
         writer.advance(WIDTH[scalar])
         return
@@ -202,7 +202,7 @@ def align(writer: Writer, size: int, when: Expr | None = None) -> None:
 
 
 def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
-    where = fields.where.members(blob.path)
+    where = fields.shown(blob.path)
     extra = int(blob.terminated)
     if writer.direction == "decode":
         total = read_count(writer, fields, blob.path, blob.count, "length", least=extra)
@@ -224,7 +224,7 @@ def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
 
 
 def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
-    where = fields.where.members(text.path)
+    where = fields.shown(text.path)
     if writer.direction == "decode":
         units = read_count(writer, fields, text.path, text.count, "length")
         writer.require(mul(units, 2), where)
@@ -290,7 +290,7 @@ def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:
 
 def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
     """A count that has come: not negative, and what the schema says it must be. ``least`` are counted, but are not of the value."""
-    where, at = fields.where.members(path), writer.position
+    where, at = fields.shown(path), writer.position
     found = _told(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where, least)
     if count.maximum is not None:
         writer.expect(Compare("le", found, index(count.maximum + least)), kind, where, f"at most {count.maximum}", at=at)

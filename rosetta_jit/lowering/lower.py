@@ -7,6 +7,7 @@ of an encoding becomes a body of the kernel.
 
 from __future__ import annotations
 
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
@@ -16,11 +17,13 @@ from rosetta_jit.lowering.bear import bear, opened_lanes, places_left
 from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
 from rosetta_jit.lowering.defaults import has_array
 from rosetta_jit.lowering.descent import descend
+from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
 from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
 from rosetta_jit.lowering.recursion import cursors, read_rows
 from rosetta_jit.lowering.recursion_write import write_root
 from rosetta_jit.lowering.rules import Runner
+from rosetta_jit.lowering.scope import Message
 from rosetta_jit.lowering.sides import HolderSide, WireSide
 from rosetta_jit.lowering.stage import staged_fields
 from rosetta_jit.lowering.supplies import Supplies, look_up_arrays
@@ -29,11 +32,13 @@ from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.walk import walk
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.births import Births
+from rosetta_jit.model.types import Struct
 from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from rosetta_jit.lowering.discriminators import Told
     from rosetta_jit.lowering.fields import HolderFields
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.expr import Side
@@ -67,6 +72,7 @@ def lower(
     lowering = _Lowering(encoding, layout, direction, borrow)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
+    mapped = _in_order(mapped, mapped.holder if direction == "decode" else mapped.wire)
     try:
         return lowering.kernel(name, lambda fields, attempt: _in_place(encoding, attempt, fields, mapped))
     except NotInPlaceError:
@@ -82,6 +88,7 @@ class Mapped:
     holder: Type
     wire: Type
     wire_layout: Layout
+    unions: Mapping[tuple[str, ...], Told] = field(default_factory=dict[tuple[str, ...], "Told"])
 
     def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
         """A message in lanes; where rules fill it, with what it is born with."""
@@ -90,7 +97,15 @@ class Mapped:
         births, cell = Births(self.schema, fields.layout), fields.cell
         opened = opened_lanes(self.rules, fields.layout, cell.slot, filled)
         bear(fields, births.of(type_, cell.slot, cell.lane), cell.row, opened)
-        return HolderSide(fields, births, opened)
+        return HolderSide(fields, births, opened, self.unions)
+
+
+def _in_order(mapped: Mapped, target: Type) -> Mapped:
+    """With the rules in an order in which unions can be filled."""
+    root = mapped.schema.resolve(target)
+    assert isinstance(root, Struct)
+    unions = told_unions(mapped.rules, Message(root, mapped.schema))
+    return replace(mapped, rules=discriminators_first(mapped.rules, unions, []), unions=unions) if unions else mapped
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ UNITS = {5: 1, 6: 4, 7: 8}
 
 def members(codec: Members, fields: Fields, writer: Writer, walk: Walk) -> None:
     """Read or write all members, and the number of their bytes before them."""
-    where, begin = fields.where.members(codec.path), writer.position
+    where, begin = fields.shown(codec.path), writer.position
     if writer.direction == "decode":
         fields.scatter(codec.path)
         size = writer.let("size", integer(writer.load("u32", where, codec.order)))
@@ -61,7 +61,7 @@ class Seen:
         """The member of that number comes now, and has not before."""
         word, bit = self.words[number // 64], Const("u64", 1 << number % 64)
         new = Compare("eq", Binary("and", word, bit), Const("u64", 0))
-        self.writer.expect(new, "tag", self.fields.where.members(self.members[number].path), "a member comes twice")
+        self.writer.expect(new, "tag", self.fields.shown(self.members[number].path), "a member comes twice")
         self.writer.assign(word, Binary("or", word, bit))
 
     def complete(self) -> None:
@@ -69,14 +69,14 @@ class Seen:
         for number, member in enumerate(self.members):
             if not member.optional:
                 there = Compare("ne", Binary("and", self.words[number // 64], Const("u64", 1 << number % 64)), Const("u64", 0))
-                self.writer.expect(there, "missing", self.fields.where.members(member.path), "a member did not come")
+                self.writer.expect(there, "missing", self.fields.shown(member.path), "a member did not come")
 
 
 # --- reading -----------------------------------------------------------------------------------------------------------------
 
 
 def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr) -> None:
-    where = fields.where.members(codec.path)
+    where = fields.shown(codec.path)
     at = writer.var("at", writer.position)
     seen = Seen.none(writer, fields, codec.members)
     with writer.nested() as body:
@@ -97,7 +97,7 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
                     fields.appear(member.path)
                 walk(member.value, fields, writer)
                 fits = Compare("eq", writer.position, behind)
-                writer.expect(fits, "length", fields.where.members(member.path), "its content is not as long as it says")
+                writer.expect(fits, "length", fields.shown(member.path), "its content is not as long as it says")
             cases.append((member.number, block(one)))
         with writer.nested() as unknown:
             known = Compare("eq", Binary("and", head, index(MUST_UNDERSTAND)), index(0))
@@ -150,7 +150,7 @@ def if_present(member: Member, fields: Fields, writer: Writer, write: Callable[[
 
 
 def _write_member(codec: Members, member: Member, fields: Fields, writer: Writer, walk: Walk) -> None:
-    where = fields.where.members(member.path)
+    where = fields.shown(member.path)
     leaves.align(writer, 4)
     head = member.number | member.length_code << CODE_SHIFT | (MUST_UNDERSTAND if member.must_understand else 0)
     writer.store(Const("u32", head), where, codec.order)

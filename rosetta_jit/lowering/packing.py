@@ -304,10 +304,10 @@ def _setting(place: Path, value: Expr, span: Span | None, *, length: bool) -> Ru
 
 
 def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
-    """That a holder has what unpacking is going to give."""
+    """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
     held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
     reason = words.disagrees(show_expr(place), show_expr(wanted))
-    return (When(Binary("!=", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
+    return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
 
 def _guard(condition: Expr, rule: When, *, holds: bool) -> tuple[Rule, ...]:
@@ -322,8 +322,9 @@ def _guard(condition: Expr, rule: When, *, holds: bool) -> tuple[Rule, ...]:
 def _is_tested(rule: Rule, test: Expr) -> bool:
     """Whether a check asks again what the `when` around it has asked."""
     match rule, test:
-        case When(Binary("!=", place, Held(value=wanted)), (Reject(),), ()), Binary("==", tested, constant):
-            return place == tested and folded(wanted) == constant
+        case When(Binary("differs", place, Held(value=wanted)), (Reject(),), ()), Binary("==", tested, constant):
+            is_zero = isinstance(constant, Literal) and isinstance(constant.value, float) and not constant.value
+            return place == tested and folded(wanted) == constant and not is_zero
         case _:
             return False
 

@@ -34,7 +34,7 @@ NOTHING = -1
 def parameter(codec: Parameter, fields: Fields, writer: Writer, walk: Walk) -> None:
     """Read or write an optional member of a plain struct: its place is known, its id must be what belongs there."""
     member = codec.member
-    where = fields.where.members(member.path)
+    where = fields.shown(member.path)
     if writer.direction != "decode":
         begin, inside = _write_head(writer, member, where, codec.order)
         if_present(member, fields, writer, lambda: _value(member, fields, writer, walk))
@@ -51,7 +51,7 @@ def parameter(codec: Parameter, fields: Fields, writer: Writer, walk: Walk) -> N
 
 def parameters(codec: Parameters, fields: Fields, writer: Writer, walk: Walk) -> None:
     """Read or write all members of a mutable struct, and the sentinel behind them."""
-    where = fields.where.members(codec.path)
+    where = fields.shown(codec.path)
     if writer.direction == "decode":
         fields.scatter(codec.path)
         _read(codec, fields, writer, walk)
@@ -84,7 +84,7 @@ class _Head:
 
 
 def _read(codec: Parameters, fields: Fields, writer: Writer, walk: Walk) -> None:
-    where = fields.where.members(codec.path)
+    where = fields.shown(codec.path)
     at, ended = writer.var("at", writer.position), writer.var("ended", Const("bool", value=False))
     seen = Seen.none(writer, fields, codec.members)
     with writer.nested() as body:
@@ -142,7 +142,7 @@ def _moved(word: Expr, source: int, target: int) -> Expr:
 
 
 def _read_value(member: Member, head: _Head, fields: Fields, writer: Writer, walk: Walk) -> None:
-    where = fields.where.members(member.path)
+    where = fields.shown(member.path)
     writer.position = head.start
     _value(member, fields, writer, walk)
     rest = writer.let("rest", Binary("sub", head.behind, writer.position))
@@ -156,7 +156,7 @@ def _read_value(member: Member, head: _Head, fields: Fields, writer: Writer, wal
 
 
 def _write_member(codec: Parameters, member: Member, fields: Fields, writer: Writer, walk: Walk) -> None:
-    where = fields.where.members(member.path)
+    where = fields.shown(member.path)
     leaves.align(writer, 4)
     begin, inside = _write_head(writer, member, where, codec.order)
     _value(member, fields, writer, walk)

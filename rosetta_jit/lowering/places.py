@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.lowering.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.lowering.typed import Place, Rule
 
 
@@ -18,6 +20,18 @@ def field_names(place: Place) -> tuple[str, ...]:
 def places_in(rules: tuple[Rule, ...]) -> list[Place]:
     """All places that rules set, those within blocks included."""
     return [place for rule in rules for place in _places(rule)]
+
+
+def rules_within(rules: tuple[Rule, ...]) -> Iterator[Rule]:
+    """The rules in all blocks, without the blocks."""
+    for rule in rules:
+        match rule:
+            case For(body=body):
+                yield from rules_within(body)
+            case When(_, then, otherwise):
+                yield from rules_within((*then, *otherwise))
+            case _:
+                yield rule
 
 
 def _places(rule: Rule) -> list[Place]:

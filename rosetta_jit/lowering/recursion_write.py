@@ -159,7 +159,7 @@ def _visit_field(writer: Writer, fields: HolderFields, entry: Entry, rows: Rows)
         _visit(writer, inner, entry.value, rows)
         return
     cell = fields.find(entry.path)
-    start, count = fields.read_span(cell, fields.where.members(entry.path))
+    start, count = fields.read_span(cell, fields.shown(entry.path))
     lane, number = span_of(cell).lane, writer.var("i", index(0))
     with writer.nested() as body:
         row = writer.let("row_of_element", Binary("add", start, number))

@@ -149,6 +149,11 @@ class Trip:
             case Binary("==" | "!="):
                 self.truths[replace(condition, operator="==", span=None)] = False
                 self.truths[replace(condition, operator="!=", span=None)] = True
+            case Binary("differs", left, right):
+                self.truths[replace(condition, span=None)] = holds
+                if not holds:
+                    self.equal.setdefault(left, []).append(right)
+                    self.equal.setdefault(right, []).append(left)
             case _:
                 self.truths[condition] = holds
 
@@ -260,6 +265,10 @@ class Trip:
                 return adapt(constant, type_) or expr
             case Unary("not", Const(bool(value))):
                 return Const(not value, BOOL)
+            case Binary("differs", left, right) if left == right:
+                return Const(value=False, type=BOOL)
+            case Binary("differs", Const(a), Const(b)):
+                return Const(repr(a) != repr(b), BOOL)
             case Binary("==" | "!=" as operator, left, right) if left == right and not isinstance(left.type, Float):
                 return Const(operator == "==", BOOL)
             case Binary("==" | "!=" as operator, Const(a), Const(b)):

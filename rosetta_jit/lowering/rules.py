@@ -46,6 +46,8 @@ class Runner:
     def run(self, rules: tuple[typed.Rule, ...], values: Values) -> None:
         for rule in rules:
             here = replace(values, where=place_of(rule, values)).at_rule(rule.span)
+            if isinstance(rule, typed.Assign | typed.SetLength) and isinstance(self.target, HolderSide):
+                self.target.choose(rule.place, here)
             match rule:
                 case typed.Assign(place, value):
                     self.assign(place, value, here, rule.change)
@@ -60,10 +62,18 @@ class Runner:
                     self.writer.emit(If(holds, self.branch(then, values), self.branch(otherwise, values)))
                 case typed.Reject(text, _, pieces):
                     here.reject(text, pieces)
-                case typed.Ignore() | typed.Default():
+                case typed.Default(place):
+                    self.leave(place, here)
+                case typed.Ignore():
                     pass
                 case _:
                     assert_never(rule)
+
+    def leave(self, place: typed.Place, values: Values) -> None:
+        """Leave a place as it is; what the schema requires is there."""
+        last = place.steps[-1]
+        if isinstance(last, typed.FieldStep) and last.field.required and isinstance(self.target, HolderSide):
+            self.target.appear(place, values)
 
     def branch(self, rules: tuple[typed.Rule, ...], values: Values) -> Block:
         """Rules that run or not; what is looked up within them is forgotten behind them."""
@@ -198,6 +208,7 @@ class Runner:
         """A message, union or map as a whole."""
         if not (isinstance(self.source, HolderSide) and isinstance(self.target, HolderSide)):
             raise NotInPlaceError
+        chosen = self.target.case_of(place, values)
         source, path, _ = self.source.descend(origin, values)
         target, target_path, _ = self.target.descend(place, values)
         if is_endless(source.layout, source.find(path).slot):
@@ -208,6 +219,8 @@ class Runner:
             copy(source, path, target, target_path, change)
         present = presence(source, path, outer=True)
         self.writer.emit(*there if present is None else (If(present, block(there)),))
+        if chosen is not None:
+            self.target.expect_case(*chosen, values)
 
     def assign_array(self, place: typed.Place, origin: typed.Place, values: Values, change: typed.Change | None) -> None:
         """An array as a whole: its length, then each element."""

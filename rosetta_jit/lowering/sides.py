@@ -28,17 +28,22 @@ from rosetta_jit.kernel.ir import (
     index,
     mul,
 )
-from rosetta_jit.lowering.bear import bear_each
+from rosetta_jit.lowering.bear import bear, bear_each
 from rosetta_jit.lowering.bound import EACH, NotInPlaceError
-from rosetta_jit.lowering.fields import converted, has_gaps, member_of, presence_bit, scalar_name
+from rosetta_jit.lowering.discriminators import discriminator_of
+from rosetta_jit.lowering.fields import OTHER_CASE, converted, has_gaps, member_of, presence_bit, scalar_name
+from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
-from rosetta_jit.model.types import Array
+from rosetta_jit.model.types import Array, Struct
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.lowering import typed
     from rosetta_jit.lowering.bound import Region, WireFields
+    from rosetta_jit.lowering.discriminators import Told
     from rosetta_jit.lowering.fields import HolderElements, HolderFields
     from rosetta_jit.lowering.values import Values
     from rosetta_jit.lowering.writer import Writer
@@ -67,6 +72,7 @@ class HolderSide:
     root: HolderFields
     births: Births | None = None
     opened: frozenset[int] = frozenset()
+    unions: Mapping[tuple[str, ...], Told] = field(default_factory=dict[tuple[str, ...], "Told"])
     arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
 
     @property
@@ -118,7 +124,7 @@ class HolderSide:
         present = presence(fields, path)
         count = self.writer.let("count", size if present is None else Select(present, size, index(0)))
         known = Binary("and", Compare("ge", count, index(0)), Compare("le", count, size))  # true anyway; said for the proof
-        self.writer.expect(known, "length", fields.where.members(path), "the holder is damaged")
+        self.writer.expect(known, "length", fields.shown(path), "the holder is damaged")
         return count
 
     def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
@@ -133,14 +139,14 @@ class HolderSide:
                 case IndexStep(at):
                     elements, count = self.array(_prefix(place, done), values)
                     number = self.writer.once(values.of(at))
-                    where = fields.where.members(path).element(number)
+                    where = fields.shown(path).element(number)
                     self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
                     fields, path, last = elements.at(number), (), None
         return fields, path, last
 
     def single(self, fields: HolderFields, path: Path, values: Values) -> HolderFields:
         """A message that has a row of its own, since it can contain itself: it is there, or it comes now."""
-        where = fields.where.members(path)
+        where = fields.shown(path)
         if self.births is not None:
             with self.writer.nested() as new:
                 elements = fields.open(path, index(1))
@@ -154,12 +160,71 @@ class HolderSide:
 
     def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
         fields, path, _ = self.descend(place, values)
+        told = self.unions.get(field_names(place))
+        if told is None:
+            fields.put(path, value)
+            return
+        value = self.writer.once(value)
         fields.put(path, value)
+        path, case = (*path[:-1], told.name), told.chosen(self.writer, value)
+        self.writer.emit(SetField(_case_word(fields, path), case))
+        for number in range(1, len(told.union.cases) + 1):
+            self.bear_case(fields, path, told, number, Compare("eq", case, index(number)))
+
+    def choose(self, place: typed.Place, values: Values) -> None:
+        """The unions that a place is in a case of have that case: their discriminators say so, or are told so."""
+        for steps in range(1, len(place.steps)):
+            names, case = discriminator_of(place, steps), place.steps[steps]
+            if names is None or not isinstance(case, FieldStep):
+                continue
+            told = self.unions[names]
+            fields, path, _ = self.descend(_prefix(place, steps), values)
+            if told.by_rule:
+                self.expect_case(fields, path, index(told.number(case.field.name)), values)
+            else:
+                number = told.number(case.field.name)
+                fields.put((*path[:-1], names[-1]), index(told.label(case.field.name)))
+                word = _case_word(fields, path)
+                self.bear_case(fields, path, told, number, Compare("ne", Get("i64", word), index(number)))
+                self.writer.emit(SetField(word, index(number)))
+
+    def bear_case(self, fields: HolderFields, path: Path, told: Told, number: int, when: Expr) -> None:
+        """Give a case that comes what it is born with."""
+        cell = fields.find(path)
+        assert isinstance(cell.slot, Variant)
+        births = (
+            () if self.births is None else self.births.of(told.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
+        )
+        with self.writer.nested() as body:
+            bear(fields, births, cell.row, self.opened)
+        if body:
+            self.writer.emit(If(when, block(body)))
+
+    def case_of(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Expr] | None:
+        """The case that a discriminator has chosen for a union that is set as a whole, if one has."""
+        names = discriminator_of(place, len(place.steps))
+        if names is None or not self.unions[names].by_rule:
+            return None
+        fields, path, _ = self.descend(place, values)
+        return fields, path, self.writer.let("case", Get("i64", _case_word(fields, path)))
+
+    def expect_case(self, fields: HolderFields, path: Path, number: Expr, values: Values) -> None:
+        """That a discriminator has chosen a case."""
+        agrees = Compare("eq", Get("i64", _case_word(fields, path)), number)
+        self.writer.expect(agrees, "union", fields.shown(path[:-1]), OTHER_CASE, line=values.line)
+
+    def appear(self, place: typed.Place, values: Values) -> None:
+        """What can be absent is there, as it was born."""
+        fields, path, _ = self.descend(place, values)
+        if isinstance(place.type, Struct) and isinstance(fields.find(path).slot, Span):
+            self.single(fields, path, values)
+        else:
+            fields.appear(path)
 
     def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
         """Take room for the elements; those that are structs begin empty."""
         fields, path, _ = self.descend(place, values)
-        where = fields.where.members(path)
+        where = fields.shown(path)
         self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
         elements = fields.open(path, count)
         self.arrays[_key(place)] = elements, count
@@ -297,6 +362,13 @@ def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr |
 
 def _key(place: typed.Place) -> Key:
     return tuple(step.field.name if isinstance(step, FieldStep) else step.index for step in place.steps)
+
+
+def _case_word(fields: HolderFields, path: Path) -> Place:
+    """Where a union says which case it has."""
+    cell = fields.find(path)
+    assert isinstance(cell.slot, Variant)
+    return cell.place(cell.slot.offset)
 
 
 def _prefix(place: typed.Place, steps: int) -> typed.Place:

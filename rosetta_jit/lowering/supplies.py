@@ -13,7 +13,7 @@ from rosetta_jit.lowering.sides import HolderSide, wire_key
 from rosetta_jit.lowering.type_texts import is_textual
 from rosetta_jit.lowering.values import constant, scalar_type
 from rosetta_jit.lowering.writer import Where, block
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Union
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -207,6 +207,8 @@ def place_of(rule: typed.Rule, values: Values) -> Where:
     if isinstance(rule, typed.Assign | typed.SetLength):
         for step in rule.place.steps:
             match step:
+                case typed.FieldStep(each) if isinstance(each.type, Union) and step is not rule.place.steps[-1]:
+                    pass  # its cases are named as fields of what is around
                 case typed.FieldStep(each):
                     where = where.member(each.name)
                 case typed.IndexStep(typed.Local(name)) if name in values.variables:

@@ -114,7 +114,7 @@ def _array_starts(writer: Writer, fields: HolderFields, tagged: Tagged, *, fresh
             if not fresh:
                 known = writer.let("start", Get("i64", fields.cell.place(span.offset)))
                 sane = Binary("and", Compare("ge", known, index(0)), Compare("le", known, used))
-                writer.expect(sane, "length", fields.where.members(path), "the holder is damaged")
+                writer.expect(sane, "length", fields.shown(path), "the holder is damaged")
                 start = Select(Compare("eq", Get("i64", fields.cell.place(span.offset + 8)), index(0)), used, known)
             starts[path] = writer.let("first", start)
     return starts
@@ -190,7 +190,7 @@ def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
 
 
 def _read_single(message: Message, entry: Entry, begin: Expr) -> None:
-    writer, fields, where = message.writer, message.fields, message.fields.where.members(entry.path)
+    writer, fields, where = message.writer, message.fields, message.fields.shown(entry.path)
     match entry.value:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
@@ -329,7 +329,7 @@ def _read_element(message: Message, entry: Entry, begin: Expr) -> None:
     """One more element at the end of its lane."""
     writer, fields = message.writer, message.fields
     lane = _lane(fields, entry.path)
-    where = fields.where.members(entry.path).element(Binary("sub", Used(lane), message.starts[entry.path]))
+    where = fields.shown(entry.path).element(Binary("sub", Used(lane), message.starts[entry.path]))
     match entry.value:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
@@ -370,7 +370,7 @@ def _append(message: Message, lane: int, value: Local) -> None:
 def _read_packed(message: Message, entry: Entry) -> None:
     """Numbers without tags, as many as fill the length."""
     writer, fields = message.writer, message.fields
-    where, lane = fields.where.members(entry.path), _lane(fields, entry.path)
+    where, lane = fields.shown(entry.path), _lane(fields, entry.path)
     size = read_length(writer, where, message.stop)
     match entry.value:
         case Number(_, scalar, order):
@@ -402,7 +402,7 @@ def _read_packed_fixed(writer: Writer, fields: HolderFields, lane: int, size: Lo
 
 def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: Local) -> None:
     writer, fields = message.writer, message.fields
-    where = fields.where.members(entry.path)
+    where = fields.shown(entry.path)
     stop = writer.let("stop", Binary("add", writer.position, size))
     at = writer.var("at", writer.position)
     with writer.nested() as body:

@@ -63,7 +63,7 @@ def write_message(writer: Writer, fields: HolderFields, tagged: Tagged, lengths:
             _write_entry(writer, fields, entry, lengths)
             continue
         if entry.path[0] in tagged.required:
-            where = fields.where.members(entry.path)
+            where = fields.shown(entry.path)
             writer.expect(there, "missing", where, "a required field is not set")
             _write_entry(writer, fields, entry, lengths)
             continue
@@ -130,7 +130,7 @@ def _not_zero(fields: HolderFields, offset: int, scalar: str) -> Expr:
 
 
 def _write_entry(writer: Writer, fields: HolderFields, entry: Entry, lengths: Lengths) -> None:
-    where = fields.where.members(entry.path)
+    where = fields.shown(entry.path)
     match entry.label:
         case "single":
             write_tag(writer, entry.number, entry.wire, where)

@@ -30,7 +30,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, divided, floored, others
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, differ, divided, floored, others
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.fields import converted, scalar_name
@@ -139,6 +139,8 @@ class Values:
     def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
         if operator in ("and", "or"):
             return self.joined(operator, left, right)
+        if operator == "differs":
+            return differ(self.writer, self.of(left), self.of(right))
         if operator in COMPARISONS:
             return Compare(COMPARISONS[operator], self.of(left), self.of(right))
         return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)

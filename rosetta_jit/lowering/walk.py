@@ -18,7 +18,6 @@ from rosetta_jit.kernel.ir import (
     For,
     If,
     Local,
-    Select,
     Switch,
     While,
     add,
@@ -26,6 +25,7 @@ from rosetta_jit.kernel.ir import (
     mul,
 )
 from rosetta_jit.lowering import leaves
+from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.members import members, store_size
 from rosetta_jit.lowering.parameters import parameter, parameters
@@ -97,7 +97,7 @@ def walk(codec: Codec, fields: Fields, writer: Writer) -> None:
 
 def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
     elements, count = begin_elements(writer, fields, repeat)
-    where, size = fields.where.members(repeat.path), fixed_size(repeat.item)
+    where, size = fields.shown(repeat.path), fixed_size(repeat.item)
     if size is None:
         _each_in_turn(writer, repeat.item, elements, count)
     else:
@@ -106,7 +106,7 @@ def _repeat(writer: Writer, fields: Fields, repeat: Repeat) -> None:
 
 def begin_elements(writer: Writer, fields: Fields, repeat: Repeat) -> tuple[Elements, Expr]:
     """The count and what stands before the first element; the elements, and how many there are."""
-    where = fields.where.members(repeat.path)
+    where = fields.shown(repeat.path)
     if writer.direction == "decode":
         total = leaves.read_count(writer, fields, repeat.path, repeat.count, "count", least=repeat.extra)
         count = writer.let("elements", add(total, -repeat.extra)) if repeat.extra else total
@@ -174,7 +174,7 @@ def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
     if writer.direction != "decode":
         _write_choice(writer, fields, choice)
         return
-    where, scalar, begin = fields.where.members(choice.path), scalar_name(choice.scalar), writer.position
+    where, scalar, begin = fields.shown(choice.path), scalar_name(choice.scalar), writer.position
     code = writer.let("code", integer(writer.load(scalar, where, choice.order)))
     fields.branch(choice)
     at = writer.var("next", writer.position)
@@ -188,7 +188,7 @@ def _choice(writer: Writer, fields: Fields, choice: Choice) -> None:
 
 
 def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
-    where = fields.where.members(choice.path)
+    where = fields.shown(choice.path)
     if choice.labels:
         _write_labelled(writer, fields, choice, where)
         return
@@ -209,7 +209,7 @@ def _write_choice(writer: Writer, fields: Fields, choice: Choice) -> None:
 
 
 def _write_labelled(writer: Writer, fields: Fields, choice: Choice, where: Where) -> None:
-    label = integer(_required(fields.get(choice.path)))
+    label = integer(_got(fields, choice.path))
     fields.branch(choice)
     at = writer.var("next", writer.position)
     blocks: list[Block] = []
@@ -245,7 +245,7 @@ def _cases(writer: Writer, fields: Fields, cases: Cases) -> None:
 
 def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[Codec], object]) -> None:
     """What is done in the case that the discriminator names, after it has come; where it names none, with an empty codec."""
-    value = _first_label(writer, cases, integer(_required(fields.get(discriminator_path(cases.discriminator)))))
+    value = _first_label(writer, cases, integer(_got(fields, discriminator_path(cases.discriminator))))
     blocks: list[tuple[int, Block]] = []
     default: Block | None = None
     for number, (labels, codec) in enumerate(cases.cases):
@@ -267,11 +267,12 @@ def switch_cases(writer: Writer, fields: Fields, cases: Cases, body: Callable[[C
 def _first_label(writer: Writer, cases: Cases, value: Expr) -> Expr:
     """The first label of the case that a value names, so that each case is written once."""
     value = writer.let("label", value)
-    first: Expr = value
-    for number, (labels, _) in enumerate(cases.cases):
-        for other in labels[1:] if number != cases.default else ():
-            first = Select(Compare("eq", value, index(other)), index(labels[0]), first)
-    return writer.let("case", first)
+    others = [(other, labels[0]) for number, (labels, _) in enumerate(cases.cases) for other in labels[1:] if number != cases.default]
+    if not others:
+        return value
+    first = writer.var("case", value)
+    writer.emit(Switch(value, tuple((other, (Assign(first.name, index(label)),)) for other, label in others), ()))
+    return first
 
 
 def discriminator_path(codec: Codec) -> tuple[str, ...]:
@@ -293,7 +294,7 @@ def _maybe(writer: Writer, fields: Fields, maybe: Maybe) -> None:
 
 def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Codec], object]) -> None:
     """The flag, and what is done if the field is there; otherwise with an empty codec."""
-    where, begin = fields.where.members(maybe.path), writer.position
+    where, begin = fields.shown(maybe.path), writer.position
     if writer.direction == "decode":
         flag = writer.let("flag", writer.load("u8", where))
         writer.expect(Compare("le", flag, Const("u8", 1)), "constant", where, "must be 0 or 1", at=begin)
@@ -312,7 +313,7 @@ def if_present(writer: Writer, fields: Fields, maybe: Maybe, body: Callable[[Cod
 
 
 def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
-    where, begin = fields.where.members(delimited.path), writer.position
+    where, begin = fields.shown(delimited.path), writer.position
     if writer.direction == "decode":
         size = writer.let("size", integer(writer.load("u32", where, delimited.order)))
         writer.require(size, where)
@@ -327,6 +328,9 @@ def _delimited(writer: Writer, fields: Fields, delimited: Delimited) -> None:
     store_size(writer, begin, inside, where, delimited.order)
 
 
-def _required(value: Expr | None) -> Expr:
-    assert value is not None
+def _got(fields: Fields, path: tuple[str, ...]) -> Expr:
+    """A number that tells what follows; that of an element is not known where rules write it in its place."""
+    value = fields.get(path)
+    if value is None:
+        raise NotInPlaceError(path)
     return value

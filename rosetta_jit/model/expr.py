@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 Side = OneOf["holder", "wire"]
-Operator = OneOf["+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "==", "!=", "<", "<=", ">", ">=", "and", "or"]
-"""`/` and `%` of two integers truncate toward zero, as in C; of anything else they are floating."""
+Operator = OneOf["+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "==", "!=", "<", "<=", ">", ">=", "differs", "and", "or"]
+"""`/` and `%` of two integers truncate toward zero, as in C; of anything else they are floating. No text has `differs`: `!=` to the bit."""
 
-COMPARISONS: frozenset[str] = frozenset(("==", "!=", "<", "<=", ">", ">="))
+COMPARISONS: frozenset[str] = frozenset(("==", "!=", "<", "<=", ">", ">=", "differs"))
 LOGIC: frozenset[str] = frozenset(("and", "or"))
 BITWISE: frozenset[str] = frozenset(("&", "|", "^", "<<", ">>"))
 

@@ -67,7 +67,8 @@ def show_expr(value: expr.Expr) -> str:
         case expr.Unary(operator, operand):
             return f"{operator}{' ' if operator == 'not' else ''}{show_expr(operand)}"
         case expr.Binary(operator, left, right):
-            return f"({show_expr(left)} {operator} {show_expr(right)})"
+            word = "!=" if operator == "differs" else operator  # as near as a text comes to it
+            return f"({show_expr(left)} {word} {show_expr(right)})"
         case expr.Call(function, arguments):
             return f"{function}({', '.join(map(_argument, arguments))})"
         case expr.Choice() if (subject := _subject(value)) is not None:

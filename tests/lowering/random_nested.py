@@ -273,5 +273,6 @@ def widened(relations: Relations, name: str) -> Part:
     kinds = {name: Array(Scalar(origin))}, {name: Array(Scalar(aim))}
     low, high = INTEGERS[origin]
     is_free = INTEGERS[aim][0] <= low and high <= INTEGERS[aim][1]
-    text = f".{name}[] <-> .{name}[]\n" if is_free else f".{name}[] <-> {aim}(.{name}[])\n"
+    free = rng.choice([f".{name}[] <-> .{name}[]\n", f".{name} <-> .{name}\n"])
+    text = free if is_free else f".{name}[] <-> {aim}(.{name}[])\n"
     return Part(*kinds, text, lambda fields: {name: [fits(x, aim) for x in fields[name]]})

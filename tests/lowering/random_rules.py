@@ -32,8 +32,6 @@ class Filler:
     maker: Maker
     constant: Callable[[str], str]
     depth: int = 4
-    has_required: bool = False
-    """Whether what is left to its default is absent, though it is required."""
 
     def message(self, message: Message, path: str = "") -> Rules:
         return joined([self.field(name, kind, path) for name, kind in message.fields.items()])
@@ -42,7 +40,7 @@ class Filler:
         at, rng = below(path, name, kind), self.maker.rng
         match kind:
             case Scalar(type_):
-                return self.left_out(name, type_, at) if rng.random() < 0.05 and not self.has_required else self.assigned(name, type_, at)
+                return self.left_out(name, type_, at) if rng.random() < 0.05 else self.assigned(name, type_, at)
             case Message():
                 inner = self.message(kind, at)
                 return Rules(inner.text, lambda fields: {name: inner.run(fields)})
@@ -57,10 +55,9 @@ class Filler:
             case _:
                 assert_never(kind)
 
-    def assigned(self, name: str, type_: str, at: str, shown: str = "") -> Rules:
-        """``shown`` is the place that errors name, if it is another."""
+    def assigned(self, name: str, type_: str, at: str) -> Rules:
         made = exactly(self.maker, type_, self.depth)
-        return Rules(f".{at} = {made.text}\n", lambda fields: {name: placed(made, fields, f".{shown or at}")})
+        return Rules(f".{at} = {made.text}\n", lambda fields: {name: placed(made, fields, f".{at}")})
 
     @staticmethod
     def left_out(name: str, type_: str, at: str) -> Rules:
@@ -102,18 +99,19 @@ class Filler:
     def choice(self, name: str, kind: Choice, at: str) -> Rules:
         """Rules that set one of the cases, or one of two, or none."""
         rng = self.maker.rng
-        cases = [self.case(kind, each, name, at) for each in rng.sample(list(kind.cases), 2)]
+        is_told = rng.random() < 0.6
+        cases = [self.case(kind, each, at, is_told=is_told) for each in rng.sample(list(kind.cases), 2)]
         if not kind.is_named:
             cases.append(Rules(f"default .{joint(at, f'{name}_of')}\n", lambda _: {}))
         made = rng.choice(cases) if rng.random() < 0.4 else self.when(*rng.sample(cases, 2))
         return Rules(made.text, lambda fields: {name: made.run(fields)}) if kind.is_named else made
 
-    def case(self, kind: Choice, case: str, name: str, at: str) -> Rules:
-        """A case, and the discriminator of unions that have one, in some order; errors name what is around the case."""
+    def case(self, kind: Choice, case: str, at: str, *, is_told: bool) -> Rules:
+        """A case, and the discriminator of unions that have one, before or behind it, or left to the case."""
         type_ = kind.cases[case].type
-        if not kind.is_named:
-            return self.assigned(case, type_, joint(at, case), joint(joint(at, f"{name}_of"), case))
-        made = self.assigned(case, type_, joint(at, case), f"{at}._u.{case}")
+        if not (kind.is_named and is_told):
+            return self.assigned(case, type_, joint(at, case))
+        made = self.assigned(case, type_, joint(at, case))
         label = f".{at}._d = {list(kind.cases).index(case) + 1}\n"
         return Rules(label + made.text if self.maker.rng.random() < 0.5 else made.text + label, made.run)
 

@@ -480,3 +480,42 @@ def test_a_field_that_both_blocks_set_says_not_which():
     with pytest.raises(rj.MappingError) as error:
         rj.Encoder("m.mapping", schema={**PRESENT_FILES, "m.mapping": rules}, backend="interpreter")
     assert "undetermined-field" in [problem.code for problem in error.value.diagnostics]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_checks_of_floats_are_to_the_bit(backend):
+    """-0 is not what 0 is unpacked to, nor 0 what -0 is; a NaN is one whatever its bits are."""
+    holder = "required double a = 1; required double b = 2; required double zero = 3; required float minus = 4;"
+    made = pair('("v" :double)', holder, "rules:\n.a <-> .v\n.b <-> .v * 2.0\n.zero <-> 0.0\n.minus <-> -0.0\n", backend)
+    for value in (0.0, -0.0, 1.5, math.nan, -math.inf):
+        found = made.unpack(v=value)
+        assert repr(found) == repr({"a": value, "b": value * 2.0, "zero": 0.0, "minus": -0.0})
+        assert repr(made.pack(**found)) == repr({"v": value})
+    good = {"a": 0.0, "b": 0.0, "zero": 0.0, "minus": -0.0}
+    for name, value in (("b", -0.0), ("zero", -0.0), ("minus", 0.0), ("zero", math.nan), ("a", -0.0)):
+        assert made.refused(**{**good, name: value}).kind == "rejected"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_the_sign_of_a_zero_that_tells_a_block(backend):
+    rules = 'rules:\nwhen .kind == 1\n.a <-> 0.0\nelse\n.a <-> 1.5\nend\nreject "kind" when .kind != 1 and .kind != 2\n'
+    made = pair('("kind" :int)', "required double a = 1;", rules + "pack-rules:\n.kind = 1 if .a == 0.0 else 2\n", backend)
+    assert made.pack(a=0.0) == {"kind": 1}
+    assert made.refused(a=-0.0).kind == "rejected"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rules", [".v <-> .v", ".v[] <-> .v[]"])
+@pytest.mark.parametrize(
+    ("narrow", "wide", "values", "beyond"),
+    [(":int16", "int32", [1, -2, 32767], 32768), (":int", "int64", [-(2**31)], 2**31), (":int", "double", [-5, 7], 0.5)],
+)
+def test_arrays_whose_elements_become_wider(rules, narrow, wide, values, beyond, backend):
+    """As scalars do, whole arrays come back where each number fits."""
+    made = pair(f'("v" (:list {narrow}))', f"repeated {wide} v = 1;", f"rules:\n{rules}\n", backend)
+    assert made.unpack(v=values) == {"v": values}
+    assert made.pack(v=values) == {"v": values}
+    assert made.pack(v=[]) == {"v": []}
+    assert made.decode.mapping.laws.holders.kind == "exact"
+    error = made.refused(v=[*values, beyond])
+    assert (error.kind, error.path) == ("range", f".v[{len(values)}]")

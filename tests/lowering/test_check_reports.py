@@ -78,7 +78,10 @@ OF_SIZES = ("many_mappings", "many_uses", "many_items", "long_list", "mixed_list
 OF_WIDE_TEXTS = ("wide_text", "text_length")
 """Text of 16-bit units, which the frameworks here lack: `test_wide_texts` has it."""
 
-ELSEWHERE = (*OF_FILES, *OF_BOTH_WAYS, *OF_PIECES, *OF_PROGRAMS, *OF_SIZES, *OF_WIDE_TEXTS)
+OF_UNIONS = ("other_case", "late_discriminator", "many_labels")
+"""Discriminators, which the frameworks here lack: test_unions.py has it."""
+
+ELSEWHERE = (*OF_UNIONS, *OF_FILES, *OF_BOTH_WAYS, *OF_PIECES, *OF_PROGRAMS, *OF_SIZES, *OF_WIDE_TEXTS)
 
 
 def diagnostics(path: Path) -> tuple[Diagnostic, ...]:

@@ -73,3 +73,36 @@ def test_mistakes(mapping, rules, code):
     with pytest.raises(rj.MappingError) as error:
         rj.Decoder(mapping(rules), backend="interpreter")
     assert code in [problem.code for problem in error.value.diagnostics]
+
+
+REQUIRED = """syntax = "proto2"; package p;
+enum E { A = 3; B = 1; }
+message Empty { optional int32 q = 1; }
+message Inner { required int32 q = 1; optional int32 r = 2; repeated int32 z = 3; }
+message Tree { required double v = 1; repeated Tree sub = 2; }
+message All {
+  required int32 a = 1; required float f = 2; required string s = 3; required bytes b = 4; required bool t = 5; required E e = 6;
+  required int32 da = 11 [default = 9]; required string ds = 13 [default = "hi"]; required bytes db = 14 [default = "yo"];
+  required E de = 16 [default = B];
+  required Empty m = 21; required Inner n = 22; required Tree tree = 23;
+  optional int32 o = 31 [default = 4]; optional Inner om = 32;
+}
+message One { required int32 x = 1; }
+"""
+FIELDS = ("a", "f", "s", "b", "t", "e", "da", "ds", "db", "de", "m", "n", "tree", "o", "om")
+
+
+@pytest.mark.parametrize("backend", ["interpreter", "python", "numba"])
+def test_defaults_of_required_fields_are_there(backend):
+    """What proto2 requires is there, 0, empty or with the schema's default; what is optional is not."""
+    rules = "".join(f"default .{name}\n" for name in FIELDS)
+    head = 'import "p.proto"\ndata-holder: "p.All"\nwire-schema: "p.One"\nunpack-rules:\nignore .x\n'
+    files = {"p.proto": REQUIRED, "m.mapping": head + rules}
+    found = rj.Decoder("m.mapping", schema=files, encoding="protobuf", backend=backend)(b"\x08\x07")
+    numbers = {"a": 0, "f": 0.0, "s": "", "b": b"", "t": False, "e": "A", "da": 9, "ds": "hi", "db": b"yo", "de": "B"}
+    wanted = {**numbers, "m": {}, "n": {"q": 0, "z": []}, "tree": {"v": 0.0, "sub": []}}
+    assert found.to_dict() == wanted
+    files["m.mapping"] = 'import "p.proto"\ndata-holder: "p.One"\nwire-schema: "p.All"\npack-rules:\n' + rules
+    encode = rj.Encoder("m.mapping", schema=files, encoding="protobuf", backend=backend)
+    read = rj.Decoder.of("p.All", schema=files, imports=["p.proto"], encoding="protobuf", backend="interpreter")
+    assert read(encode(encode.holder_type.from_dict({"x": 7}))).to_dict() == wanted

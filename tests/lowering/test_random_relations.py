@@ -97,19 +97,10 @@ def broken_law(law: Any, values: dict[str, Any], back: dict[str, Any]) -> list[A
             numbers = pair if isinstance(pair[0], list) else ([pair[0]], [pair[1]])
             is_right = all(is_same(left, right, rounded[place]) for left, right in zip(*numbers, strict=True))
         else:
-            is_right = plain(unsigned(pair[0])) == plain(unsigned(pair[1]))
+            is_right = plain(pair[0]) == plain(pair[1])
         if not is_right:
             found.append((name, *pair, rounded.get(place)))
     return found
-
-
-def unsigned(value: Any) -> Any:
-    """Without the sign of zeros: a holder's -0 passes for the constant 0."""
-    if isinstance(value, list):
-        return [unsigned(each) for each in value]
-    if isinstance(value, dict):
-        return {name: unsigned(each) for name, each in value.items()}
-    return value + 0.0 if isinstance(value, np.floating | float) else value
 
 
 def is_same(value: float, back: float, rounding: Any) -> bool:

@@ -146,7 +146,7 @@ def wanted(rules: Rules, fields: dict[str, Any]) -> Any:
 def check_wires(seed: int, names: tuple[str, str], direction: str, backends: list[str]) -> None:
     rng = random.Random(seed)
     src, dst = source(rng, WIRES[names[0]]), aim(rng, WIRES[names[1]])
-    rules = Filler(maker(rng, src), dst.constant, has_required=names[1] == "proto2").message(dst.message)
+    rules = Filler(maker(rng, src), dst.constant).message(dst.message)
     files = mapping(src, dst, rules.text, direction)
     runs = {backend: runner(files, src, dst, direction, backend) for backend in backends}
     for _ in range(MESSAGES):
