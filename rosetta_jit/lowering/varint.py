@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Local, Select, While, add, index, type_of
+from rosetta_jit.kernel.ir import BEGIN, END, Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While, add, index, type_of
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 
 if TYPE_CHECKING:
@@ -16,6 +16,8 @@ SEVEN_BITS = Const("u64", 0x7F)
 ONE, ZERO = Const("u64", 1), Const("u64", 0)
 MAX_BYTES = 10
 """Of a varint."""
+GUESSED = 5
+"""Bytes of a varint up to which it is read and written byte by byte."""
 
 
 def read_varint(writer: Writer, where: Where) -> Local:
@@ -67,12 +69,16 @@ def _if_more(writer: Writer, byte: Local, further: Callable[[], tuple[Local, ...
 
 
 def _read_long(writer: Writer) -> Contract:
-    """At most ten bytes are read, and bits above the 64th are dropped."""
+    """At most ten bytes are read, and bits above the 64th are dropped; the first eight at once, where the message has as many."""
     at, where = writer.parameter("at", "i64"), MESSAGE
     writer.position = at
     byte = writer.var("byte", writer.load("u8", where))
     value, after = writer.var("varint", Binary("and", Convert("u64", byte), SEVEN_BITS)), writer.var("next", writer.position)
     shift = writer.var("shift", index(7))
+    with writer.nested() as at_once:
+        _read_at_once(writer, at, value, after, byte)
+        writer.assign(shift, index(56))
+    writer.emit(If(Compare("ge", Binary("sub", END, at), index(8)), block(at_once)))
     with writer.nested() as body:
         writer.position = after
         writer.assign(byte, writer.load("u8", where))
@@ -89,6 +95,67 @@ def _read_long(writer: Writer) -> Contract:
     writer.emit(While(Binary("and", unfinished, Compare("lt", shift, index(64))), block(body), invariant, shift))
     writer.expect(Compare("lt", byte, Const("u8", 128)), "varint", where, "an integer of more than ten bytes")
     return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
+
+
+def _read_at_once(writer: Writer, at: Local, value: Local, after: Local, byte: Local) -> None:
+    """Processors guess which of a few bytes is the last, and go on behind it before they have read it; of many, they compute it."""
+    word = writer.let("word", Load("u64", at))
+    goes_on = Const("u64", int.from_bytes(b"\x80" * GUESSED, "little"))
+    with writer.nested() as many:
+        joined, behind, stops = writer.call("read_eight", _read_eight, (at, word), MESSAGE)
+        writer.assign(value, joined)
+        writer.assign(after, behind)
+        writer.assign(byte, Select(Compare("eq", stops, ZERO), Const("u8", 128), Const("u8", 0)))
+    with writer.nested() as few:
+        writer.assign(byte, Const("u8", 0))
+        _read_guessed(writer, at, word, value, after)
+    writer.emit(If(Compare("eq", Binary("and", word, goes_on), goes_on), block(many), block(few)))
+
+
+def _read_guessed(writer: Writer, at: Local, word: Local, value: Local, after: Local, known: int = 1) -> None:
+    shifted = Binary("shr", word, Const("u64", known))
+    writer.assign(value, Binary("or", value, Binary("and", shifted, Const("u64", 0x7F << 7 * known))))
+    writer.assign(after, add(at, known + 1))
+    if known + 1 < GUESSED:
+        with writer.nested() as longer:
+            _read_guessed(writer, at, word, value, after, known + 1)
+        ends = Compare("eq", Binary("and", word, Const("u64", 0x80 << 8 * known)), ZERO)
+        writer.emit(If(ends, (), block(longer)))
+
+
+def _read_eight(writer: Writer) -> Contract:
+    """What the eight bytes at a place begin with, or are all of, and which of them end an integer."""
+    at, word = writer.parameter("at", "i64"), writer.parameter("word", "u64")
+    stops = writer.let("stops", Binary("xor", Binary("and", word, _each_byte(0x80)), _each_byte(0x80)))
+    last = writer.let("last", Binary("or", stops, Const("u64", 1 << 63)))
+    mask = writer.let("mask", Binary("xor", last, Binary("sub", last, ONE)))
+    value = _joined(writer, Binary("and", word, mask))
+    after = writer.let("next", Binary("add", at, _bytes_of(writer, mask)))
+    enough = Compare("ge", Binary("sub", END, at), index(8))
+    return Contract((at, word), (value, after, stops), (Compare("ge", at, BEGIN), enough), writer.behind(at, after))
+
+
+def _each_byte(value: int) -> Const:
+    return Const("u64", int.from_bytes(bytes([value]) * 8, "little"))
+
+
+def _joined(writer: Writer, word: Expr) -> Local:
+    """The lower seven bits of each byte, put together: those of pairs of bytes, of pairs of pairs, and of their pairs."""
+    bits = writer.let("bits", Binary("and", word, _each_byte(0x7F)))
+    for width in (7, 14, 28):
+        low = sum((1 << width) - 1 << place for place in range(0, 64, width // 7 * 16))
+        shift = width // 7
+        upper = Binary("and", Binary("shr", bits, Const("u64", shift)), Const("u64", low << width))
+        bits = writer.let("bits", Binary("or", Binary("and", bits, Const("u64", low)), upper))
+    return bits
+
+
+def _bytes_of(writer: Writer, mask: Local) -> Expr:
+    """How many bytes of a mask are set, one to eight: the lowest, and the sum of a bit of each other one."""
+    bits = writer.let("count", Binary("and", Binary("shr", mask, Const("u64", 8)), _each_byte(1)))
+    for width in (32, 16, 8):
+        bits = writer.let("count", Binary("add", bits, Binary("shr", bits, Const("u64", width))))
+    return add(Convert("i64", Binary("and", bits, Const("u64", 7))), 1)
 
 
 def write_varint(writer: Writer, value: Expr, where: Where) -> None:
@@ -120,7 +187,31 @@ def _write(writer: Writer) -> Contract:
 
 def _write_long(writer: Writer) -> Contract:
     at, value = writer.parameter("at", "i64"), writer.parameter("value", "u64")
-    after, rest, count = writer.var("next", at), writer.var("rest", value), writer.var("count", index(0))
+    after = writer.var("next", at)
+    writer.position = at
+    _write_guessed(writer, at, value, after)
+    return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
+
+
+def _write_guessed(writer: Writer, at: Local, rest: Local, after: Local, written: int = 0) -> None:
+    """A byte that is not the last one, and those behind it."""
+    writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), MESSAGE)
+    written += 1
+    rest = writer.let("rest", Binary("shr", rest, Const("u64", 7)))
+    with writer.nested() as last:
+        writer.store(Convert("u8", rest), MESSAGE)
+        writer.assign(after, writer.position)
+    with writer.nested() as more:
+        if written < GUESSED - 1:
+            _write_guessed(writer, at, rest, after, written)
+        else:
+            _write_rest(writer, at, rest, after, written)
+    writer.emit(If(Compare("lt", rest, Const("u64", 128)), block(last), block(more)))
+
+
+def _write_rest(writer: Writer, at: Local, value: Local, after: Local, written: int) -> None:
+    rest, count = writer.var("rest", value), writer.var("count", index(written))
+    writer.assign(after, writer.position)
     with writer.nested() as body:
         writer.position = after
         writer.store(Convert("u8", Binary("or", Binary("and", rest, SEVEN_BITS), Const("u64", 128))), MESSAGE)
@@ -137,7 +228,6 @@ def _write_long(writer: Writer) -> Contract:
     writer.position = after
     writer.store(Convert("u8", rest), MESSAGE)
     writer.assign(after, writer.position)
-    return Contract((at, value), (after,), writer.within(at), writer.behind(at, after))
 
 
 def _size(writer: Writer) -> Contract:
@@ -151,12 +241,13 @@ def _size(writer: Writer) -> Contract:
 
 
 def _long_size(writer: Writer) -> Contract:
+    """One byte, and then five if it needs more than five, two if more than two, and so on: no loop, and nothing to guess."""
     value = writer.parameter("value", "u64")
-    rest, size = writer.var("rest", value), writer.var("size", index(1))
-    with writer.nested() as body:
-        writer.assign(rest, Binary("shr", rest, Const("u64", 7)))
-        writer.assign(size, add(size, 1))
-    writer.emit(While(_more(rest, add(size, -1)), block(body), _bounds(size), size))
+    rest, size = value, writer.let("size", index(1))
+    for bytes_ in (5, 2, 1, 1):
+        more = writer.let("more", Compare("ge", rest, Const("u64", 1 << 7 * bytes_)))
+        size = writer.let("size", Binary("add", size, Select(more, index(bytes_), index(0))))
+        rest = writer.let("rest", Select(more, Binary("shr", rest, Const("u64", 7 * bytes_)), rest))
     return Contract((value,), (size,), (), _bounds(size))
 
 

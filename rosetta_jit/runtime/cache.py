@@ -59,7 +59,7 @@ class Cache:
         Created when first written to, with mode 0700. It must belong to the user, must not be a symbolic link, and nobody else may be
         able to write to it. None keeps everything in memory.
     max_bytes : int
-        When exceeded, the files that were not used for the longest time are removed. 0 keeps nothing.
+        When exceeded, the files that were not used for the longest time are removed, until an eighth is free. 0 keeps nothing.
     """
 
     def __init__(self, folder: Path | None, *, max_bytes: int = DEFAULT_MAX_BYTES) -> None:
@@ -120,9 +120,12 @@ class Cache:
 
     def clear(self) -> int:
         """Remove all entries and manifests, and nothing else; how many there were."""
+        from rosetta_jit.runtime.usage import USAGE
+
         files = self._own_files()
         for file in files:
             self._store.remove(file.name)
+        self._store.remove(USAGE)
         return len(files)
 
     def _read(self, name: str) -> Entry | None:
@@ -145,24 +148,35 @@ class Cache:
         data = seal(name, header, image)
         try:
             self._store.write(name, data)
-            self._evict(self._store)
+            self._keep_small(self._store, len(data))
         except (OSError, UntrustedError) as error:
             self._warn_of_folder(error)
             self._memory.write(name, data)
-            self._evict(self._memory)
+            self._keep_small(self._memory, len(data))
 
     def _own_files(self) -> list[Stored]:
         return [file for file in self._store.stored() if file.name.endswith((ENTRY, MANIFEST))]
 
-    def _evict(self, store: Store) -> None:
+    def _keep_small(self, store: Store, written_bytes: int) -> None:
+        from rosetta_jit.runtime.usage import begin_look, end_look, note
+
+        if note(store, written_bytes, max_bytes=self.max_bytes):
+            begin_look(store)
+            end_look(store, self._evict(store))
+
+    def _evict(self, store: Store) -> int:
+        """Make room where it lacks, and then for more than the next file, which would need another look at all; the bytes that stay."""
         files = sorted(store.stored(), key=lambda file: file.used_ns)
-        excess = sum(file.size_bytes for file in files) - self.max_bytes
+        total = sum(file.size_bytes for file in files)
+        if total <= self.max_bytes:
+            return total
         for file in files:
-            if excess <= 0:
-                return
+            if total <= self.max_bytes * 7 // 8:
+                break
             if file.name.endswith((ENTRY, MANIFEST)):
                 store.remove(file.name)
-                excess -= file.size_bytes
+                total -= file.size_bytes
+        return total
 
     def _warn_of_folder(self, error: Exception) -> None:
         from rosetta_jit.catalogue.cache import unusable_folder

@@ -18,6 +18,7 @@ from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
+    from io import FileIO
     from pathlib import Path
 
 STALE_S = 3600.0
@@ -26,7 +27,7 @@ STALE_S = 3600.0
 _TEMPORARY = ".tmp"
 _OPEN_FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
 # O_NONBLOCK: a planted FIFO must not hang the reader.
-_OPEN_FILE = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
+_SAFELY = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
 
 
 class UntrustedError(Exception):
@@ -49,6 +50,10 @@ class Store(Protocol):
 
     def write(self, name: str, data: bytes) -> None: ...
 
+    def append(self, name: str, data: bytes, *, limit: int) -> bytes | None:
+        """What the file holds then, if it can be trusted and is not longer than the limit."""
+        ...
+
     def remove(self, name: str) -> None: ...
 
     def stored(self) -> list[Stored]: ...
@@ -69,6 +74,13 @@ class MemoryStore:
 
     def write(self, name: str, data: bytes) -> None:
         self._files[name] = data, time.time_ns()
+
+    def append(self, name: str, data: bytes, *, limit: int) -> bytes | None:
+        before, _ = self._files.get(name, (b"", 0))
+        if len(before) + len(data) > limit:
+            return None
+        self.write(name, before + data)
+        return before + data
 
     def remove(self, name: str) -> None:
         self._files.pop(name, None)
@@ -103,6 +115,17 @@ class FolderStore:
                 _unlink(temporary, folder)
                 raise
 
+    def append(self, name: str, data: bytes, *, limit: int) -> bytes | None:
+        """Processes may append at once; each piece comes in whole."""
+        with contextlib.suppress(UntrustedError, OSError), self._opened() as folder, _append_to_file(name, folder) as file:
+            status = os.fstat(file.fileno())
+            _demand_own(status, stat.S_ISREG, name)
+            if status.st_size + len(data) <= limit:
+                file.write(data)
+                file.seek(0)
+                return file.read(limit)
+        return None
+
     def remove(self, name: str) -> None:
         with contextlib.suppress(FileNotFoundError), self._opened() as folder:
             _unlink(name, folder)
@@ -129,7 +152,11 @@ class FolderStore:
 
 
 def _open_file(name: str, folder: int) -> BinaryIO:
-    return open(name, "rb", opener=lambda name, _: os.open(name, _OPEN_FILE, dir_fd=folder))
+    return open(name, "rb", opener=lambda name, _: os.open(name, os.O_RDONLY | _SAFELY, dir_fd=folder))
+
+
+def _append_to_file(name: str, folder: int) -> FileIO:
+    return open(name, "a+b", buffering=0, opener=lambda name, flags: os.open(name, flags | _SAFELY, 0o600, dir_fd=folder))
 
 
 def _create_file(name: str, folder: int) -> BinaryIO:

@@ -134,7 +134,7 @@ def test_a_damaged_manifest_is_absent(cache):
 @pytest.mark.parametrize("folder", [True, False])
 def test_what_was_not_used_for_longest_is_evicted(tmp_path, folder):
     size = len(seal("0", {}, IMAGE))
-    cache = Cache(tmp_path / "cache" if folder else None, max_bytes=3 * size)
+    cache = Cache(tmp_path / "cache" if folder else None, max_bytes=4 * size - 1)
     for name in "012":
         cache.put(name, {}, IMAGE)
         if folder:

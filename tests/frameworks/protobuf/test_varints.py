@@ -54,6 +54,22 @@ def test_values_of_all_lengths(fields, backend):
         assert encode(holder) == message_of(numbers)
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_whatever_follows(backend):
+    """Up to eight bytes are looked at together, of which some may be those behind."""
+    decode, encode = programs(2, backend)
+    for first in values(23, 0):
+        for second in (0, 2**7, 2**42 - 1, 2**64 - 1):
+            message = message_of([first, second])
+            holder = decode(message)
+            assert (holder.field1, holder.field2) == (first, second)
+            assert encode(holder) == message
+        for longer in range(1, 11 - len(varint(first))):
+            padded = varint(first)[:-1] + bytes([varint(first)[-1] | 0x80]) + b"\x80" * (longer - 1) + b"\x00"
+            for behind in (b"", varint(16) + bytes([7]), varint(16) + varint(2**63)):
+                assert decode(b"\x08" + padded + behind).field1 == first
+
+
 @pytest.mark.parametrize("backend", ["numba", "python"])
 def test_values_of_many_messages(backend):
     decode, encode = programs(20, backend)
@@ -71,7 +87,7 @@ def test_what_ends_too_early_or_never(fields):
     rng = random.Random(fields)
     places = sorted({*range(1, 24), *(rng.randrange(1, len(whole)) for _ in range(40))} - {len(whole)})
     broken = [whole[:place] for place in places if place < len(whole)]
-    broken += [whole[:-1] + b"\xff\x01", b"\x80" * 11, b"\xf8" + b"\xff" * 20]
+    broken += [whole[:-1] + b"\xff\x01", b"\x80" * 11, b"\xf8" + b"\xff" * 20, b"\x08" + b"\xff" * 20, b"\x08" + b"\xff" * 9 + b"\x80" * 20]
     decoders = {backend: programs(fields, backend)[0] for backend in BACKENDS}
     said = {backend: [failure(decode, message) for message in broken] for backend, decode in decoders.items()}
     assert any(each is not None and each[1] for each in said["interpreter"])
