@@ -29,7 +29,7 @@ def outcome(decode: Any, data: bytes) -> Any:
 def check_altered(seed: int, names: tuple[str, str], backends: list[str]) -> None:
     rng = random.Random(seed)
     src, dst = source(rng, WIRES[names[0]]), aim(rng, WIRES[names[1]])
-    rules = Filler(maker(rng, src), dst.constant, has_required=names[1] == "proto2").message(dst.message)
+    rules = Filler(maker(rng, src), dst.constant).message(dst.message)
     files = mapping(src, dst, rules.text, "decode")
     own = {"schema": files, "imports": list(src.files), "backend": "interpreter", **src.wire.options}
     write = rj.Encoder.of(src.type_name, **own, **src.wire.written)
