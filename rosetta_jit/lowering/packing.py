@@ -323,10 +323,14 @@ def _is_tested(rule: Rule, test: Expr) -> bool:
     """Whether a check asks again what the `when` around it has asked."""
     match rule, test:
         case When(Binary("differs", place, Held(value=wanted)), (Reject(),), ()), Binary("==", tested, constant):
-            is_zero = isinstance(constant, Literal) and isinstance(constant.value, float) and not constant.value
-            return place == tested and folded(wanted) == constant and not is_zero
+            return place == tested and folded(wanted) == constant and not _is_zero(constant)
         case _:
             return False
+
+
+def _is_zero(constant: Expr) -> bool:
+    """Whether it may be compared with a float that is -0, which equals it."""
+    return isinstance(constant, Literal) and repr(constant.value) in {"0", "0.0", "-0.0"}
 
 
 def _rejects(rules: tuple[Rule, ...]) -> bool:

@@ -337,8 +337,9 @@ def test_checks_of_floats_are_to_the_bit(backend):
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_the_sign_of_a_zero_that_tells_a_block(backend):
-    rules = 'rules:\nwhen .kind == 1\n.a <-> 0.0\nelse\n.a <-> 1.5\nend\nreject "kind" when .kind != 1 and .kind != 2\n'
+@pytest.mark.parametrize("zero", ["0", "0.0"])
+def test_the_sign_of_a_zero_that_tells_a_block(backend, zero):
+    rules = f'rules:\nwhen .kind == 1\n.a <-> {zero}\nelse\n.a <-> 1.5\nend\nreject "kind" when .kind != 1 and .kind != 2\n'
     made = pair('("kind" :int)', "required double a = 1;", rules + "pack-rules:\n.kind = 1 if .a == 0.0 else 2\n", backend)
     assert made.pack(a=0.0) == {"kind": 1}
     assert made.refused(a=-0.0).kind == "rejected"
