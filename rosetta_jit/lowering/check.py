@@ -17,7 +17,8 @@ from rosetta_jit.lowering.bind import bind, handed_on
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.default_counts import defaulted_counts
 from rosetta_jit.lowering.derive import derive
-from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
+from rosetta_jit.lowering.discriminator_order import discriminators_first
+from rosetta_jit.lowering.discriminators import told_unions
 from rosetta_jit.lowering.file_name import misnamed
 from rosetta_jit.lowering.hand_factors import wrong_factors
 from rosetta_jit.lowering.imports import Imports, merge, reached, read_imports

@@ -17,7 +17,8 @@ from rosetta_jit.lowering.bear import bear, opened_lanes, places_left
 from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
 from rosetta_jit.lowering.defaults import has_array
 from rosetta_jit.lowering.descent import descend
-from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
+from rosetta_jit.lowering.discriminator_order import discriminators_first
+from rosetta_jit.lowering.discriminators import told_unions
 from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
 from rosetta_jit.lowering.recursion import cursors, read_rows
