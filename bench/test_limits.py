@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import weakref
+
 import numpy as np
 
 from bench.contest import Contender
@@ -15,13 +17,16 @@ SIZES = (200, 9_000, 1 << 20)
 def test_calls(effort, compare):
     message, empty, array = specialised(24), empty_builtin(), np.frombuffer(specialised(24), np.uint8)
     target = np.empty_like(array)
+    alive = weakref.ref(array)
     assert empty(message) is message
+    assert alive() is array
     compare(
         "Limits",
         "a call",
         [
             Contender("len()", "limit", "a number", effort.call(len, message)),
             Contender("an empty builtin of one argument", "limit", "its argument", effort.call(empty, message)),
+            Contender("a weak reference, the least that an object which is no function does", "limit", "an object", effort.call(alive)),
             Contender("an empty function in Python", "limit", "None", effort.call(nothing, message)),
             Contender("a numpy copy of 200 bytes", "limit", "an array, used again", effort.call(np.copyto, target, array)),
         ],

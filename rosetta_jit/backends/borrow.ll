@@ -54,7 +54,7 @@ return:
   %cell = load ptr, ptr %cell.at
   %holder.at = getelementptr ptr, ptr %context, i64 1
   %holder = load ptr, ptr %holder.at
-  call void @Py_IncRef(ptr %holder)
+  call void @keep(ptr %holder)
   %set = call i32 @PyList_SetItem(ptr %cell, i64 0, ptr %source)
   ret ptr %holder
 failed:

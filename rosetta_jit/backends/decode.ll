@@ -1,5 +1,45 @@
 ; decode(message) -> the program's own holder; decode(message, holder) -> that holder. A message is any bytes-like object.
+;
+; A bytes object alone is decoded here: little is kept across the kernel's call, so that few registers are saved for the caller.
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
+  %count = call i64 @positional(i64 %nargsf, ptr %names)
+  %alone = icmp eq i64 %count, 1
+  br i1 %alone, label %look, label %other, !prof !1
+look:
+  %message = load ptr, ptr %args
+  %type.at = getelementptr i8, ptr %message, i64 8
+  %type = load ptr, ptr %type.at
+  %is_bytes = icmp eq ptr %type, @PyBytes_Type
+  br i1 %is_bytes, label %bytes, label %other, !prof !1
+bytes:
+  %context = call ptr @context(ptr %self)
+  %state = load ptr, ptr %context
+  %data = getelementptr i8, ptr %message, i64 32
+  %size.at = getelementptr i8, ptr %message, i64 16
+  %size = load i64, ptr %size.at
+  call void @tell(ptr %context, ptr %state)
+  %result = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0)
+  %good = icmp sge i64 %result, 0
+  %valid = zext i1 %good to i64
+  %same.state = load ptr, ptr %context
+  store i64 %valid, ptr %same.state
+  br i1 %good, label %return, label %failed, !prof !0
+return:
+  call void @made(ptr %context)
+  %holder.at = getelementptr ptr, ptr %context, i64 1
+  %holder = load ptr, ptr %holder.at
+  call void @keep(ptr %holder)
+  ret ptr %holder
+failed:
+  call void @note(i64 %result, ptr %same.state)
+  %answer = tail call ptr @slow(ptr %context, ptr %args, i64 1, ptr null)
+  ret ptr %answer
+other:
+  %found = musttail call ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %found
+}
+
+define internal ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
   %view = alloca [80 x i8], align 8
   %context = call ptr @context(ptr %self)
   %count = call i64 @positional(i64 %nargsf, ptr %names)
@@ -53,7 +93,7 @@ judge:
   br i1 %good, label %return, label %failed, !prof !0
 return:
   call void @made(ptr %context)
-  call void @Py_IncRef(ptr %holder)
+  call void @keep(ptr %holder)
   ret ptr %holder
 failed:
   call void @note(i64 %result, ptr %state)

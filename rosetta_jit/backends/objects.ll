@@ -110,6 +110,14 @@ define internal void @count_exports(ptr %array, i64 %more) alwaysinline {
   ret void
 }
 
+; One more reference to an object of ours, which is not immortal.
+define internal void @keep(ptr %object) alwaysinline {
+  %count = load i64, ptr %object
+  %more = add i64 %count, 1
+  store i64 %more, ptr %object
+  ret void
+}
+
 ; Leave the result of a kernel that has failed for the slow path.
 define internal void @note(i64 %result, ptr %state) alwaysinline {
   %result.at = getelementptr i64, ptr %state, i64 9
