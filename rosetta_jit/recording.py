@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, BinaryIO, cast
 from rosetta_jit.catalogue import recording as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
+from rosetta_jit.written import named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -65,7 +66,7 @@ def read_messages(path: Path) -> Iterator[Message]:
 
 def write_recording(path: Path, messages: Iterable[Message]) -> None:
     """Write messages to `.rec` or `.rec.xz`."""
-    with _open(path, "wb") as file:
+    with named(path), _open(path, "wb") as file:
         for message in messages:
             file.write(_HEAD.pack(message.time_s, len(message.data)) + message.data)
 

@@ -7,12 +7,21 @@ from rosetta_jit.diagnostics import Diagnostic
 
 def unusable_folder(folder: str, reason: str) -> Diagnostic:
     """The folder cannot be read or written, or somebody else could have written to it."""
+    return _folder(folder, reason, "give it to its user alone (chmod 700)")
+
+
+def full_folder(folder: str, reason: str) -> Diagnostic:
+    """The disk, or what the user may have of it, is full."""
+    return _folder(folder, reason, "make room there")
+
+
+def _folder(folder: str, reason: str, remedy: str) -> Diagnostic:
     return Diagnostic(
         "warning",
         "cache-folder",
         f"the cache folder {folder} is not used: {reason}",
         notes=("compiled kernels are kept in memory and are lost when the process ends",),
-        help="give it to its user alone (chmod 700), set ROSETTA_JIT_CACHE_DIR to another folder, or set ROSETTA_JIT_CACHE=off",
+        help=f"{remedy}, set ROSETTA_JIT_CACHE_DIR to another folder, or set ROSETTA_JIT_CACHE=off",
     )
 
 

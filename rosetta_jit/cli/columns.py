@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from rosetta_jit.cli.values import dump
+from rosetta_jit.written import named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -30,7 +31,7 @@ def write_columns(holders: Iterable[Holder], path: Path) -> None:
         columns |= _column(name, [row[name] for row in rows if name in row])
         if any(name not in row for row in rows):
             columns[f"{name}.present"] = np.array([name in row for row in rows])
-    with path.open("wb") as file:
+    with named(path), path.open("wb") as file:
         np.savez_compressed(file, allow_pickle=False, **columns)
 
 

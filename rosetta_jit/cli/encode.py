@@ -11,6 +11,7 @@ from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_m
 from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
 from rosetta_jit.recording import Message, is_recording, write_recording
+from rosetta_jit.written import named
 
 if TYPE_CHECKING:
     import argparse
@@ -45,7 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.output == "-":
         sys.stdout.buffer.write(messages[0])
     else:
-        output.write_bytes(messages[0])
+        with named(output):
+            output.write_bytes(messages[0])
     return 0
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
+from rosetta_jit.written import named
 
 if TYPE_CHECKING:
     import argparse
@@ -36,7 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.html:
         from rosetta_jit.explain.page import as_page
 
-        Path(arguments.html).write_text(as_page(found), "utf-8")
+        with named(Path(arguments.html)) as page:
+            page.write_text(as_page(found), "utf-8")
         print(f"wrote {arguments.html}")
     else:
         from rosetta_jit.explain.text import as_text

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from rosetta_jit.written import named
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -31,7 +33,8 @@ def draw_frame(image: RstImage, path: Path) -> Path:
     """Write an `rst.vision.Image` as PNG."""
     from PIL import Image
 
-    Image.fromarray(pixels(image)).save(path)
+    with named(path):
+        Image.fromarray(pixels(image)).save(path)
     return path
 
 
@@ -56,5 +59,6 @@ def draw_joints(times_s: Sequence[float], angles_rad: Angles, path: Path) -> Pat
         axes.plot(times_s, angles, linewidth=1)
         axes.set(xlabel="seconds", ylabel=unit, title=f"{angles.shape[1]} joints, {unit}")
         axes.grid(visible=True, alpha=0.3)
-    FigureCanvasAgg(figure).print_png(str(path))
+    with named(path):
+        FigureCanvasAgg(figure).print_png(str(path))
     return path

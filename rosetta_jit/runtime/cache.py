@@ -9,6 +9,7 @@ Whatever is wrong with a file or a folder costs a recompile and one warning, nev
 
 from __future__ import annotations
 
+import errno
 import os
 import warnings
 from functools import lru_cache
@@ -179,9 +180,10 @@ class Cache:
         return total
 
     def _warn_of_folder(self, error: Exception) -> None:
-        from rosetta_jit.catalogue.cache import unusable_folder
+        from rosetta_jit.catalogue.cache import full_folder, unusable_folder
 
-        self._warn("folder", unusable_folder(str(self.folder), str(error)))
+        is_full = isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}
+        self._warn("folder", (full_folder if is_full else unusable_folder)(str(self.folder), str(error)))
 
     def _warn(self, subject: str, diagnostic: Diagnostic) -> None:
         if subject in self._warned:

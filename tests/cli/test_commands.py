@@ -6,6 +6,7 @@ import io
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,6 +52,16 @@ def test_compile_reports_both_directions(capsys):
     assert len(capsys.readouterr().out.splitlines()) == 1
     assert main(["compile", "wrong.mapping"]) == 1
     assert "unknown-field" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is always full")
+@pytest.mark.parametrize(
+    "command", [["explain", "yarp/icub/torso_state.mapping", "--html"], ["decode", "a.mapping", "{recording}", "--npz"]]
+)
+def test_a_full_disk_is_told_with_the_file(command, recording, capsys):
+    filled = [argument.format(recording=recording) for argument in command]
+    assert main([*filled, "/dev/full"]) == 1
+    assert capsys.readouterr().err == "error: [Errno 28] No space left on device: '/dev/full'\n"
 
 
 def test_decode_as_text(recording, capsys):

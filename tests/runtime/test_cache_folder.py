@@ -60,6 +60,19 @@ def test_a_file_instead_of_a_folder(tmp_path):
     demand_memory_only(Cache(tmp_path / "file"))
 
 
+def test_a_full_disk(planted, monkeypatch):
+    cache = Cache(planted)
+
+    def full(_self, _name, _data):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(stores.FolderStore, "write", full)
+    with pytest.warns(CacheWarning, match="make room there, set ROSETTA_JIT_CACHE_DIR to another folder"):
+        cache.put("kernel", {}, b"code")
+    assert cache.get("kernel").image == b"code"
+    assert cache.get("planted").image == b"code"
+
+
 @needs_root
 def test_a_folder_of_another_user(planted):
     os.chown(planted, 12345, -1)

@@ -1,0 +1,27 @@
+"""Files that are written: an error names the file, also where the system names none, as it does on a full disk."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+@contextmanager
+def named(path: Path) -> Iterator[Path]:
+    """Name the file in what goes wrong while it is written.
+
+    Raises
+    ------
+    OSError
+        As it came, with ``filename`` set.
+    """
+    try:
+        yield path
+    except OSError as error:
+        if error.filename is None:
+            error.filename = str(path)
+        raise
