@@ -6,12 +6,12 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator
     from pathlib import Path
 
 
 @contextmanager
-def named(path: Path) -> Iterator[Path]:
+def named(path: Path) -> Generator[Path]:
     """Name the file in what goes wrong while it is written.
 
     Raises
