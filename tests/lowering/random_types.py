@@ -64,6 +64,9 @@ class Choice:
 
 Kind = Scalar | Array | Enum | Message | Maybe | Choice
 
+OCTETS = Array(Scalar("uint8"))
+"""What all frameworks take for bytes."""
+
 
 @dataclass
 class Types:
@@ -104,6 +107,8 @@ def some(rng: random.Random, kind: Kind, count: int = 0) -> Value:
     match kind:
         case Scalar(type_):
             return some_value(rng, type_)
+        case Array() if kind == OCTETS:
+            return rng.randbytes(rng.choice([0, 1, count, 40]))
         case Array(element, size):
             return [some(rng, element) for _ in range(count if size is None else size)]
         case Enum():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, assert_never
 
-from tests.lowering.random_types import CONSTANTS, Array, Choice, Enum, Kind, Maybe, Message, Scalar, Types
+from tests.lowering.random_types import CONSTANTS, OCTETS, Array, Choice, Enum, Kind, Maybe, Message, Scalar, Types
 
 if TYPE_CHECKING:
     import random
@@ -163,6 +163,8 @@ def proto_field(kind: Kind, name: str, number: int, scalars: Mapping[str, str], 
     match kind:
         case Scalar(type_):
             return f"{label}{scalars[type_]} {name} = {number};"
+        case Array() if kind == OCTETS:
+            return f"{label}bytes {name} = {number};"
         case Array(element, _):
             return f"repeated {proto_field(element, name, number, scalars, '')}"
         case Enum():
@@ -225,6 +227,8 @@ def bottle_type(kind: Kind, scalars: Mapping[str, str]) -> str:
     match kind:
         case Scalar(type_):
             return scalars[type_]
+        case Array() if kind == OCTETS:
+            return ":blob"
         case Array(element, size):
             return f"(:list {bottle_type(element, scalars)}{'' if size is None else f' (:length {size})'})"
         case Message(_, fields):

@@ -12,6 +12,7 @@ import rosetta_jit as rj
 from tests.lowering.meaning import Refused
 from tests.lowering.random_blocks import Relations
 from tests.lowering.random_nested import date, listed, parameter, unit, via, widened
+from tests.lowering.random_octets import octets
 from tests.lowering.random_relations import Part, below_all, body
 from tests.lowering.random_types import Kind, Message
 from tests.lowering.random_values import plain
@@ -21,7 +22,7 @@ from tests.lowering.test_random_wires import Side, counted, without_cases
 
 MESSAGES = 15
 FORMS = (parameter, date, unit)
-ARRAY_FORMS = (listed, widened)
+ARRAY_FORMS = (listed, widened, octets)
 
 
 def relations(rng: random.Random, names: tuple[str, str]) -> tuple[Side, Side, list[Part]]:
