@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
 _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__", "__getstate__", "__setstate__"))
-_DESCRIBED = ("__dataclass_fields__", "__dataclass_params__")
+_FIELDS = "__dataclass_fields__"
+_DESCRIBED = (_FIELDS, "__dataclass_params__")
 """Where the standard library keeps what it knows of a class."""
 
 
@@ -78,19 +79,25 @@ def _field(default: Any) -> dataclasses.Field[Any]:
 
 
 class _Described:
-    """What the standard library knows of a class, worked out from the class without slots when somebody asks."""
+    """What the standard library knows of a class, worked out when somebody asks.
+
+    `replace` and `fields` ask of many classes, for the fields alone: no method has to be compiled for that.
+    """
 
     __slots__ = ("_name", "_options", "_plain", "made")
 
     def __init__(self, name: str, plain: type[Any], options: Mapping[str, bool]) -> None:
         self._name, self._plain, self.made = name, plain, plain
-        self._options = {"frozen": options.get("frozen", False), "eq": options.get("eq", True)}
+        self._options = options
 
     def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
-        described = dataclasses.dataclass(init=False, repr=False, match_args=False, **self._options)(self._plain)
-        for name in _DESCRIBED:
-            setattr(self.made, name, getattr(described, name))
-        return getattr(described, self._name)
+        if self._name == _FIELDS:
+            described = dataclasses.dataclass(init=False, repr=False, eq=False, match_args=False)(self._plain)
+        else:
+            described = dataclasses.dataclass(**self._options)(type(self._plain.__name__, (), {}))
+        found = getattr(described, self._name)
+        setattr(self.made, self._name, found)
+        return found
 
 
 def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
