@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
-from rosetta_jit.garbage import seldom_collected
+from rosetta_jit.garbage import imported, seldom_collected
 from rosetta_jit.request import GivenFunction, Request, plain_parameters
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
@@ -227,6 +227,7 @@ def _from_descriptors(type_: str | type, schema: bytes | None) -> str:
 
 
 def _build(request: Request) -> Build:
+    imported("rosetta_jit.pipeline")
     from rosetta_jit.pipeline import Build
 
     return Build(request)
