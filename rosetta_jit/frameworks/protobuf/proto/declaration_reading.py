@@ -1,4 +1,4 @@
-"""Lark tree to the declarations of `tree`: one method a rule of the grammar.
+"""The parser's tree to the declarations of `tree`: one method a rule of the grammar.
 
 What depends on other statements is left to the checks.
 """
@@ -6,8 +6,6 @@ What depends on other statements is left to the checks.
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
-
-from lark import Token, Tree
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.catalogue import proto_editions as say_edition
@@ -29,6 +27,7 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Visibility,
 )
 from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
+from rosetta_jit.frontend.lalr import Token, Tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
