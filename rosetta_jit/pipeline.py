@@ -57,13 +57,11 @@ class Types:
     functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
 
 
-@dataclass
 class Build:
     """A program in the making. Each stage is made when it is first asked for."""
 
-    request: Request
-
-    def __post_init__(self) -> None:
+    def __init__(self, request: Request) -> None:
+        self.request = request
         self.reading = Reading()
         self.files_given = _named_files(self.request)
         self.search = SearchPath.of(self.request.folders, files=self.files_given)

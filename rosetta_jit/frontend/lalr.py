@@ -129,7 +129,7 @@ def _kept(parts: list[Any], kept: Sequence[tuple[int, bool]]) -> list[Any]:
 
 
 def _placed(tree: Tree, parts: list[Any]) -> Tree:
-    """The tree with its places: its own are those that it got first, as the part of a rule that stands for it it takes more room."""
+    """The tree with its places: its own are the first that it gets; as a thin rule's only part it stands for all of that text."""
     start, end, *_ = tree.places
     before = next((found for found in map(_start, parts) if found != NOWHERE), tree.places[2])
     behind = next((found for found in map(_end, reversed(parts)) if found != NOWHERE), tree.places[3])

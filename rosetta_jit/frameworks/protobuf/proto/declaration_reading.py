@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.catalogue import proto_editions as say_edition
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
@@ -23,7 +22,6 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Name,
     Oneof,
     Range,
-    Version,
     Visibility,
 )
 from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
@@ -40,11 +38,10 @@ MAX_MESSAGE_SET_NUMBER = 2**31 - 2
 MAX_FIELD_NUMBER = 2**29 - 1
 
 
-@dataclass(frozen=True, slots=True)
 class DeclarationReader(ValueReader):
     """Reads messages and enums of a source in some version of the language."""
 
-    version: Version
+    __slots__ = ()
 
     def visibility(self, node: Node) -> Visibility | None:
         word = tokens_of(node)[0]

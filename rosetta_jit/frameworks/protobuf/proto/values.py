@@ -12,7 +12,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Version, Word
 from rosetta_jit.frontend.lalr import Token, Tree
 from rosetta_jit.source import Source, Span
 
@@ -30,6 +30,7 @@ class ValueReader:
 
     source: Source
     problems: list[Diagnostic]
+    version: Version = "proto2"
 
     # Options
 
