@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.lowering.packing import Packing, checks_of
 from rosetta_jit.model.expr import Len
 from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SetLength, When
 
@@ -25,8 +26,6 @@ def derive(mapping: model.Mapping, problems: list[Diagnostic]) -> model.Mapping:
     """The mapping with each direction's rules complete, those of its own block behind those for both."""
     if mapping.rules is None:
         return mapping
-    from rosetta_jit.lowering.packing import Packing  # how to turn rules around is a tenth of the compiler, and many mappings need it not
-
     packing = Packing.of(mapping.pack_rules or (), problems)
     pack_rules = packing.block(mapping.rules, ())
     written = set(_relations(mapping.rules))
@@ -53,12 +52,6 @@ def _relations(rules: tuple[Rule, ...]) -> Iterator[int]:
                 pass
 
 
-def _checks_of(beside: Beside) -> tuple[Rule, ...]:
-    from rosetta_jit.lowering.packing import checks_of
-
-    return checks_of(beside)
-
-
 def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
     return tuple(made for rule in rules for made in _unpacked(rule, checked))
 
@@ -68,7 +61,7 @@ def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
     match rule:
         case Relation(place, value, span, via):
             beside = checked.get(id(rule))
-            checks = () if beside is None or beside.side == "holder" else _checks_of(beside)
+            checks = () if beside is None or beside.side == "holder" else checks_of(beside)
             set_to = SetLength(place.path, value, span) if isinstance(place, Len) else Assign(place, value, span, via=via)
             return (*checks, set_to)
         case For(body=body):
