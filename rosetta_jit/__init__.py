@@ -62,10 +62,10 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
     if name in _LAZY:
-        return getattr(import_module(_LAZY[name]), name)
+        from rosetta_jit.garbage import imported
+
+        return getattr(imported(_LAZY[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -5,21 +5,19 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.laws import Laws, laws_of
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.lowering.check import Checked
+    from rosetta_jit.lowering.laws import Laws
 
 
-@dataclass(frozen=True)
 class CheckedMapping:
     """A mapping without errors. Iterating over it gives its warnings."""
 
-    checked: Checked
+    def __init__(self, checked: Checked) -> None:
+        self.checked = checked
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
@@ -29,6 +27,8 @@ class CheckedMapping:
     @cached_property
     def laws(self) -> Laws | None:
         """What comes back when a message is unpacked and packed, and a holder packed and unpacked; None of a one-way mapping."""
+        from rosetta_jit.lowering.laws import laws_of  # who makes a program asks for none
+
         unpack, pack = self.checked.unpack, self.checked.pack
         return laws_of(unpack, pack, self.checked.holder, self.checked.wire) if unpack and pack else None
 

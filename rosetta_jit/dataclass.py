@@ -22,8 +22,11 @@ if TYPE_CHECKING:
 
 OPTIONS = frozenset(("frozen", "slots", "eq", "repr", "weakref_slot"))
 _OWN = frozenset(("__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__", "__getstate__", "__setstate__"))
-_DESCRIBED = ("__dataclass_fields__", "__dataclass_params__")
+_FIELDS = "__dataclass_fields__"
+_DESCRIBED = (_FIELDS, "__dataclass_params__")
 """Where the standard library keeps what it knows of a class."""
+_PLAIN: dataclasses.Field[Any] = dataclasses.field()
+"""Of which nothing is said."""
 
 
 if not TYPE_CHECKING:
@@ -43,15 +46,16 @@ def _made(plain: type[Any], options: Mapping[str, bool]) -> type[Any]:
     if not plain.__doc__:
         plain.__doc__ = plain.__name__  # else the standard library writes the signature there, for which it imports and asks `inspect`
     fields = {name: _field(vars(plain).get(name, dataclasses.MISSING)) for name in annotated}
-    names: dict[str, Any] = {"MISSING": dataclasses.MISSING}
+    names: dict[str, Any] = {}
     kept = {name: each for name, each in vars(plain).items() if name not in fields and name not in ("__dict__", "__weakref__")}
     described = {name: _Described(name, plain, options) for name in _DESCRIBED}
     slots = {"__slots__": (*fields, "__weakref__") if options.get("weakref_slot") else tuple(fields), "__qualname__": plain.__qualname__}
     methods = _methods(fields, options, _init(fields, names, has_post_init=hasattr(plain, "__post_init__")))
     kind: Any = type(plain)
     made: Any = kind(plain.__name__, plain.__bases__, {**kept, **slots, **methods, **described})
-    for number, name in enumerate(fields):
-        names[f"set{number}"] = getattr(made, name).__set__
+    for number, (name, each) in enumerate(fields.items()):
+        store = getattr(made, name).__set__
+        names[f"set{number}"] = store if each.default_factory is dataclasses.MISSING else _made_anew(store, each.default_factory)
     for each in described.values():
         each.made = made
     return made
@@ -74,34 +78,43 @@ def _methods(fields: Mapping[str, dataclasses.Field[Any]], options: Mapping[str,
 
 def _field(default: Any) -> dataclasses.Field[Any]:
     """What a field's declaration says of it."""
+    if default is dataclasses.MISSING:
+        return _PLAIN
     return cast("dataclasses.Field[Any]", default if isinstance(default, dataclasses.Field) else dataclasses.field(default=default))
 
 
 class _Described:
-    """What the standard library knows of a class, worked out from the class without slots when somebody asks."""
+    """What the standard library knows of a class, worked out when somebody asks.
+
+    `replace` and `fields` ask of many classes, for the fields alone: no method has to be compiled for that.
+    """
 
     __slots__ = ("_name", "_options", "_plain", "made")
 
     def __init__(self, name: str, plain: type[Any], options: Mapping[str, bool]) -> None:
         self._name, self._plain, self.made = name, plain, plain
-        self._options = {"frozen": options.get("frozen", False), "eq": options.get("eq", True)}
+        self._options = options
 
     def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
-        described = dataclasses.dataclass(init=False, repr=False, match_args=False, **self._options)(self._plain)
-        for name in _DESCRIBED:
-            setattr(self.made, name, getattr(described, name))
-        return getattr(described, self._name)
+        if self._name == _FIELDS:
+            described = dataclasses.dataclass(init=False, repr=False, eq=False, match_args=False)(self._plain)
+        else:
+            described = dataclasses.dataclass(**self._options)(type(self._plain.__name__, (), {}))
+        found = getattr(described, self._name)
+        setattr(self.made, self._name, found)
+        return found
 
 
 def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *, has_post_init: bool) -> Callable[..., None]:
     """Objects are made often, and generic code would be slow at it: each class has its own, with ``names`` of its own for what it needs."""
-    kinds: list[tuple[bool, bool, bool]] = []
+    kinds: list[tuple[bool, bool]] = []
     defaults: list[Any] = []
     for number, (name, field) in enumerate(fields.items()):
         is_made = field.default_factory is not dataclasses.MISSING
         is_optional = is_made or field.default is not dataclasses.MISSING
-        kinds.append((field.init, is_made, is_optional and not field.init))
-        names[f"default{number}"], names[f"make{number}"] = field.default, field.default_factory
+        kinds.append((field.init, is_optional and not field.init))
+        if is_optional:
+            names[f"default{number}"] = field.default
         if field.init and is_optional:
             defaults.append(field.default)
         elif field.init and defaults:
@@ -111,17 +124,21 @@ def _init(fields: Mapping[str, dataclasses.Field[Any]], names: dict[str, Any], *
     return FunctionType(code.replace(co_varnames=parameters), names, "__init__", tuple(defaults))
 
 
+def _made_anew(store: Callable[[object, object], None], make: Callable[[], object]) -> Callable[[object, object], None]:
+    """Stores what is given, or else what a factory makes."""
+    return lambda self, value: store(self, make() if value is dataclasses.MISSING else value)
+
+
 @cache
-def _stores(kinds: tuple[tuple[bool, bool, bool], ...], *, has_post_init: bool) -> CodeType:
-    """The code of an `__init__`: for each field, whether it is a parameter, is made anew if not given, and has a value of its own."""
+def _stores(kinds: tuple[tuple[bool, bool], ...], *, has_post_init: bool) -> CodeType:
+    """The code of an `__init__`: for each field, whether it is a parameter, and whether it has a value of its own if it is none."""
     parameters, body = ["self"], list[str]()
-    for number, (is_parameter, is_made, has_default) in enumerate(kinds):
-        given, made = f"a{number}", f"make{number}()"
+    for number, (is_parameter, has_default) in enumerate(kinds):
         if is_parameter:
-            parameters.append(given)
-            body.append(f" set{number}(self, {f'{made} if {given} is MISSING else {given}' if is_made else given})")
+            parameters.append(f"a{number}")
+            body.append(f" set{number}(self, a{number})")
         elif has_default:
-            body.append(f" set{number}(self, {made if is_made else f'default{number}'})")
+            body.append(f" set{number}(self, default{number})")
     body.append(" self.__post_init__()" if has_post_init else " pass")
     made_by: dict[str, Any] = {}
     exec(f"def __init__({', '.join(parameters)}):\n" + "\n".join(body), made_by)  # noqa: S102 - our own text, without a name from elsewhere

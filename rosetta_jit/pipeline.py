@@ -19,6 +19,7 @@ from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
 from rosetta_jit.frontend.mapping import parse as parse_mapping
 from rosetta_jit.frontend.search import Reading, SearchPath
 from rosetta_jit.frontend.unit_file import SUFFIX
+from rosetta_jit.garbage import imported
 from rosetta_jit.given import called_functions, check_compiled, check_given
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.shape import is_told, our_functions
@@ -56,13 +57,11 @@ class Types:
     functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
 
 
-@dataclass
 class Build:
     """A program in the making. Each stage is made when it is first asked for."""
 
-    request: Request
-
-    def __post_init__(self) -> None:
+    def __init__(self, request: Request) -> None:
+        self.request = request
         self.reading = Reading()
         self.files_given = _named_files(self.request)
         self.search = SearchPath.of(self.request.folders, files=self.files_given)
@@ -185,6 +184,7 @@ class Build:
 
     def image(self) -> bytes:
         """The object code."""
+        imported("rosetta_jit.backends.link")
         from rosetta_jit.backends.link import compile_program
 
         check_compiled(self.functions, self.types.functions)

@@ -10,16 +10,13 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
-from rosetta_jit.garbage import seldom_collected
+from rosetta_jit.garbage import imported, seldom_collected
 from rosetta_jit.request import GivenFunction, Request, plain_parameters
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
 from rosetta_jit.runtime.callable import callable_class
-from rosetta_jit.runtime.function_digest import digest_of
 from rosetta_jit.runtime.holder import holder_class_of
-from rosetta_jit.runtime.host_table import fill
-from rosetta_jit.runtime.images import image_functions
 from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
 
 if TYPE_CHECKING:
@@ -192,9 +189,17 @@ def _request(direction: Direction, options: Options, *, mapping: str | None = No
         byte_order=options.get("byte_order"),
         lenient=tuple(sorted(options.get("lenient", ()))),
         parameters=plain_parameters(options.get("parameters", {})),
-        functions=tuple(GivenFunction(name, digest_of(each), each) for name, each in sorted(options.get("functions", {}).items())),
+        functions=_given(options.get("functions", {})),
         backend=options.get("backend"),
     )
+
+
+def _given(functions: Mapping[str, Callable[..., Any]]) -> tuple[GivenFunction, ...]:
+    if not functions:
+        return ()
+    from rosetta_jit.runtime.function_digest import digest_of
+
+    return tuple(GivenFunction(name, digest_of(each), each) for name, each in sorted(functions.items()))
 
 
 def _type_request(direction: Direction, type_: str | type, options: Options) -> Request:
@@ -227,6 +232,7 @@ def _from_descriptors(type_: str | type, schema: bytes | None) -> str:
 
 
 def _build(request: Request) -> Build:
+    imported("rosetta_jit.pipeline")
     from rosetta_jit.pipeline import Build
 
     return Build(request)
@@ -292,6 +298,9 @@ def _library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> nat
     """The code, with the functions of ours that it calls."""
     if not called:
         return native.load(image, symbols)
+    from rosetta_jit.runtime.host_table import fill
+    from rosetta_jit.runtime.images import image_functions
+
     functions = image_functions()
     return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
 
@@ -316,6 +325,8 @@ def _python_kernel(build: Build, number: int) -> run.Run:
     kernel = build.kernels[number]
     functions = {each.name: in_python(each) for each in build.functions}
     if build.header["host"]:
+        from rosetta_jit.runtime.images import image_functions
+
         functions |= image_functions()
     if build.request.backend == "python":
         from rosetta_jit.backends.python import compile_python

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from rosetta_jit.dataclass import dataclass
@@ -81,7 +80,7 @@ class Request:
     def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
         """The request as plain data, with the surroundings that relative names depend on."""
         functions = [[each.name, each.digest] for each in self.functions]
-        plain = asdict(replace(self, functions=()))
+        plain: dict[str, Any] = {name: getattr(self, name) for name in self.__match_args__}
         return {**plain, "functions": functions, "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more
 
 

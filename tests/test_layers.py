@@ -51,7 +51,7 @@ MAY_IMPORT = {
     "kernel": REPORTS | {"model"},
     "lowering": MIDDLE,
     "backends": {"kernel", "errors"},
-    "frameworks": REPORTS | {"model", "frontend.idl", "frontend.parsers", "wire", "runtime.holder"},
+    "frameworks": REPORTS | {"garbage", "model", "frontend.idl", "frontend.lalr", "frontend.parsers", "wire", "runtime.holder"},
     "runtime": REPORTS | RUNTIME,
     "written": set(),
     "recording": REPORTS | {"written"},

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from llvmlite import ir
 
-from rosetta_jit.backends import llvm_decimals
 from rosetta_jit.backends.llvm_frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
-from rosetta_jit.backends.llvm_utf8 import is_text_function
 from rosetta_jit.kernel.ir import (
     BEGIN,
     WIDTH,
@@ -89,6 +87,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             values = expression(frame, then), expression(frame, otherwise)
             return frame.builder.select(expression(frame, condition), *values)
         case IsText(address, size):
+            from rosetta_jit.backends.llvm_utf8 import is_text_function
+
             return frame.builder.call(is_text_function(frame.module), [pointer(frame, address), expression(frame, size)])
         case Nearest() | Digits() | Scale():
             return _decimal(frame, expr)
@@ -97,6 +97,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
 
 
 def _decimal(frame: Frame, expr: Nearest | Digits | Scale) -> ir.Value:
+    from rosetta_jit.backends import llvm_decimals
+
     match expr:
         case Nearest(address, size, exponent):
             text, length, power = pointer(frame, address), expression(frame, size), expression(frame, exponent)

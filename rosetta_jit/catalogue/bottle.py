@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ def _cut(name: str) -> str:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:
-    found = get_close_matches(name[:MAX_SHOWN], sorted(islice(known, MAX_COMPARED)), n=1)
-    return f"did you mean `{found[0]}`?" if found else ""
+    found = closest(name[:MAX_SHOWN], sorted(islice(known, MAX_COMPARED)))
+    return f"did you mean `{found}`?" if found else ""
 
 
 def unreadable(span: Span) -> Diagnostic:

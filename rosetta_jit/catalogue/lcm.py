@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING, Protocol
 
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -56,8 +56,8 @@ def _cut(word: str) -> str:
 
 
 def _nearest(word: str, known: Iterable[str]) -> str:
-    found = get_close_matches(word[:MAX_SHOWN], list(islice(known, MAX_COMPARED)), n=1)
-    return f"Is `{found[0]}` meant?" if found else ""
+    found = closest(word[:MAX_SHOWN], list(islice(known, MAX_COMPARED)))
+    return f"Is `{found}` meant?" if found else ""
 
 
 # --- the text ---------------------------------------------------------------------------------------------------------------

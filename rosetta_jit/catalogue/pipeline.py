@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -59,8 +59,8 @@ def no_rules(span: Span | None, direction: str) -> Diagnostic:
 
 def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
     """A type that no file declares."""
-    near = get_close_matches(name, known, 1)
-    help_ = f"did you mean `{near[0]}`?" if near else "name the files that declare it: imports=[…]"
+    near = closest(name, known)
+    help_ = f"did you mean `{near}`?" if near else "name the files that declare it: imports=[…]"
     return Diagnostic("error", "unknown-type", f"no file declares a message `{name}`", help=help_)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -22,8 +22,7 @@ MAX_QUOTED = 40
 def nearest(name: str, known: Collection[str]) -> str | None:
     """The known name that somebody who wrote ``name`` may have meant; the work is bounded for hostile schemas."""
     candidates = [other for other in sorted(known)[:MAX_CANDIDATES] if len(other) <= 100]
-    found = get_close_matches(name[:100], candidates, n=1)
-    return found[0] if found else None
+    return closest(name[:100], candidates)
 
 
 def _did_you_mean(name: str, known: Collection[str]) -> str:

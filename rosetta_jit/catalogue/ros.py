@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def wrong_parts(span: Span, kind: str, found: int, wanted: int) -> Diagnostic:
 def unknown_message(span: Span, name: str, written: str, places: Sequence[str], scalars: Sequence[str]) -> Diagnostic:
     """A field of a message that is nowhere."""
     word = written.split("[", maxsplit=1)[0][:SHOWN]
-    near = MEANT.get(word) or next(iter(get_close_matches(word, scalars, 1)), "")
+    near = MEANT.get(word) or closest(word, scalars)
     help_ = f"Did you mean `{near}`?" if near else "Add its file's folder to the search path, or its definition to the text."
     notes = (f"looked for {', '.join(_short(place) for place in places)}",)
     return _error("unknown-message", f"no definition of `{_short(name)}` is found", span, "unknown", help_, notes)

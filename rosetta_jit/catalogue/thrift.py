@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -37,8 +37,8 @@ def nesting(span: Span, most: int) -> Diagnostic:
 
 def unknown_type(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
     """A name that nothing declares."""
-    near = get_close_matches(name, list(known), 1)
-    help_ = f"did you mean `{near[0]}`?" if near else "declare it, or include the file that does"
+    near = closest(name, list(known))
+    help_ = f"did you mean `{near}`?" if near else "declare it, or include the file that does"
     return Diagnostic("error", "unknown-type", f"there is no type `{name}`", span, "not declared", help=help_)
 
 
@@ -72,8 +72,8 @@ def union(span: Span) -> Diagnostic:
 
 def unknown_service(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
     """A service that extends what nothing declares."""
-    near = get_close_matches(name, list(known), 1)
-    help_ = f"did you mean `{near[0]}`?" if near else "declare it, or include the file that does"
+    near = closest(name, list(known))
+    help_ = f"did you mean `{near}`?" if near else "declare it, or include the file that does"
     return Diagnostic("error", "unknown-service", f"there is no service `{name}`", span, "not declared", help=help_)
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import field
 from fnmatch import fnmatch
 from functools import cache
-from importlib import import_module
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.garbage import imported
 from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
@@ -202,4 +202,4 @@ def _lazy(place: str) -> FrontEnd:
 
 def _found(place: str) -> object:
     module, _, name = place.partition(":")
-    return getattr(import_module(module), name)
+    return getattr(imported(module), name)

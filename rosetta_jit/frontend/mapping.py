@@ -6,33 +6,25 @@ an index within the place included, is on the other side: a target has nothing t
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import islice
-from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, cast
-
-from lark import Token, Tree
-from lark.lark import PostLex
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
+from rosetta_jit.frontend.lalr import Token, Tree
 from rosetta_jit.frontend.mapping_rules import Context, read_parameter, read_rule, read_string
-from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
+from rosetta_jit.frontend.templates import grammar
 from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from lark import Lark
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Source
-
-GRAMMAR = FilePath(__file__).with_name("mapping.lark")
 
 MAX_CHARACTERS = 1 << 20
 MAX_TOKENS = 50_000
@@ -67,37 +59,27 @@ def parse(source: Source) -> Mapping:
     if len(source.text) > MAX_CHARACTERS:
         raise MappingError((words.file_too_large(source.name, MAX_CHARACTERS),))
     text = " " + source.text[1:] if source.text.startswith("\ufeff") else source.text  # a byte order mark, as some editors write it
-    tokens: list[Token] = list(islice(cast("Any", _grammar()).lex(text), MAX_TOKENS + 1))  # lark types it in part only
+    tokens = list(islice(_told_apart(grammar().lex(text)), MAX_TOKENS + 1))
     refused = _too_many(tokens, source) or _too_deep(tokens, source)
     if refused is not None:
         raise MappingError((refused,))
-    tree = parse_tokens(_grammar(), source, tokens, _recovery(), words.unexpected)
+    tree = parse_tokens(grammar(), source, tokens, _recovery(), words.unexpected)
     if not isinstance(tree, Tree):
         raise MappingError(tuple(tree))
     return _Reader(source, []).read(tree)
 
 
-@cache
-def _grammar() -> Lark:
-    return parser_of(GRAMMAR, postlex=Tokens(), positions=True)
-
-
-class Tokens(PostLex):
-    """Tells the `when` of a rejection from one that begins a block, and words from the names that they are elsewhere; makes lark keep
-    the tokens that stand for mistakes.
-    """
-
-    always_accept = ("UNCLOSED", "STRANGE")
-
-    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        kinds = ("", "")
-        for token in stream:
-            if token.type == "WHEN" and kinds == ("REJECT", "STRING"):
-                token.type = "GUARD"
-            if token.type in ONLY_BEHIND and kinds[1] != ONLY_BEHIND[token.type]:
-                token.type = "NAME"
-            kinds = kinds[1], token.type
-            yield token
+def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
+    """Tells the `when` of a rejection from one that begins a block, and words from the names that they are elsewhere."""
+    kinds = ("", "")
+    for token in tokens:
+        kind = token.type
+        if kind == "WHEN" and kinds == ("REJECT", "STRING"):
+            kind = "GUARD"
+        if kind in ONLY_BEHIND and kinds[1] != ONLY_BEHIND[kind]:
+            kind = "NAME"
+        kinds = kinds[1], kind
+        yield token if kind == token.type else token.of_kind(kind)
 
 
 def _recovery() -> Recovery:
@@ -111,7 +93,7 @@ def _too_many(tokens: list[Token], source: Source) -> Diagnostic | None:
     imports = [token for token in tokens if token.type == "IMPORT"]
     for found, most, what in ((tokens, MAX_TOKENS, "words and signs"), (imports, MAX_IMPORTS, "imports")):
         if len(found) > most:
-            return words.too_many(Span(source, found[most].start_pos or 0, found[most].end_pos or 0), what, most)
+            return words.too_many(Span(source, found[most].start_pos, found[most].end_pos), what, most)
     return None
 
 
@@ -124,7 +106,7 @@ def _too_deep(tokens: list[Token], source: Source) -> Diagnostic | None:
         elif token.type in {"RPAR", "RSQB", "RBRACE", "END"}:
             depth = max(0, depth - 1)
         if depth > MAX_NESTING:
-            return words.nesting(Span(source, token.start_pos or 0, token.end_pos or 0), MAX_NESTING)
+            return words.nesting(Span(source, token.start_pos, token.end_pos), MAX_NESTING)
     return None
 
 
@@ -135,7 +117,7 @@ class _Reader:
     source: Source
     problems: list[Diagnostic]
 
-    def read(self, tree: Tree[Token]) -> Mapping:
+    def read(self, tree: Tree) -> Mapping:
         self._bound_depth(tree)
         statements = [child for child in tree.children if isinstance(child, Tree)]
         holder, holder_span = self._type_name(statements, "data_holder", "data-holder")
@@ -161,7 +143,7 @@ class _Reader:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
         return mapping
 
-    def _bound_depth(self, tree: Tree[Token]) -> None:
+    def _bound_depth(self, tree: Tree) -> None:
         """Refuse operator chains and paths that are too long, without recursion of our own."""
         pending = [(tree, 0)]
         while pending:
@@ -172,44 +154,44 @@ class _Reader:
             inner = depth + 1 if node.data in NESTING else depth
             pending += [(child, inner) for child in node.children if isinstance(child, Tree)]
 
-    def _import(self, tree: Tree[Token]) -> Import:
+    def _import(self, tree: Tree) -> Import:
         token = _token(tree)
         return Import(read_string(token, self.source, self.problems), self._token_span(token))
 
-    def _function(self, tree: Tree[Token]) -> Function:
+    def _function(self, tree: Tree) -> Function:
         name, *types = (child for child in tree.children if isinstance(child, Token) and child.type == "NAME")
         *parameters, result = (TypeName(str(token), self._token_span(token)) for token in types)
         return Function(str(name), tuple(parameters), result, self._span(tree))
 
-    def _type_name(self, statements: list[Tree[Token]], rule: str, keyword: str) -> tuple[str, Span | None]:
+    def _type_name(self, statements: list[Tree], rule: str, keyword: str) -> tuple[str, Span | None]:
         found = self._only(statements, rule, keyword)
         if found is None:
             self.problems.append(words.missing_statement(Span(self.source, 0, 0), keyword))
             return "", None
         _, *tokens = (child for child in found.children if isinstance(child, Token))
-        span = Span(self.source, tokens[0].start_pos or 0, tokens[-1].end_pos or 0)
+        span = Span(self.source, tokens[0].start_pos, tokens[-1].end_pos)
         if tokens[0].type == "STRING":
             return read_string(tokens[0], self.source, self.problems), span
         return "".join(tokens), span
 
-    def _rules(self, statements: list[Tree[Token]], direction: str, context: Context) -> tuple[Rule, ...] | None:
+    def _rules(self, statements: list[Tree], direction: str, context: Context) -> tuple[Rule, ...] | None:
         block = self._only(statements, f"{direction}_rules".lstrip("_"), f"{direction}-rules".lstrip("-"))
         if block is None:
             return None
         return tuple(read_rule(child, context) for child in block.children if isinstance(child, Tree))
 
-    def _only(self, statements: list[Tree[Token]], rule: str, keyword: str) -> Tree[Token] | None:
+    def _only(self, statements: list[Tree], rule: str, keyword: str) -> Tree | None:
         found = [child for child in statements if child.data == rule]
         self.problems.extend(words.repeated_statement(self._span(extra), keyword) for extra in found[1:])
         return found[0] if found else None
 
-    def _span(self, tree: Tree[Token]) -> Span:
-        return Span(self.source, tree.meta.start_pos, tree.meta.end_pos)
+    def _span(self, tree: Tree) -> Span:
+        return Span(self.source, tree.start_pos, tree.end_pos)
 
     def _token_span(self, token: Token) -> Span:
-        return Span(self.source, token.start_pos or 0, token.end_pos or 0)
+        return Span(self.source, token.start_pos, token.end_pos)
 
 
-def _token(tree: Tree[Token]) -> Token:
+def _token(tree: Tree) -> Token:
     (token,) = (child for child in tree.children if isinstance(child, Token))
     return token

@@ -9,10 +9,9 @@ import math
 import re
 from typing import TYPE_CHECKING, cast
 
-from lark import Token, Tree
-
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frontend.lalr import Token, Tree
 from rosetta_jit.frontend.templates import pieces_of
 from rosetta_jit.model.expr import (
     Binary,
@@ -58,13 +57,13 @@ class Context:
     origin: Side
     problems: list[Diagnostic]
 
-    def span(self, node: Tree[Token] | Token) -> Span:
+    def span(self, node: Tree | Token) -> Span:
         if isinstance(node, Token):
-            return Span(self.source, node.start_pos or 0, node.end_pos or 0)
-        return Span(self.source, node.meta.start_pos, node.meta.end_pos)
+            return Span(self.source, node.start_pos, node.end_pos)
+        return Span(self.source, node.start_pos, node.end_pos)
 
 
-def read_rule(tree: Tree[Token], context: Context) -> Rule:
+def read_rule(tree: Tree, context: Context) -> Rule:
     """One rule: the place is on the target's side, everything else on the origin's."""
     span = context.span(tree)
     match str(tree.data):
@@ -99,14 +98,14 @@ def read_rule(tree: Tree[Token], context: Context) -> Rule:
             return For(variable, _expr(start, context), _expr(stop, context), rules, span)
 
 
-def _arranged(tree: Tree[Token], context: Context, span: Span) -> Arranged:
+def _arranged(tree: Tree, context: Context, span: Span) -> Arranged:
     place, flag, *entries = _trees(tree)
     cases = [tuple(_expr(part, context) for part in _trees(entry)) for entry in entries]
     both = (_path(place, context.target, context), _path(flag, context.target, context))
     return Arranged(*both, tuple((key, value) for key, value in cases), span)
 
 
-def _via(trees: list[Tree[Token]], context: Context) -> Via | None:
+def _via(trees: list[Tree], context: Context) -> Via | None:
     if not trees:
         return None
     name, *depth = (token for token in _tokens(trees[0]) if token.type in {"STRING", "INTEGER"})
@@ -114,13 +113,13 @@ def _via(trees: list[Tree[Token]], context: Context) -> Via | None:
     return Via(read_string(name, context.source, context.problems), deepest, context.span(trees[0]))
 
 
-def _when(condition: Expr, body: list[Tree[Token]], context: Context, span: Span) -> When:
+def _when(condition: Expr, body: list[Tree], context: Context, span: Span) -> When:
     then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
     others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
     return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
 
 
-def _reject(tree: Tree[Token], context: Context, span: Span) -> Rule:
+def _reject(tree: Tree, context: Context, span: Span) -> Rule:
     text, pieces = _template(tree, context)
     rejection = Reject(text, span, pieces)
     for condition in _trees(tree):
@@ -128,20 +127,20 @@ def _reject(tree: Tree[Token], context: Context, span: Span) -> Rule:
     return rejection
 
 
-def _template(tree: Tree[Token], context: Context) -> tuple[str, tuple[Expr, ...]]:
+def _template(tree: Tree, context: Context) -> tuple[str, tuple[Expr, ...]]:
     """A text and, where it has values in braces, what it consists of."""
     text, place = _text(tree, context), context.span(_tokens(tree)[0])
     return text, pieces_of(text, place, context.problems, lambda value: _expr(value, context))
 
 
-def _text(tree: Tree[Token], context: Context) -> str:
+def _text(tree: Tree, context: Context) -> str:
     return read_string(_tokens(tree)[0], context.source, context.problems)
 
 
 def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str:
     """The characters that a quoted text stands for."""
     text = str(token)[1:-1]
-    start = (token.start_pos or 0) + 1
+    start = token.start_pos + 1
     problems.extend(
         words.escape(Span(source, start + escape.start(), start + escape.end()), escape[0])
         for escape in re.finditer(r"\\(.)", text)
@@ -150,7 +149,7 @@ def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str
     return re.sub(r"\\(.)", lambda escape: ESCAPES.get(escape[1], escape[1]), text)
 
 
-def _expr(tree: Tree[Token], context: Context) -> Expr:
+def _expr(tree: Tree, context: Context) -> Expr:
     span = context.span(tree)
     match str(tree.data):
         case "integer":
@@ -190,7 +189,7 @@ def _expr(tree: Tree[Token], context: Context) -> Expr:
             return Call(str(_tokens(tree)[0]), arguments, span)
 
 
-def _table(tree: Tree[Token], context: Context, span: Span) -> Choice:
+def _table(tree: Tree, context: Context, span: Span) -> Choice:
     """A table, as a choice among comparisons of its subject."""
     subject, *entries = _trees(tree)
     compared = _expr(subject, context)
@@ -207,11 +206,11 @@ def _table(tree: Tree[Token], context: Context, span: Span) -> Choice:
     return Choice(tuple(cases), otherwise, reason, span, pieces)
 
 
-def _path(tree: Tree[Token], side: Side, context: Context) -> Path:
+def _path(tree: Tree, side: Side, context: Context) -> Path:
     return Path(side, tuple(_step(step, context) for step in tree.children), context.span(tree))
 
 
-def _step(step: Tree[Token] | Token, context: Context) -> Step:
+def _step(step: Tree | Token, context: Context) -> Step:
     if isinstance(step, Token):
         return Member(str(step)[1:].strip('"'), context.span(step))
     span, parts = context.span(step), [_expr(part, context) for part in _trees(step)]
@@ -262,7 +261,7 @@ def _real(token: Token, context: Context) -> float:
     return value
 
 
-def read_parameter(tree: Tree[Token], context: Context) -> Parameter:
+def read_parameter(tree: Tree, context: Context) -> Parameter:
     """A parameter with the name of its type, whatever that is."""
     name, *_, type_ = (token for token in _tokens(tree) if token.type == "NAME")
     default = next((_expr(value, context) for value in _trees(tree)), None)
@@ -270,9 +269,9 @@ def read_parameter(tree: Tree[Token], context: Context) -> Parameter:
     return Parameter(str(name), str(type_), is_list, default, context.span(tree))
 
 
-def _trees(tree: Tree[Token]) -> list[Tree[Token]]:
+def _trees(tree: Tree) -> list[Tree]:
     return [child for child in tree.children if isinstance(child, Tree)]
 
 
-def _tokens(tree: Tree[Token]) -> list[Token]:
+def _tokens(tree: Tree) -> list[Token]:
     return [child for child in tree.children if isinstance(child, Token)]

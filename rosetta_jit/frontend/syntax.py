@@ -7,27 +7,21 @@ that was open then is dropped, and so is the closing word of a block whose openi
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, cast
-
-from lark.exceptions import UnexpectedToken
-from lark.lexer import Token
-from lark.parsers.lalr_analysis import Shift
+from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frontend.lalr import END, Token, UnexpectedTokenError
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from lark import Lark, Tree
-
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frontend.lalr import Grammar, Parser, Tree
     from rosetta_jit.source import Source
 
 MAX_ERRORS = 20
 """Later mistakes of a text are mostly consequences of earlier ones."""
-
-END_OF_TEXT = "$END"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,14 +39,14 @@ Describe = Callable[[Span, str, frozenset[str]], "Diagnostic"]
 
 
 def parse_tokens(
-    grammar: Lark,
+    grammar: Grammar,
     source: Source,
     tokens: list[Token],
     recovery: Recovery,
     describe: Describe,
-) -> Tree[Token] | list[Diagnostic]:
+) -> Tree | list[Diagnostic]:
     """The tree of a text that has no syntax error, else what is wrong with it."""
-    parser: Any = cast("Any", grammar).parse_interactive("")  # lark types it in part only
+    parser = grammar.parser()
     problems: list[Diagnostic] = []
     lost = 0  # blocks whose opening was dropped and whose closing word is still to come
     skipping = False
@@ -68,12 +62,12 @@ def parse_tokens(
                 continue
             lost += dropped
             skipping = False
-        elif token.type == recovery.closes and lost and token.type not in _accepted(parser):
+        elif token.type == recovery.closes and lost and token.type not in parser.accepted():
             lost -= 1
             continue
         if not _feed(parser, token):
-            start = token.start_pos or 0
-            problems.append(describe(Span(source, start, start + len(token)), token.type, _accepted(parser)))
+            start = token.start_pos
+            problems.append(describe(Span(source, start, start + len(token)), token.type, parser.accepted()))
             skipping = True
             if len(problems) == MAX_ERRORS:
                 return problems
@@ -81,34 +75,30 @@ def parse_tokens(
 
 
 def _finish(
-    parser: Any,
+    parser: Parser,
     source: Source,
     problems: list[Diagnostic],
     describe: Describe,
     *,
     skipping: bool,
-) -> Tree[Token] | list[Diagnostic]:
+) -> Tree | list[Diagnostic]:
     if skipping:
         return problems
     try:
-        tree: Tree[Token] = parser.feed_eof()
-    except UnexpectedToken:
+        tree = parser.finish()
+    except UnexpectedTokenError:
         end = len(source.text.rstrip())
         place = Span(source, max(0, end - 1), end)
-        return [*problems, describe(place, END_OF_TEXT, _accepted(parser))]
+        return [*problems, describe(place, END, parser.accepted())]
     return problems or tree
 
 
-def _feed(parser: Any, token: Token) -> bool:
+def _feed(parser: Parser, token: Token) -> bool:
     try:
-        parser.feed_token(token)
-    except UnexpectedToken:
+        parser.feed(token)
+    except UnexpectedTokenError:
         return False
     return True
-
-
-def _accepted(parser: Any) -> frozenset[str]:
-    return frozenset(parser.accepts())
 
 
 def _starts(tokens: list[Token], position: int, recovery: Recovery, source: Source) -> bool:
@@ -119,15 +109,11 @@ def _starts(tokens: list[Token], position: int, recovery: Recovery, source: Sour
     return "\n" in between
 
 
-def _rewind(parser: Any, kind: str, opens: frozenset[str]) -> int | None:
+def _rewind(parser: Parser, kind: str, opens: frozenset[str]) -> int | None:
     """Drop what is open until a token of this kind fits; how many blocks were dropped, or None if it never would."""
-    state = parser.parser_state
-    table: dict[int, dict[str, tuple[object, int]]] = state.parse_conf.parse_table.states
-    depths = range(len(state.state_stack), 0, -1)
-    # A state may also accept a token in order to reduce, with look-aheads merged from elsewhere: only a shift is sure.
-    kept = next((n for n in depths if table[state.state_stack[n - 1]].get(kind, (None, 0))[0] is Shift), None)
+    kept = next((height for height in range(len(parser.states), 0, -1) if parser.shifts(height, kind)), None)
     if kept is None:
         return None
-    dropped: list[object] = state.value_stack[kept - 1 :]
-    del state.state_stack[kept:], state.value_stack[kept - 1 :]
+    dropped = parser.values[kept - 1 :]
+    del parser.states[kept:], parser.values[kept - 1 :]
     return sum(isinstance(value, Token) and value.type in opens for value in dropped)

@@ -9,11 +9,10 @@ import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
-
-from lark import Token, Tree
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.frontend.lalr import Token, Tree
 from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.frontend.syntax import Recovery, parse_tokens
 from rosetta_jit.model.expr import Literal
@@ -22,10 +21,13 @@ from rosetta_jit.source import Span
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from lark import Lark
-
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frontend.lalr import Grammar
     from rosetta_jit.model.expr import Expr
+
+GRAMMAR = Path(__file__).with_name("mapping.lark")
+MISTAKES = ("UNCLOSED", "STRANGE")
+"""Tokens that stand for mistakes."""
 
 PIECES = re.compile(r"\{\{|\}\}|\{[^{}]*\}|[{}]")
 MAX_PIECES = 20
@@ -40,7 +42,7 @@ BEFORE = (("UNPACK_RULES", "unpack-rules"), ("COLON", ":"), ("REJECT", "reject")
 NOWHERE = Recovery({}, frozenset(), opens=frozenset(), closes="")
 
 
-def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable[[Tree[Token]], Expr]) -> tuple[Expr, ...]:
+def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable[[Tree], Expr]) -> tuple[Expr, ...]:
     """The texts and values that a template consists of; none where it has no braces.
 
     Parameters
@@ -71,16 +73,14 @@ def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable
     return pieces if at else ()
 
 
-def _value(text: str, place: Span, problems: list[Diagnostic]) -> Tree[Token] | None:
+def _value(text: str, place: Span, problems: list[Diagnostic]) -> Tree | None:
     """The tree of what stands in braces; mistakes at its end are reported for all of it."""
-    tokens: list[Token] = list(cast("Any", _grammar()).lex(text))  # lark types it in part only
+    tokens = [token.at(place.start + 1 + token.start_pos, place.start + 1 + token.end_pos) for token in grammar().lex(text)]
     if len(tokens) > MAX_TOKENS:
         problems.append(words.nesting(place, MAX_TOKENS))
         return None
-    for token in tokens:
-        token.start_pos, token.end_pos = (place.start + 1 + (end or 0) for end in (token.start_pos, token.end_pos))
-    before = [Token(kind, text, start_pos=place.start, end_pos=place.start) for kind, text in BEFORE]
-    tree = parse_tokens(_grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)
+    before = [Token(kind, text, place.start, place.start) for kind, text in BEFORE]
+    tree = parse_tokens(grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)
     if not isinstance(tree, Tree):
         problems.extend(problem if _is_in(problem, place) else replace(problem, span=place) for problem in tree)
         return None
@@ -97,5 +97,6 @@ def _is_in(problem: Diagnostic, place: Span) -> bool:
 
 
 @cache
-def _grammar() -> Lark:
-    return parser_of(Path(__file__).with_name("mapping.lark"), positions=True)
+def grammar() -> Grammar:
+    """The parser of mappings."""
+    return parser_of(GRAMMAR, told=MISTAKES)

@@ -16,9 +16,8 @@ from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.lowering.bind import bind, handed_on
 from rosetta_jit.lowering.completeness import check_complete
 from rosetta_jit.lowering.default_counts import defaulted_counts
-from rosetta_jit.lowering.derive import derive
-from rosetta_jit.lowering.discriminator_order import discriminators_first
-from rosetta_jit.lowering.discriminators import told_unions
+from rosetta_jit.lowering.directions import in_each_direction
+from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
 from rosetta_jit.lowering.file_name import misnamed
 from rosetta_jit.lowering.hand_factors import wrong_factors
 from rosetta_jit.lowering.imports import Imports, merge, reached, read_imports
@@ -86,7 +85,7 @@ def check(
     problems: list[Diagnostic] = []
     bound: list[Diagnostic] = []
     underived: list[Diagnostic] = []
-    mapping, reading = derive(bind(mapping, parameters, bound), underived), reading or Reading()
+    mapping, reading = in_each_direction(bind(mapping, parameters, bound), underived), reading or Reading()
     others = read_others(mapping, search, reading, problems, handed_on(mapping, parameters))
     imports = Imports(mapping.source, front_ends, search, reading)
     imported = read_imports(mapping, imports, problems)

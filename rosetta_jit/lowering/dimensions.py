@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"
-UNIT = re.compile(rf"(1 ?/ ?)?{WORD}( ?[*/·] ?{WORD}| {WORD})*")
+UNIT = rf"(1 ?/ ?)?{WORD}( ?[*/·] ?{WORD}| {WORD})*"
 """What is given to the library that knows units: words with small powers, multiplied and divided."""
 MAX_UNIT = 64
 
@@ -72,7 +72,7 @@ def conversion(source: str, target: str, *, same: bool = True) -> tuple[float, f
     """
     if same and source == target:
         return 1.0, 0.0
-    unknown = next((unit for unit in (source, target) if len(unit) > MAX_UNIT or not UNIT.fullmatch(unit)), None)
+    unknown = next((unit for unit in (source, target) if len(unit) > MAX_UNIT or not re.fullmatch(UNIT, unit)), None)
     return _conversion(source, target) if unknown is None else unknown
 
 

@@ -35,14 +35,8 @@ MAX_LABELS = 5_000
 """Labels that all values of discriminators together are compared with."""
 
 
-def discriminators_first(rules: tuple[Rule, ...], unions: Mapping[Names, Told], problems: list[Diagnostic]) -> tuple[Rule, ...]:
-    """The rules in an order in which each discriminator is set before a case of its union.
-
-    A problem where there is no such order, or where labels are too many.
-    """
-    told = {names: each for names, each in unions.items() if each.by_rule}
-    if not told:
-        return rules
+def ordered(rules: tuple[Rule, ...], told: Mapping[Names, Told], problems: list[Diagnostic]) -> tuple[Rule, ...]:
+    """What `discriminators.discriminators_first` gives where rules set discriminators: those that ``told`` has."""
     computed = (rule for rule in rules_within(rules) if isinstance(rule, Assign) and not isinstance(rule.value, Const))
     labels = sum(sum(map(len, told[names].union.labels)) for rule in computed if (names := field_names(rule.place)) in told)
     if labels > MAX_LABELS:

@@ -15,6 +15,9 @@ from rosetta_jit.model.births import selected, selecting
 from rosetta_jit.model.types import Array, Bytes, Map, Struct, Union
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Place, Rule
     from rosetta_jit.lowering.writer import Writer
@@ -88,3 +91,16 @@ def discriminator_of(place: Place, steps: int) -> Names | None:
         return None
     around = tuple(step.field.name for step in place.steps[: steps - 1] if isinstance(step, FieldStep))
     return (*around, last.field.type.discriminator)
+
+
+def discriminators_first(rules: tuple[Rule, ...], unions: Mapping[Names, Told], problems: list[Diagnostic]) -> tuple[Rule, ...]:
+    """The rules in an order in which each discriminator is set before a case of its union.
+
+    A problem where there is no such order, or where labels are too many.
+    """
+    told = {names: each for names, each in unions.items() if each.by_rule}
+    if not told:
+        return rules
+    from rosetta_jit.lowering.discriminator_order import ordered
+
+    return ordered(rules, told, problems)

@@ -16,19 +16,14 @@ from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.lowering.bear import bear, opened_lanes, places_left
 from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
 from rosetta_jit.lowering.defaults import has_array
-from rosetta_jit.lowering.descent import descend
-from rosetta_jit.lowering.discriminator_order import discriminators_first
-from rosetta_jit.lowering.discriminators import told_unions
+from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
 from rosetta_jit.lowering.ending import end
 from rosetta_jit.lowering.fields import root_fields
-from rosetta_jit.lowering.recursion import cursors, read_rows
-from rosetta_jit.lowering.recursion_write import write_root
 from rosetta_jit.lowering.rules import Runner
 from rosetta_jit.lowering.scope import Message
 from rosetta_jit.lowering.sides import HolderSide, WireSide
 from rosetta_jit.lowering.stage import staged_fields
 from rosetta_jit.lowering.supplies import Supplies, look_up_arrays
-from rosetta_jit.lowering.tagged import read_message
 from rosetta_jit.lowering.values import Values
 from rosetta_jit.lowering.walk import walk
 from rosetta_jit.lowering.writer import Where, Writer, block
@@ -141,18 +136,25 @@ class _Lowering:
 
 
 def _own(encoding: Encoding, attempt: Codec, holder: HolderFields) -> None:
-    """The holder is of the wire's own type."""
+    """The holder is of the wire's own type. There are four ways to lower it, and what one of them needs is imported for it alone."""
     writer = holder.writer
     if encoding.nested:
+        from rosetta_jit.lowering.descent import descend
+
         descend(_nested(encoding, attempt), attempt, holder, writer)
     elif not isinstance(attempt, Tagged):
         with writer.whole():
             walk(attempt, holder, writer)
     elif writer.direction == "decode":
+        from rosetta_jit.lowering.recursion import cursors, read_rows
+        from rosetta_jit.lowering.tagged import read_message
+
         rows = cursors(writer, holder.layout)
         read_message(writer, holder, attempt, END, fresh=True, depth=index(0))
         read_rows(encoding, holder, writer, rows)
     else:
+        from rosetta_jit.lowering.recursion_write import write_root
+
         write_root(encoding, holder, attempt, writer)
 
 

@@ -10,7 +10,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.frontend.mapping import parse
 from rosetta_jit.lowering.bind import bind
-from rosetta_jit.lowering.derive import derive
+from rosetta_jit.lowering.directions import in_each_direction
 from rosetta_jit.model.mapping import Assign, For, When
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, o
         mapping = parse(source)
         declared = {each.name for each in mapping.parameters}
         given = None if parameters is None else {name: value for name, value in parameters.items() if name in declared}
-        return derive(bind(mapping, given, problems), problems)
+        return in_each_direction(bind(mapping, given, problems), problems)
     except ReportError as error:
         problems.extend(error.diagnostics)
         return None

@@ -3,7 +3,7 @@
     {"type": Type, "declared": {name: Type}}          only what the type reaches
     Type  = [word, ...]                               the word of the model in lower case, then its attributes in order
     Field = [name, Type, number, unit, default, required, options, constant, length, part units]
-    Expr  = [word, ...], as of a type
+    Expr  = [word, ...], as of a type: see `model.serial_expressions`
 
 Documentation and spans stay behind: only the compiler reads them.
 """
@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
-from rosetta_jit.model import expr
 from rosetta_jit.model.types import (
     Array,
     Bool,
@@ -33,6 +32,7 @@ from rosetta_jit.model.types import (
 )
 
 if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Constant
 
 Plain = dict[str, Any]
@@ -123,81 +123,38 @@ class _Writing:
         return [field.name, self.type(field.type, depth), field.number, field.unit, default, field.required, options, *computed, parts]
 
 
-def _plain_expr(value: expr.Expr | None) -> list[Any] | None:
-    match value:
-        case None:
-            return None
-        case expr.Literal(literal):
-            return ["literal", literal]
-        case expr.Name(name):
-            return ["name", name]
-        case expr.Path(side, steps):
-            return ["path", side, [_plain_step(step) for step in steps]]
-        case expr.Len(path):
-            return ["len", _plain_expr(path)]
-        case expr.Unary(operator, operand):
-            return ["unary", operator, _plain_expr(operand)]
-        case expr.Binary(operator, left, right):
-            return ["binary", operator, _plain_expr(left), _plain_expr(right)]
-        case expr.Call(function, arguments):
-            return ["call", function, [_plain_expr(each) for each in arguments]]
-        case expr.Choice(cases, otherwise, reason):
-            return ["choice", [[_plain_expr(part) for part in case] for case in cases], _plain_expr(otherwise), reason]
-        case expr.List() | expr.Item() | expr.Given() | expr.Held():
-            raise AssertionError(value)
-        case _:
-            assert_never(value)
+def _plain_expr(value: Expr | None) -> list[Any] | None:
+    if value is None:
+        return None
+    from rosetta_jit.model.serial_expressions import plain_expression
 
-
-def _plain_step(step: expr.Step) -> str | list[Any] | None:
-    match step:
-        case expr.Member(name):
-            return name
-        case expr.Index(index):
-            return _plain_expr(index)
-        case _:
-            raise AssertionError(step)  # mappings alone name many elements at once
+    return plain_expression(value)
 
 
 def _expr(plain: Any, depth: int) -> Any:
-    if depth > MAX_DEPTH:
-        raise ValueError(f"expressions nest more than {MAX_DEPTH} deep")
-    match plain:
-        case None:
-            return None
-        case ["literal", value]:
-            return expr.Literal(value)
-        case ["name", name]:
-            return expr.Name(name)
-        case ["path", side, steps]:
-            found = tuple(expr.Member(each) if isinstance(each, str) else expr.Index(_expr(each, depth + 1)) for each in steps)
-            return expr.Path(side, found)
-        case ["len", path]:
-            return expr.Len(_expr(path, depth + 1))
-        case ["unary", operator, operand]:
-            return expr.Unary(operator, _expr(operand, depth + 1))
-        case ["binary", operator, left, right]:
-            return expr.Binary(operator, _expr(left, depth + 1), _expr(right, depth + 1))
-        case ["call", function, arguments]:
-            return expr.Call(function, tuple(_expr(each, depth + 1) for each in arguments))
-        case ["choice", cases, otherwise, reason]:
-            pairs = tuple((_expr(condition, depth + 1), _expr(value, depth + 1)) for condition, value in cases)
-            return expr.Choice(pairs, None if otherwise is None else _expr(otherwise, depth + 1), reason)
-        case _:
-            raise ValueError(f"not an expression: {plain!r:.80}")
+    """Few fields have an expression: who reads none does not import them."""
+    if plain is None:
+        return None
+    from rosetta_jit.model.serial_expressions import expression_of
+
+    return expression_of(plain, depth, MAX_DEPTH)
 
 
 def _plain_length(length: object) -> Any:
     """A number, or the path of the field that tells it."""
-    if isinstance(length, expr.Path):
-        return [step.name for step in length.steps if isinstance(step, expr.Member)]
-    return length if isinstance(length, int) else None
+    if length is None or isinstance(length, int):
+        return length
+    from rosetta_jit.model.serial_expressions import names_on
+
+    return names_on(length)
 
 
 def _length(plain: Any) -> Any:
-    if isinstance(plain, list):
-        return expr.Path("wire", tuple(expr.Member(name) for name in cast("list[str]", plain)))
-    return plain
+    if not isinstance(plain, list):
+        return plain
+    from rosetta_jit.model.serial_expressions import path_of
+
+    return path_of(cast("list[str]", plain))
 
 
 def _plain_options(options: tuple[tuple[str, Constant], ...]) -> list[Any]:

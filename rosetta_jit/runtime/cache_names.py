@@ -59,17 +59,17 @@ def _name(kind: str, text: str) -> str:
 
 def _package_digest() -> str:
     """Stands for our version: changes with each installation and, for us who work on the compiler, with each edit of a source file."""
-    digest = sha256()
-    folders = [str(Path(__file__).resolve().parent.parent)]
+    folders, files = [str(Path(__file__).resolve().parent.parent)], list[str]()
     for folder in folders:  # grows while it is gone through
         with os.scandir(folder) as entries:
-            for entry in sorted(entries, key=lambda entry: entry.name):
+            for entry in entries:
                 if entry.is_dir(follow_symlinks=False):
                     folders += [entry.path] if entry.name not in ("__pycache__", "recordings", "share") else []
                 else:
                     status = entry.stat()
-                    digest.update(f"{entry.path} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogatepass"))
-    return digest.hexdigest()
+                    files.append(f"{entry.path} {status.st_size} {status.st_mtime_ns}\n")
+    files.sort()
+    return sha256("".join(files).encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _numba_version() -> str:
@@ -77,4 +77,5 @@ def _numba_version() -> str:
     spec = find_spec("numba")
     if spec is None or spec.origin is None:
         return ""
-    return ", ".join(sorted(path.name for path in Path(spec.origin).parent.parent.glob("numba-*.dist-info")))
+    beside = os.listdir(Path(spec.origin).parent.parent)  # noqa: PTH208 - a pattern of pathlib's is a regular expression to compile
+    return ", ".join(sorted(name for name in beside if name.startswith("numba-") and name.endswith(".dist-info")))

@@ -15,9 +15,16 @@ import rosetta_jit as rj
 decode = rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
 angles = decode(struct.pack("<ii3d", 266, 3, 180, 0, 0)).angles
 assert abs(angles[0] - 3.14159) < 1e-4, angles
-heavy = ("numba", "lark", "rosetta_jit.pipeline", "rosetta_jit.lowering.lower", "rosetta_jit.kernel.ir", "google.protobuf")
+heavy = ("numba", "lark", "rosetta_jit.pipeline", "rosetta_jit.model.expr", "rosetta_jit.lowering.lower", "google.protobuf")
 print(*[name for name in heavy if name in sys.modules])
 """
+
+
+OWN = (
+    'import "rst/kinematics/JointAngles.proto"\nimport "yarp/icub/torso_state.bottle-schema"\n'
+    "data-holder: rst.kinematics.JointAngles\nwire-schema: yarp.icub.torso.state\n"
+    "unpack-rules:\n  len(.angles) = 1\n  .angles[0] = float32(radians(.yaw))\n"
+)
 
 
 def start(folder, mode="quiet"):
@@ -54,11 +61,7 @@ def test_a_harmed_cache_costs_a_warning(tmp_path, harm):
 
 def test_a_changed_mapping_is_compiled_again(tmp_path):
     program = PROGRAM.replace('"yarp/icub/torso_state.mapping"', '"own.mapping"')
-    text = (
-        'import "rst/kinematics/JointAngles.proto"\nimport "yarp/icub/torso_state.bottle-schema"\n'
-        "data-holder: rst.kinematics.JointAngles\nwire-schema: yarp.icub.torso.state\n"
-        "unpack-rules:\n  len(.angles) = 1\n  .angles[0] = float32(radians(.yaw))\n"
-    )
+    text = OWN
     environment = {**os.environ, "ROSETTA_JIT_CACHE_DIR": str(tmp_path / "cache")}
 
     def run():
@@ -71,3 +74,22 @@ def test_a_changed_mapping_is_compiled_again(tmp_path):
     assert run().stdout.split() == []
     (tmp_path / "own.mapping").write_text(text.replace(".yaw", ".roll"))
     assert "array([0.]" in run().stderr or "AssertionError" in run().stderr
+
+
+UNUSED = """
+import sys
+import numpy, llvmlite.binding
+before = set(sys.modules)
+import rosetta_jit as rj
+rj.Decoder("own.mapping", encoding="yarp3")
+lowering = ("packing", "laws", "tagged", "recursion_write", "descent")
+unused = {"lark", "numba", "difflib", "fractions", "pint", "PIL", *(f"rosetta_jit.lowering.{name}" for name in lowering)}
+print(*sorted(unused & (set(sys.modules) - before)))
+"""
+
+
+def test_a_compile_imports_of_the_compiler_what_the_mapping_needs(tmp_path):
+    (tmp_path / "own.mapping").write_text(OWN)
+    environment = {**os.environ, "ROSETTA_JIT_CACHE": "off"}
+    ran = subprocess.run([sys.executable, "-c", UNUSED], env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert ran.stdout.split() == []

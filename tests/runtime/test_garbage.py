@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 
 import pytest
 
@@ -39,3 +41,23 @@ def test_who_collects_seldom_or_never_is_left_alone(threshold):
     with seldom_collected():
         assert gc.get_threshold() == (threshold, 5, 5)
     assert gc.get_threshold() == (threshold, 5, 5)
+
+
+IMPORTS = """
+import gc
+import subprocess
+import sys
+from rosetta_jit.garbage import imported
+FREEZE
+gc.collect()
+has_frozen = gc.get_freeze_count() > 0
+module = imported("rosetta_jit.model.expr")
+assert any(each is module for each in gc.get_objects(generation=2)) == (not has_frozen)
+assert (gc.get_freeze_count() > 0) == has_frozen
+assert imported("rosetta_jit.model.expr") is module and gc.isenabled()
+"""
+
+
+@pytest.mark.parametrize("freeze", ["", "gc.freeze()"])
+def test_what_is_imported_is_old_at_once(freeze):
+    subprocess.run([sys.executable, "-c", IMPORTS.replace("FREEZE", freeze)], check=True)

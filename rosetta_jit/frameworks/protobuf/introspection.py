@@ -40,13 +40,16 @@ TYPES = {
 OPTIONAL, REQUIRED, REPEATED = 1, 2, 3
 
 
-@dataclass(frozen=True, eq=False)
 class EnumDescriptor:
     """An enum: its names and numbers."""
 
-    full_name: str
-    values: tuple[EnumValueDescriptor, ...]
-    is_closed: bool
+    def __init__(self, full_name: str, values: tuple[EnumValueDescriptor, ...], *, is_closed: bool) -> None:
+        self.full_name = full_name
+        self.values = values
+        self.is_closed = is_closed
+
+    def __repr__(self) -> str:
+        return f"<enum {self.full_name}>"
 
     @property
     def name(self) -> str:
@@ -62,7 +65,7 @@ class EnumDescriptor:
         return {value.number: value for value in reversed(self.values)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class EnumValueDescriptor:
     """A name of an enum, and its number."""
 
@@ -71,7 +74,7 @@ class EnumValueDescriptor:
     number: int
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class OneofDescriptor:
     """A oneof: which fields share it."""
 
@@ -238,7 +241,7 @@ def nested_names(full_name: str, schema: Schema) -> list[str]:
 def enum_descriptor(enum: Enum) -> EnumDescriptor:
     """The descriptor of an enum."""
     values = tuple(EnumValueDescriptor(name, index, number) for index, (name, number) in enumerate(enum.values))
-    return EnumDescriptor(enum.name, values, enum.closed)
+    return EnumDescriptor(enum.name, values, is_closed=enum.closed)
 
 
 def _entry_name(field_name: str) -> str:

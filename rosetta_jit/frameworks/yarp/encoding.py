@@ -15,7 +15,6 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp.bottle_codec import Bottles
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, Dialect
-from rosetta_jit.frameworks.yarp.thrift_encoding import Thrift
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Array, Map, Ref, Schema, String, Struct, Union
 from rosetta_jit.wire.codec import Codec, Encoding
@@ -68,6 +67,8 @@ def _nested(attempts: Sequence[_Attempt]) -> tuple[dict[str, Codec], ...]:
 def _attempts(struct: Struct, schema: Schema, dialect: Dialect) -> tuple[_Attempt, ...]:
     """What a reader tries: the form that YARP writes for what is not empty, then whatever it reads. The last one is written."""
     if struct.option("thrift"):
+        from rosetta_jit.frameworks.yarp.thrift_encoding import Thrift
+
         thrift = Thrift(schema, dialect, recursive_structs(Ref(struct.name), schema))
         return (_Attempt(thrift.message(struct), tuple(thrift.nested().items())),)
     expected = _Attempt(Bottles(schema, dialect, exact=True).message(struct))

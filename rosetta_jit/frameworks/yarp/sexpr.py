@@ -11,22 +11,20 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
-
-from lark import UnexpectedCharacters
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frontend.lalr import UnexpectedCharacterError
 from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.source import Span
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from lark import Lark, Token
-
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frontend.lalr import Grammar, Token
     from rosetta_jit.source import Source
 
 GRAMMAR = Path(__file__).with_name("bottle_schema.lark")
@@ -96,7 +94,7 @@ def head(node: Node) -> str:
 
 
 def read_forms(source: Source) -> tuple[Node, ...]:
-    """All forms of a text. Lark splits it into tokens; a stack nests them, so that depth costs no recursion.
+    """All forms of a text. A stack nests them, so that depth costs no recursion.
 
     Raises
     ------
@@ -107,7 +105,7 @@ def read_forms(source: Source) -> tuple[Node, ...]:
     opened: list[Span] = []
     levels: list[list[Node]] = [[]]
     for token in _tokens(source, problems):
-        span = Span(source, token.start_pos or 0, token.end_pos or 0)
+        span = Span(source, token.start_pos, token.end_pos)
         match token.type:
             case "LPAR":
                 opened.append(span)
@@ -131,15 +129,14 @@ def read_forms(source: Source) -> tuple[Node, ...]:
 
 def _tokens(source: Source, problems: list[Diagnostic]) -> Iterator[Token]:
     try:
-        yield from _lark().lex(source.text)  # pyright: ignore[reportUnknownMemberType]  # lark leaves a parameter untyped
-    except UnexpectedCharacters as error:
-        at = cast("int", error.pos_in_stream)
-        span = Span(source, at, at + 1)
-        problems.append(catalogue.unclosed_text(span) if source.text[at] == '"' else catalogue.unreadable(span))
+        yield from _grammar().lex(source.text)
+    except UnexpectedCharacterError as error:
+        span = Span(source, error.at, error.at + 1)
+        problems.append(catalogue.unclosed_text(span) if source.text[error.at] == '"' else catalogue.unreadable(span))
 
 
 @cache
-def _lark() -> Lark:
+def _grammar() -> Grammar:
     return parser_of(GRAMMAR)
 
 

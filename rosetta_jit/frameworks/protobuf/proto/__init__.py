@@ -1,6 +1,6 @@
 """The Protocol Buffers language: from the text of a `.proto` file, or from descriptors, to the meta-model.
 
-    text ─ syntax ─▶ lark tree ─ reading ─▶ File ┐
+    text ─ syntax ─▶ tree ─ reading ─▶ File ─────┐
                                                  ├─ files ─▶ symbols ─▶ checks ─▶ schema
     descriptors ────────────────────────────────▶┘
 

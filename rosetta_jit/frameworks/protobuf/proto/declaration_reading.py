@@ -1,4 +1,4 @@
-"""Lark tree to the declarations of `tree`: one method a rule of the grammar.
+"""The parser's tree to the declarations of `tree`: one method a rule of the grammar.
 
 What depends on other statements is left to the checks.
 """
@@ -7,11 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from lark import Token, Tree
-
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.catalogue import proto_editions as say_edition
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
@@ -25,10 +22,10 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Name,
     Oneof,
     Range,
-    Version,
     Visibility,
 )
 from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
+from rosetta_jit.frontend.lalr import Token, Tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,11 +38,10 @@ MAX_MESSAGE_SET_NUMBER = 2**31 - 2
 MAX_FIELD_NUMBER = 2**29 - 1
 
 
-@dataclass(frozen=True, slots=True)
 class DeclarationReader(ValueReader):
     """Reads messages and enums of a source in some version of the language."""
 
-    version: Version
+    __slots__ = ()
 
     def visibility(self, node: Node) -> Visibility | None:
         word = tokens_of(node)[0]

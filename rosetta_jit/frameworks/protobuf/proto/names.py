@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
@@ -175,9 +176,7 @@ class _Resolver:
 
     def elsewhere(self, name: str, kinds: frozenset[Kind]) -> str | None:
         """A declaration whose name ends in the same way, or almost so."""
-        from difflib import get_close_matches
-
         known = {full.rpartition(".")[2]: full for full, symbol in self.symbols.table.items() if symbol.kind in kinds}
         last = name.rpartition(".")[2]
-        close = [last] if last in known else get_close_matches(last, list(known)[:MAX_COMPARED], n=1)
-        return known[close[0]] if close else None
+        close = last if last in known else closest(last, list(known)[:MAX_COMPARED])
+        return None if close is None else known[close]

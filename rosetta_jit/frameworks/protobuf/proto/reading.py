@@ -1,4 +1,4 @@
-"""Lark tree to `tree.File`: its version, what it imports, and its services; `declaration_reading` reads the rest."""
+"""The parser's tree to `tree.File`: its version, what it imports, and its services; `declaration_reading` reads the rest."""
 
 from __future__ import annotations
 
@@ -23,10 +23,9 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
 from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, one, tokens_of
 
 if TYPE_CHECKING:
-    from lark import Token
-
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.values import Node
+    from rosetta_jit.frontend.lalr import Token
     from rosetta_jit.source import Source
 
 

@@ -1,4 +1,4 @@
-"""Text to lark tree, with every syntax error of the file.
+"""Text to tree, with every syntax error of the file.
 
 After an error the parser goes back to where the statement began, skips it, and goes on: the next one is read as if the
 wrong one were not there.
@@ -8,23 +8,24 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
-
-from lark.lark import PostLex
+from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frontend.lalr import END, UnexpectedTokenError
 from rosetta_jit.frontend.parsers import parser_of
 from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from lark import Token, Tree
-
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.frontend.lalr import Grammar, Parser, Token, Tree
 
 GRAMMAR = Path(__file__).with_name("proto.lark")
+START = "file"
+MISTAKES = ("UNCLOSED_STRING", "UNCLOSED_COMMENT", "UNKNOWN")
+"""Tokens that stand for mistakes."""
 
 MAX_NESTING = 32
 """Messages within messages, and lists and messages within an option's value; protoc stops at the same depth."""
@@ -46,26 +47,7 @@ class _Statement:
     nested: int = 0
 
 
-class _State(Protocol):
-    """The stacks of lark's parser, as far as recovery needs them."""
-
-    state_stack: list[Any]
-    value_stack: list[Any]
-
-
-class _Parser(Protocol):
-    """Lark's interactive parser; its own annotations leave the types of states open."""
-
-    parser_state: _State
-
-    def feed_token(self, token: Token) -> object: ...
-
-    def feed_eof(self) -> Tree[Token]: ...
-
-    def accepts(self) -> set[str]: ...
-
-
-def parse(source: Source, problems: list[Diagnostic]) -> Tree[Token] | None:
+def parse(source: Source, problems: list[Diagnostic]) -> Tree | None:
     """The tree of a file; what could be read of it where problems were found, None where nothing could."""
     tokens = _with_visibility(list(_tokens(source)))
     deep = _too_deep(tokens)
@@ -77,23 +59,14 @@ def parse(source: Source, problems: list[Diagnostic]) -> Tree[Token] | None:
 
 def span_of(source: Source, token: Token) -> Span:
     """The place of a token."""
-    start = token.start_pos or 0
+    start = token.start_pos
     return Span(source, start, start + len(token))
 
 
 @cache
-def grammar() -> Any:
+def grammar() -> Grammar:
     """The parser; made once a process, at the first file."""
-    return parser_of(GRAMMAR, start="file", postlex=WrongTokens())
-
-
-class WrongTokens(PostLex):
-    """Makes lark keep the tokens that stand for mistakes."""
-
-    always_accept = ("UNCLOSED_STRING", "UNCLOSED_COMMENT", "UNKNOWN")
-
-    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        return stream
+    return parser_of(GRAMMAR, start=START, told=MISTAKES)
 
 
 def _tokens(source: Source) -> Iterator[Token]:
@@ -105,7 +78,7 @@ def _tokens(source: Source) -> Iterator[Token]:
 def _with_visibility(tokens: list[Token]) -> list[Token]:
     """The same tokens; `export` and `local` are a kind of their own where a declaration follows: no parser looks that far ahead."""
     return [
-        token.update(type="VISIBILITY") if token in VISIBILITIES and _declares(tokens[index + 1 : index + 3]) else token
+        token.of_kind("VISIBILITY") if token in VISIBILITIES and _declares(tokens[index + 1 : index + 3]) else token
         for index, token in enumerate(tokens)
     ]
 
@@ -127,23 +100,21 @@ def _too_deep(tokens: list[Token]) -> Token | None:
     return None
 
 
-def _feed(source: Source, tokens: list[Token], problems: list[Diagnostic]) -> Tree[Token] | None:
-    from lark.exceptions import UnexpectedToken
-
-    parser: _Parser = grammar().parse_interactive()
+def _feed(source: Source, tokens: list[Token], problems: list[Diagnostic]) -> Tree | None:
+    parser = grammar().parser()
     statement = _Statement(0)
     index = 0
     for _ in range(MAX_ERRORS):
         try:
             while index < len(tokens):
-                parser.feed_token(tokens[index])
+                parser.feed(tokens[index])
                 index += 1
                 statement = _advance(statement, parser, tokens, index)
-            return parser.feed_eof()
-        except UnexpectedToken as error:
-            wrong: Token = error.token
-            problems.append(_unexpected(source, wrong, parser.accepts()))
-            if wrong.type == "$END":
+            return parser.finish()
+        except UnexpectedTokenError as error:
+            wrong = error.token
+            problems.append(_unexpected(source, wrong, parser.accepted()))
+            if wrong.type == END:
                 break
             _drop(statement, parser)
             index = _after(statement, tokens, index)
@@ -151,13 +122,13 @@ def _feed(source: Source, tokens: list[Token], problems: list[Diagnostic]) -> Tr
     return None
 
 
-def _advance(statement: _Statement, parser: _Parser, tokens: list[Token], index: int) -> _Statement:
+def _advance(statement: _Statement, parser: Parser, tokens: list[Token], index: int) -> _Statement:
     """The statement that the parser is in, once it took the token before ``index``."""
     token = tokens[index - 1]
     nested = _nested(statement.nested, token, tokens[index - 2])
     if not nested and token.type in ("SEMICOLON", "LBRACE", "RBRACE") and statement.nested == 0:
         return _Statement(index)
-    base = len(parser.parser_state.state_stack) - 1 if statement.base is None else statement.base
+    base = len(parser.states) - 1 if statement.base is None else statement.base
     return _Statement(statement.start, base, nested)
 
 
@@ -168,11 +139,11 @@ def _nested(depth: int, token: Token, before: Token) -> int:
     return 0
 
 
-def _drop(statement: _Statement, parser: _Parser) -> None:
+def _drop(statement: _Statement, parser: Parser) -> None:
     """Take what was read of a statement off the parser's stacks."""
     if statement.base is not None:
-        del parser.parser_state.state_stack[statement.base :]
-        del parser.parser_state.value_stack[statement.base - 1 :]
+        del parser.states[statement.base :]
+        del parser.values[statement.base - 1 :]
 
 
 def _after(statement: _Statement, tokens: list[Token], wrong: int) -> int:
@@ -188,8 +159,8 @@ def _after(statement: _Statement, tokens: list[Token], wrong: int) -> int:
     return len(tokens)
 
 
-def _unexpected(source: Source, token: Token, expected: set[str]) -> Diagnostic:
-    start = token.start_pos or 0
+def _unexpected(source: Source, token: Token, expected: frozenset[str]) -> Diagnostic:
+    start = token.start_pos
     match token.type:
         case "$END":
             end = len(source.text)

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, cast
 
-from lark import Token, Tree
-
 from rosetta_jit.catalogue import proto as say
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
-from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Word
+from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Version, Word
+from rosetta_jit.frontend.lalr import Token, Tree
 from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
 
-Node = Tree[Token]
+Node = Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +30,7 @@ class ValueReader:
 
     source: Source
     problems: list[Diagnostic]
+    version: Version = "proto2"
 
     # Options
 
@@ -133,7 +133,7 @@ class ValueReader:
         return self.at(first).to(self.at(last))
 
     def doc(self, node: Node) -> str:
-        return leading_comment(self.source.text, ends(node)[0].start_pos or 0)
+        return leading_comment(self.source.text, ends(node)[0].start_pos)
 
 
 def all_of(node: Node, *rules: str) -> Iterator[Node]:

@@ -1,0 +1,114 @@
+"""From a grammar in lark's language to the tables that drive our parser, as JSON. Only here lark is imported.
+
+pattern, ignored, words     what tokens match, which of them are left out, and which texts of a kind are another kind
+symbols                     kinds of tokens, and names of rules
+rules                       the fields of each `lalr.Rule`
+states                      for each its actions: `state:symbol,symbol` where one follows, `~rule:symbol` where a rule is complete
+start, end                  the first state, and the one behind the whole text
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from lark import Lark
+from lark.lark import PostLex
+from lark.parsers.lalr_analysis import Shift
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from lark import Token
+    from lark.grammar import Rule, Symbol, Terminal
+
+
+def tables_of(text: str, *, start: str, told: Sequence[str]) -> dict[str, Any]:
+    """The tables of a grammar.
+
+    Parameters
+    ----------
+    text
+        The grammar, as lark reads it.
+    start
+        The rule of a whole text.
+    told
+        Tokens that no rule has, and that are tokens all the same: they stand for mistakes.
+    """
+    made: Any = lark_of(text, start=start, told=told)  # lark types it in part only
+    table = made.parser.parser._parse_table  # noqa: SLF001 - what lark writes into its own files, too
+    rules: list[Rule] = sorted(made.rules, key=lambda rule: (rule.origin.name, rule.order))
+    order = _reached(table.states, table.start_states[start])
+    symbols = sorted({symbol for actions in table.states.values() for symbol in actions})
+    return {
+        **_lexer(made.parser.lexer.lexer),
+        "symbols": symbols,
+        "rules": [_rule(rule) for rule in rules],
+        "states": [_row(table.states[state], order, rules, symbols) for state in order],
+        "start": order[table.start_states[start]],
+        "end": order[table.end_states[start]],
+    }
+
+
+def lark_of(text: str, *, start: str, told: Sequence[str]) -> Lark:
+    """Lark's own parser of the same language."""
+    postlex = _Told(told)
+    return Lark(text, start=start, parser="lalr", lexer="basic", postlex=postlex, propagate_positions=True, maybe_placeholders=False)
+
+
+class _Told(PostLex):
+    """Makes lark keep tokens that no rule has."""
+
+    def __init__(self, always_accept: Sequence[str]) -> None:
+        self.always_accept = always_accept
+
+    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        return stream
+
+
+def _lexer(lexer: Any) -> dict[str, Any]:
+    """One pattern of all tokens, in the order in which they are tried; words that are kinds of their own are told apart behind it."""
+    scanner: Any = lexer.scanner
+    (pattern,) = (each.pattern for each in scanner._mres)  # noqa: SLF001 - lark has no other way to ask
+    words: dict[str, dict[str, str]] = {}
+    for kind, unless in lexer.callback.items():
+        words[kind] = dict(sorted((each.pattern.value, each.name) for each in unless.scanner.terminals))
+    return {"pattern": pattern, "ignored": sorted(lexer.ignore_types), "words": words}
+
+
+def _reached(states: Mapping[Any, Mapping[str, tuple[Any, Any]]], start: Any) -> dict[Any, int]:
+    """The numbers of all states, in the order in which they are reached: the same for each grammar, while lark's are not."""
+    order = {start: 0}
+    pending = [start]
+    for state in pending:
+        for _, (action, argument) in sorted(states[state].items()):
+            if action is Shift and argument not in order:
+                order[argument] = len(order)
+                pending.append(argument)
+    return order
+
+
+def _rule(rule: Rule) -> list[Any]:
+    expansion = rule.expansion
+    kept = [
+        [number, _is_dissolved(part)] for number, part in enumerate(expansion) if rule.options.keep_all_tokens or not _is_left_out(part)
+    ]
+    is_plain = len(kept) == len(expansion) and not any(is_dissolved for _, is_dissolved in kept)
+    is_thin = bool(rule.options.expand1) and rule.alias is None
+    data = rule.alias or rule.options.template_source or rule.origin.name
+    return [str(rule.origin.name), str(data), len(expansion), None if is_plain else kept, is_thin]
+
+
+def _is_left_out(part: Symbol) -> bool:
+    return part.is_term and cast("Terminal", part).filter_out
+
+
+def _is_dissolved(part: Symbol) -> bool:
+    return not part.is_term and part.name.startswith("_")
+
+
+def _row(actions: Mapping[str, tuple[Any, Any]], order: Mapping[Any, int], rules: Sequence[Rule], symbols: Sequence[str]) -> str:
+    numbers = {symbol: number for number, symbol in enumerate(symbols)}
+    grouped: dict[int, list[str]] = {}
+    for symbol, (action, argument) in sorted(actions.items()):
+        grouped.setdefault(order[argument] if action is Shift else ~rules.index(argument), []).append(str(numbers[symbol]))
+    return " ".join(f"{action}:{','.join(listed)}" for action, listed in sorted(grouped.items()))
