@@ -3,8 +3,8 @@
 Beside a grammar `x.lark` lies `x.tables`: what `frontend.tables` makes of it as JSON, under the digest of what it was made from. Where the
 digest is another one, because the grammar was changed, tables are made anew: that is slow, never wrong.
 
-Lark makes the tables and `frontend.lalr` runs them. Lark could do both, but to import it and to read all of its tables takes 45 ms, a fifth of
-what a first compile took; the driver looks at the states that a text leads to, and at no others.
+Lark makes the tables and `frontend.lalr` runs them. Lark could do both, but to import it and to read all of its tables takes 45 ms, a
+fifth of what a first compile took; the driver looks at the states that a text leads to, and at no others.
 """
 
 from __future__ import annotations
