@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Literal
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import UNSHOWN, Lost, Rounding, come_back
 from rosetta_jit.lowering.matching import reads_other, same_number, same_place
-from rosetta_jit.lowering.places import field_names
+from rosetta_jit.lowering.places import field_names, shown_names, shown_place
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
 from rosetta_jit.lowering.roundtrip import Result, Trip, UnfollowedError, Way, ways
-from rosetta_jit.lowering.typed import Access, Const, FieldStep, For, IndexStep, LenOf, Local, When
+from rosetta_jit.lowering.typed import Access, Const, For, IndexStep, LenOf, Local, When
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -137,16 +137,12 @@ def _outcomes(way: Way, second: tuple[Rule, ...], message: Message) -> Iterator[
         yield _shown(result), _outcome(result, trip), result.span
     touched = {field_names(result.place) for result in results}
     for names in untouched(touched, message, message.root, ()):
-        yield "".join(f".{name}" for name in names), Lost("no rule sets it on the way back"), None
+        yield shown_names(names, message), Lost("no rule sets it on the way back"), None
 
 
 def _shown(result: Result) -> str:
-    text = "".join(f".{step.field.name}" if isinstance(step, FieldStep) else _index(step) for step in result.place.steps)
+    text = shown_place(result.place.steps)
     return f"len({text})" if result.is_length else text
-
-
-def _index(step: IndexStep) -> str:
-    return f"[{step.index.value}]" if isinstance(step.index, Const) else "[]"
 
 
 def _outcome(result: Result, trip: Trip) -> Outcome:
