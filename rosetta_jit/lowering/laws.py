@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.lowering.matching import reads_other, same_number, same_place
+from rosetta_jit.lowering.matching import reads_other, same_number
 from rosetta_jit.lowering.places import field_names, shown_names, shown_place
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.lowering.chain import Outcome
     from rosetta_jit.lowering.scope import Message
-    from rosetta_jit.lowering.typed import Expr, Rule
+    from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.source import Span
 
 ORDINARY = (1e-30, 1e30)
@@ -148,7 +148,8 @@ def _shown(result: Result) -> str:
 def _outcome(result: Result, trip: Trip) -> Outcome:
     """What becomes of one field."""
     place, value = result.place, result.value
-    goal: Expr = LenOf(place) if result.is_length else Access(place, place.type)
+    goal = LenOf(place) if result.is_length else Access(place, place.type)
+    value = None if value is None else trip.towards(value, goal)
     match value:
         case None:
             return Lost("it is left out: 0, empty or absent")
@@ -157,7 +158,7 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
-        case _ if same_place(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
+        case _ if trip.is_same(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
             return None
         case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
             return None

@@ -4,6 +4,7 @@ floor_divide(x · c + y, c) = x      modulo(x · c + y, c) = y      where 0 ≤ 
 floor_divide(x, c) · c + modulo(x, c) = x
 nanoseconds(x, y) as x · 10⁹ + y, of which 0 ≤ y < 10⁹ is checked
 seconds(iso8601(x, y)) = x          fraction(iso8601(x, y)) = y
+iso8601(seconds(x), fraction(x)) = iso8601(nanoseconds(x)), and timestamp likewise
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ def simplified(expr: Expr, truths: Mapping[Expr, bool]) -> Expr | None:
             return whole if function == "seconds" else behind
         case TextCall("nanoseconds", (whole, behind)):
             return _whole(bare(whole), bare(behind), SECOND)
+        case TextCall("iso8601" | "timestamp", (whole, behind)):
+            return _moment(expr, bare(whole), bare(behind))
         case Binary("+", left, right):
             return _added(bare(left), bare(right)) or _added(bare(right), bare(left))
         case _:
@@ -75,6 +78,15 @@ def _is_digit(value: Expr, factor: Const, truths: Mapping[Expr, bool]) -> bool:
         if truths.get(below) is False and truths.get(above) is False:
             return True
     return False
+
+
+def _moment(call: TextCall, whole: Expr, behind: Expr) -> Expr | None:
+    """What both parts of one moment make: where they do not fit an int64 of nanoseconds, this is not computed."""
+    match whole, behind:
+        case TextCall("seconds", (moment,)), TextCall("fraction", (other,)) if moment == other:
+            return replace(call, arguments=(TextCall("nanoseconds", (moment,), INT64),))
+        case _:
+            return None
 
 
 def _added(product: Expr, rest: Expr) -> Expr | None:

@@ -99,6 +99,11 @@ def atom(head: str, *arguments: Polynomial) -> Polynomial:
     return _of(Counter({frozenset({(Atom(head, arguments), 1)}): 1}))
 
 
+def product(monomial: Monomial, coefficient: int) -> Polynomial:
+    """A polynomial of one term."""
+    return _of(Counter({monomial: coefficient}))
+
+
 def add(left: Polynomial, right: Polynomial, factor: int = 1) -> Polynomial:
     """``left + factor · right``"""
     terms = Counter(dict(left.terms))
@@ -267,11 +272,12 @@ def _mentions(factor: Atom, name: str) -> bool:
 
 
 def _shown(monomial: Monomial, coefficient: int) -> str:
-    factors = sorted(_shown_atom(factor) + (f"^{power}" if power > 1 else "") for factor, power in monomial)
+    factors = sorted(shown_atom(factor) + (f"^{power}" if power > 1 else "") for factor, power in monomial)
     return "*".join([str(coefficient), *factors] if coefficient != 1 or not factors else factors)
 
 
-def _shown_atom(factor: Atom) -> str:
+def shown_atom(factor: Atom) -> str:
+    """An atom as text."""
     head = factor.head.replace("$", "#")
     if "[]" in head:
         for argument in factor.arguments:

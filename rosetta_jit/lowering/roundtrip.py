@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
-from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify
+from rosetta_jit.lowering.matching import fact, has_local, reads_other, same_number, same_place, same_ranges, unify
+from rosetta_jit.lowering.orders import round_of
 from rosetta_jit.lowering.part_laws import simplified
 from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.lowering.matching import Ranges
+    from rosetta_jit.lowering.quotients import Fact
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
@@ -54,6 +56,9 @@ MAX_WAYS = 64
 
 MAX_LOOKED = 300
 """Rules for one field that are looked at."""
+
+MAX_ORDERED = 1_000
+"""Rules in loops that are compared with other loops."""
 
 Known = tuple[tuple["Expr", bool], ...]
 
@@ -122,6 +127,8 @@ class _Write:
 class Trip:
     """The second direction, run on what one way through the first one leaves."""
 
+    """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops."""
+
     def __init__(self, way: Way) -> None:
         self.writes: dict[tuple[str, ...], list[_Write]] = {}
         for write in _writes(way.rules, ()):
@@ -132,6 +139,8 @@ class Trip:
         for condition, holds in way.known:
             self.know(condition, holds=holds)
         self.refused = False
+        self.by_round = any(has_local(condition) for condition, _ in way.known)
+        self.left = MAX_ORDERED
 
     def know(self, condition: Expr, *, holds: bool) -> None:
         """What follows from a condition."""
@@ -213,7 +222,7 @@ class Trip:
         if isinstance(last, FieldStep) and isinstance(last.field.constant, Literal):
             return Const(last.field.constant.value, place.type)
         names = field_names(place)
-        found = list(self.matching(names, place, length=length))
+        found = list(self.matching(names, place, length=length)) or list(self.ordered(names, place, length=length))
         if len(found) == 1:
             return self.simple(found[0])
         for count in range(len(names) if not found else 0, 0, -1):
@@ -232,6 +241,41 @@ class Trip:
         # Where several loops set such an element, it is the one over the same numbers that sets this.
         mine = [each for each in alike if same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
         yield from (value for _, value in mine)
+
+    def ordered(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
+        """What loops that run in another order set an element to."""
+        side: Side = "wire" if place.side == "holder" else "holder"
+        indices = [step.index for step in place.steps if isinstance(step, IndexStep)]
+        bounds = [each for bounds in self.ranges for each in bounds]
+        if self.by_round or any(reads_other(each, side) for each in (*indices, *bounds)):
+            return
+        facts = self.facts(side)
+        for write in self.writes.get(names, []):
+            if write.is_length == length and self.left > 0:
+                self.left -= 1
+                bound = round_of(write.place, write.ranges, place, self.ranges, facts)
+                if bound is not None:
+                    yield renamed(write.value, bound)
+
+    def facts(self, side: Side) -> list[Fact]:
+        """What lengths and integers of the side that the first direction reads are known to be."""
+        pairs = [(expr, other) for expr, others in self.equal.items() if isinstance(expr, Access | LenOf) for other in others]
+        found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) or has_local(each) for each in pair)]
+        return [each for each in found if each is not None]
+
+    def is_same(self, value: Expr, goal: Access | LenOf) -> bool:
+        """Whether a value is what lies at a place, whatever its indices look like."""
+        side = goal.place.side
+        if reads_other(value, side):
+            return False
+        facts = self.facts(side)
+        return same_place(value, goal, facts) or same_number(value, goal, facts)
+
+    def towards(self, value: Expr, goal: Access | LenOf) -> Expr:
+        """A value, with the place that it is to come back to named as there."""
+        if isinstance(value, Access):
+            return goal if self.is_same(value, goal) else value
+        return rebuilt(value, lambda part: self.towards(part, goal))
 
     @staticmethod
     def alike(write: Place, place: Place, bound: dict[str, Expr]) -> bool:
