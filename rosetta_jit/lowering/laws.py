@@ -147,6 +147,7 @@ def _shown(result: Result) -> str:
 
 def _outcome(result: Result, trip: Trip) -> Outcome:
     """What becomes of one field."""
+    trip.ranges = result.ranges
     place, value = result.place, result.value
     goal = LenOf(place) if result.is_length else Access(place, place.type)
     value = None if value is None else trip.towards(value, goal)

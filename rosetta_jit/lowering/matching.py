@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.polynomial import TooComplexError, polynomial_of
-from rosetta_jit.lowering.quotients import are_same, mentions, only_atom
+from rosetta_jit.lowering.quotients import NOTHING, are_same, mentions, only_atom
 from rosetta_jit.lowering.rebuild import rebuilt
-from rosetta_jit.lowering.typed import Access, Binary, Convert, Has, IndexStep, LenOf, Local
+from rosetta_jit.lowering.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable
 
-    from rosetta_jit.lowering.quotients import Fact
+    from rosetta_jit.lowering.quotients import Digit, Fact, Facts
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Side
 
@@ -76,7 +76,21 @@ def fact(expr: Expr, value: Expr) -> Fact | None:
     return None if atom is None or mentions(known, atom) else (atom, known)
 
 
-def same_number(value: Expr, goal: Expr, facts: Sequence[Fact] = ()) -> bool:
+def digit(above: Expr, truth: Callable[[Expr], bool | None]) -> Digit | None:
+    """That an integer is from 0 to below a constant, if one condition says that it is not beyond, and ``truth`` that it is not below 0."""
+    match above:
+        case Binary(">=", value, Const(int(below))) if isinstance(value.type, Int) and truth(above) is False:
+            if truth(Binary("<", value, Const(0, value.type), BOOL)) is not False:
+                return None
+            try:
+                return polynomial_of(value), below
+            except TooComplexError:
+                return None
+        case _:
+            return None
+
+
+def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
     """Whether two integers are the same where nothing is refused."""
     if not isinstance(value.type, Int) or not isinstance(goal.type, Int):
         return False
@@ -86,7 +100,7 @@ def same_number(value: Expr, goal: Expr, facts: Sequence[Fact] = ()) -> bool:
         return False
 
 
-def same_place(value: Expr, goal: Expr, facts: Sequence[Fact] = ()) -> bool:
+def same_place(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
     """Whether two values lie at one place, whatever its indices look like."""
     if not isinstance(value, Access) or not isinstance(goal, Access) or len(value.place.steps) != len(goal.place.steps):
         return False

@@ -23,11 +23,11 @@ from rosetta_jit.lowering.quotients import are_same
 from rosetta_jit.lowering.typed import INT64, Binary, Const, IndexStep, Local
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from rosetta_jit.lowering.matching import Ranges
     from rosetta_jit.lowering.polynomial import Polynomial
-    from rosetta_jit.lowering.quotients import Fact
+    from rosetta_jit.lowering.quotients import Facts
     from rosetta_jit.lowering.typed import Expr, Place
 
 MAX_LOOPS = 6
@@ -40,7 +40,7 @@ PREFIX = "§"
 """What the numbers of the first loops are called while both are compared."""
 
 
-def round_of(write: Place, ranges: Ranges, read: Place, around: Ranges, facts: Sequence[Fact]) -> dict[str, Expr] | None:
+def round_of(write: Place, ranges: Ranges, read: Place, around: Ranges, facts: Facts) -> dict[str, Expr] | None:
     """The numbers of the loops over ``ranges`` around a rule in the round that sets what is read in loops over ``around``."""
     if not 1 < len(ranges) <= len(around) <= MAX_LOOPS or len(write.steps) != len(read.steps):
         return None
@@ -57,9 +57,7 @@ def _numbers(place: Place) -> list[Polynomial]:
     return [polynomial_of(step.index) for step in place.steps if isinstance(step, IndexStep)]
 
 
-def _round(
-    writes: list[Polynomial], reads: list[Polynomial], ranges: Ranges, around: Ranges, facts: Sequence[Fact]
-) -> dict[str, Expr] | None:
+def _round(writes: list[Polynomial], reads: list[Polynomial], ranges: Ranges, around: Ranges, facts: Facts) -> dict[str, Expr] | None:
     found: dict[str, Expr] = {}
     taken: set[int] = set()
     for number_, range_ in enumerate(ranges):
@@ -85,7 +83,7 @@ def _strides(indices: list[Polynomial], name: str) -> Strides | None:
 
 
 def _alike(
-    strides: Strides, range_: tuple[Expr, Expr], reads: list[Polynomial], around: Ranges, facts: Sequence[Fact]
+    strides: Strides, range_: tuple[Expr, Expr], reads: list[Polynomial], around: Ranges, facts: Facts
 ) -> Iterator[tuple[int, Expr]]:
     """The loops that count as one does, up or down, and its number in terms of theirs."""
     for number_, (start, stop) in enumerate(around):
@@ -101,7 +99,7 @@ def _alike(
             yield number_, Binary("-", last, Local(f"${number_}"), INT64)
 
 
-def _same(left: Expr, right: Expr, facts: Sequence[Fact]) -> bool:
+def _same(left: Expr, right: Expr, facts: Facts) -> bool:
     """Whether two bounds of loops are the same in all rounds."""
     pair = polynomial_of(left), polynomial_of(right)
     return not any(contains(each, f"${number_}") for each in pair for number_ in range(MAX_LOOPS)) and are_same(*pair, facts)

@@ -1,14 +1,15 @@
-"""Integers that are the same where nothing is refused: quotients that leave no remainder are undone.
+"""Integers that are the same where nothing is refused: quotients and remainders are undone.
 
-divide(x · c, c) = x      divide(x, c) · c = x
-
-Both hold of all that is computed, for what leaves a remainder, and a divisor of 0, is refused.
+divide(x · c, c) = x                divide(x, c) · c = x                  what leaves a remainder, and a divisor of 0, is refused
+floor_divide(x · c + y, c) = x      where 0 ≤ y < c is known              modulo(x, c) = x - c · floor_divide(x, c)
+nanoseconds(x, y) = x · 10⁹ + y     of which 0 ≤ y < 10⁹ is checked
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.polynomial import Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
 
 if TYPE_CHECKING:
@@ -19,12 +20,28 @@ if TYPE_CHECKING:
 MAX_KNOWN = 20
 """Numbers that are put in the place of others."""
 
+SECOND = 10**9
+
 Fact = tuple[Atom, Polynomial]
 """What an atom is equal to."""
 
+Digit = tuple[Polynomial, int]
+"""A number that is from 0 to below another."""
 
-def are_same(left: Polynomial, right: Polynomial, facts: Sequence[Fact] = ()) -> bool:
-    """Whether two numbers are the same; ``facts`` say what lengths and fields are known to be.
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What lengths and fields are known to be, and which numbers are digits."""
+
+    equal: tuple[Fact, ...] = ()
+    digits: tuple[Digit, ...] = ()
+
+
+NOTHING = Facts()
+
+
+def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> bool:
+    """Whether two numbers are the same.
 
     Raises
     ------
@@ -32,8 +49,8 @@ def are_same(left: Polynomial, right: Polynomial, facts: Sequence[Fact] = ()) ->
     """
     if left == right:
         return True
-    rest = subtract(_put(left, facts), _put(right, facts))
-    rest = _divided(_divided(rest))
+    rest = subtract(_put(left, facts.equal), _put(right, facts.equal))
+    rest = _reduced(_reduced(rest, facts), facts)
     return _put(rest, list(_products(rest))[:MAX_KNOWN]) == number(0)
 
 
@@ -45,8 +62,8 @@ def mentions(polynomial: Polynomial, atom: Atom) -> bool:
 
 def _put(polynomial: Polynomial, known: Sequence[Fact]) -> Polynomial:
     """A number with what atoms are equal to in their places, one fact after the other."""
-    for atom, value in known[:MAX_KNOWN]:
-        polynomial = _replaced(polynomial, atom, value)
+    for each, value in known[:MAX_KNOWN]:
+        polynomial = _replaced(polynomial, each, value)
     return polynomial
 
 
@@ -62,15 +79,44 @@ def _replaced(polynomial: Polynomial, atom: Atom, value: Polynomial) -> Polynomi
     return result
 
 
-def _divided(polynomial: Polynomial) -> Polynomial:
-    """A number without quotients of products by one of their factors."""
+def _reduced(polynomial: Polynomial, facts: Facts) -> Polynomial:
+    """A number with quotients of what is known, and without remainders."""
     for atom in _atoms(polynomial):
-        match atom:
-            case Atom("divide", (total, divisor)) if (found := _quotient(_divided(total), divisor)) is not None:
-                polynomial = _replaced(polynomial, atom, found)
-            case _:
-                pass
+        found = _known(atom, facts)
+        if found is not None:
+            polynomial = _replaced(polynomial, atom, found)
     return polynomial
+
+
+def _known(atom: Atom, facts: Facts) -> Polynomial | None:
+    """What a quotient, remainder or moment comes to."""
+    match atom:
+        case Atom("divide", (total, divisor)):
+            return _quotient(_reduced(total, facts), divisor)
+        case Atom("floor_divide", (total, divisor)) if (by := divisor.constant() or 0) > 0:
+            return _floored(_reduced(total, facts), by, facts)
+        case Atom("modulo", (total, divisor)) if (by := divisor.constant() or 0) > 0:
+            reduced = _reduced(total, facts)
+            return add(reduced, _floored(reduced, by, facts), -by)
+        case Atom("nanoseconds", (whole, behind)):
+            return _reduced(add(behind, whole, SECOND), facts)
+        case _:
+            return None
+
+
+def _floored(total: Polynomial, by: int, facts: Facts) -> Polynomial:
+    """A number divided by another and rounded down: what is a multiple by itself, and what is less than that not at all."""
+    whole, rest = number(0), number(0)
+    for monomial, coefficient in total.terms:
+        if coefficient % by:
+            rest = add(rest, product(monomial, coefficient))
+        else:
+            whole = add(whole, product(monomial, coefficient // by))
+    known = rest.constant()
+    if known is not None:
+        return add(whole, number(known // by))
+    is_digit = any(digit == rest and below <= by for digit, below in facts.digits)
+    return whole if is_digit else add(whole, _of(Atom("floor_divide", (rest, number(by)))))
 
 
 def _quotient(total: Polynomial, divisor: Polynomial) -> Polynomial | None:

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
-from rosetta_jit.lowering.matching import fact, has_local, reads_other, same_number, same_place, same_ranges, unify
+from rosetta_jit.lowering.matching import digit, fact, has_local, reads_other, same_number, same_place, same_ranges, unify
 from rosetta_jit.lowering.orders import round_of
 from rosetta_jit.lowering.part_laws import simplified
 from rosetta_jit.lowering.places import field_names
+from rosetta_jit.lowering.quotients import Facts
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
 from rosetta_jit.lowering.typed import (
     BOOL,
@@ -46,7 +47,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.lowering.matching import Ranges
-    from rosetta_jit.lowering.quotients import Fact
     from rosetta_jit.lowering.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
@@ -60,7 +60,8 @@ MAX_LOOKED = 300
 MAX_ORDERED = 1_000
 """Rules in loops that are compared with other loops."""
 
-Known = tuple[tuple["Expr", bool], ...]
+Known = tuple[tuple["Expr", bool, "Ranges"], ...]
+"""Conditions, whether they hold, and the loops in all of whose rounds."""
 
 
 class UnfollowedError(Exception):
@@ -95,9 +96,11 @@ def _ways_of(rule: Rule) -> list[Way]:
     match rule:
         case When(condition, then, otherwise):
             blocks = [(condition, True, then), (condition, False, otherwise)]
-            return [Way(((known, holds), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
-        case For(body=body):
-            return [Way(way.known, (replace(rule, body=way.rules),)) for way in ways(body)]
+            return [Way(((known, holds, ()), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
+        case For(_, start, stop, body):
+            found = ways(body)
+            around = [tuple((known, holds, ((start, stop), *ranges)) for known, holds, ranges in way.known) for way in found]
+            return [Way(known, (replace(rule, body=way.rules),)) for known, way in zip(around, found, strict=True)]
         case Reject():
             return []
         case _:
@@ -106,12 +109,13 @@ def _ways_of(rule: Rule) -> list[Way]:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a place has when both directions are done; None where that does not follow."""
+    """What a place has when both directions are done, in loops over ``ranges``; None where that does not follow."""
 
     place: Place
     is_length: bool
     value: Expr | None
     span: Span | None
+    ranges: Ranges
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,50 +138,61 @@ class Trip:
         for write in _writes(way.rules, ()):
             self.writes.setdefault(field_names(write.place), []).append(write)
         self.ranges: Ranges = ()
-        self.truths: dict[Expr, bool] = {}
-        self.equal: dict[Expr, list[Expr]] = {}
-        for condition, holds in way.known:
-            self.know(condition, holds=holds)
+        self.truths: dict[Expr, tuple[bool, Ranges]] = {}
+        self.equal: dict[Expr, list[tuple[Expr, Ranges]]] = {}
+        for condition, holds, ranges in way.known:
+            self.know(condition, ranges, holds=holds)
         self.refused = False
-        self.by_round = any(has_local(condition) for condition, _ in way.known)
+        self.by_round = any(has_local(condition) for condition, _, _ in way.known)
         self.left = MAX_ORDERED
 
-    def know(self, condition: Expr, *, holds: bool) -> None:
-        """What follows from a condition."""
+    def know(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
+        """What follows from a condition, in all rounds of loops over ``ranges``."""
         match condition:
             case Unary("not", operand):
-                self.know(operand, holds=not holds)
+                self.know(operand, ranges, holds=not holds)
             case Binary("and" | "or" as operator, left, right) if (operator == "and") == holds:
-                self.know(left, holds=holds)
-                self.know(right, holds=holds)
-            case Binary("==" | "!=" as operator, left, right) if (operator == "==") == holds:
-                self.equal.setdefault(left, []).append(right)
-                self.equal.setdefault(right, []).append(left)
-                self.truths[replace(condition, operator="==", span=None)] = True
-                self.truths[replace(condition, operator="!=", span=None)] = False
-            case Binary("==" | "!="):
-                self.truths[replace(condition, operator="==", span=None)] = False
-                self.truths[replace(condition, operator="!=", span=None)] = True
-            case Binary("differs", left, right):
-                self.truths[replace(condition, span=None)] = holds
-                if not holds:
-                    self.equal.setdefault(left, []).append(right)
-                    self.equal.setdefault(right, []).append(left)
+                self.know(left, ranges, holds=holds)
+                self.know(right, ranges, holds=holds)
+            case Binary("==" | "!=" as operator, left, right):
+                if (operator == "==") == holds:
+                    self.same(left, right, ranges)
+                self.true(replace(condition, operator="=="), ranges, holds=(operator == "==") == holds)
+                self.true(replace(condition, operator="!="), ranges, holds=(operator == "!=") == holds)
+            case Binary("differs", left, right) if not holds:
+                self.same(left, right, ranges)
+                self.true(condition, ranges, holds=holds)
             case _:
-                self.truths[condition] = holds
+                self.true(condition, ranges, holds=holds)
+
+    def same(self, left: Expr, right: Expr, ranges: Ranges) -> None:
+        self.equal.setdefault(left, []).append((right, ranges))
+        self.equal.setdefault(right, []).append((left, ranges))
+
+    def true(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
+        self.truths[_without_span(condition)] = holds, ranges
+
+    def applies(self, expr: Expr, ranges: Ranges) -> bool:
+        """Whether what is known of each round of some loops is known in this round: where the loops are these."""
+        return not has_local(expr) or same_ranges(ranges, self.ranges[: len(ranges)])
+
+    def truth(self, condition: Expr) -> bool | None:
+        """Whether a condition is known to hold."""
+        holds, ranges = self.truths.get(_without_span(condition), (None, ()))
+        return holds if holds is None or self.applies(condition, ranges) else None
 
     def equal_to(self, expr: Expr) -> list[Expr]:
         """What an expression is known to be equal to."""
-        return self.equal.get(expr, [])
+        return [other for other, ranges in self.equal.get(expr, []) if self.applies(Binary("==", expr, other, BOOL), ranges)]
 
     def run(self, rules: tuple[Rule, ...]) -> Iterator[Result]:
         for rule in rules:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span)
+                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span, self.ranges)
                 case Default(place):
-                    yield Result(place, is_length=False, value=None, span=rule.span)
+                    yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
                 case For(_, start, stop, body):
                     around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
                     yield from self.run(body)
@@ -194,14 +209,14 @@ class Trip:
             case Const(bool(holds)):
                 yield from self.run(then if holds else otherwise)
             case _ if all(isinstance(rule, Reject) for rule in then):
-                self.know(condition, holds=False)
+                self.know(condition, self.ranges, holds=False)
                 yield from self.run(otherwise)
             case _ if otherwise and all(isinstance(rule, Reject) for rule in otherwise):
-                self.know(condition, holds=True)
+                self.know(condition, self.ranges, holds=True)
                 yield from self.run(then)
             case _:
                 for write in _writes((*then, *otherwise), ()):
-                    yield Result(write.place, is_length=False, value=Local("?"), span=None)
+                    yield Result(write.place, is_length=False, value=Local("?"), span=None, ranges=self.ranges)
 
     # --- expressions ---------------------------------------------------------------------------------------------------
 
@@ -257,11 +272,12 @@ class Trip:
                 if bound is not None:
                     yield renamed(write.value, bound)
 
-    def facts(self, side: Side) -> list[Fact]:
-        """What lengths and integers of the side that the first direction reads are known to be."""
-        pairs = [(expr, other) for expr, others in self.equal.items() if isinstance(expr, Access | LenOf) for other in others]
-        found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) or has_local(each) for each in pair)]
-        return [each for each in found if each is not None]
+    def facts(self, side: Side) -> Facts:
+        """What is known of integers of the side that the first direction reads."""
+        pairs = [(expr, other) for expr in self.equal if isinstance(expr, Access | LenOf) for other in self.equal_to(expr)]
+        found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) for each in pair)]
+        digits = [digit(each, self.truth) for each in self.truths if not reads_other(each, side)]
+        return Facts(tuple(each for each in found if each is not None), tuple(each for each in digits if each is not None))
 
     def is_same(self, value: Expr, goal: Access | LenOf) -> bool:
         """Whether a value is what lies at a place, whatever its indices look like."""
@@ -301,7 +317,7 @@ class Trip:
 
     def simple(self, expr: Expr) -> Expr:
         """An expression in place of which something simpler can stand."""
-        known = self.truths.get(replace(expr, span=None)) if isinstance(expr, Binary) else self.truths.get(expr)
+        known = self.truth(expr)
         if known is not None:
             return Const(known, BOOL)
         match expr:
@@ -322,9 +338,9 @@ class Trip:
             case Choice(cases, otherwise):
                 return _decided(cases, otherwise, expr)
             case Convert() | Unary() | Binary():
-                return _itself(expr) or simplified(expr, self.truths) or expr
+                return _itself(expr) or simplified(expr, self.truth) or expr
             case Call() | TextCall():
-                return simplified(expr, self.truths) or expr
+                return simplified(expr, self.truth) or expr
             case _:
                 return expr
 
@@ -385,3 +401,8 @@ def _operand(expr: Expr) -> Expr | None:
             return operand
         case _:
             return None
+
+
+def _without_span(expr: Expr) -> Expr:
+    """An expression that is the same wherever it is written."""
+    return replace(expr, span=None) if isinstance(expr, Binary) else expr

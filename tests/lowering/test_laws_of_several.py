@@ -196,3 +196,100 @@ def test_dates_come_back_as_their_law_says(n, i):
     made(*SPELT).assert_message({"s": spelt}, {"n": n, "i": micros})
     made(*SPELT).assert_holder({"n": n, "i": i})
     made(*WRITTEN).assert_holder({"s": spelt.replace("Z", "+00:00")}, {"n": n, "i": micros})
+
+
+# --- digits --------------------------------------------------------------------------------------------------------------
+
+INT64 = st.integers(-(2**63), 2**63 - 1)
+
+
+@st.composite
+def radices(draw: st.DrawFn) -> list[int]:
+    return draw(st.lists(st.integers(2, 70), min_size=1, max_size=3))
+
+
+def weights(bases: list[int]) -> list[int]:
+    """What each digit counts, the highest first."""
+    return [int(np.prod(bases[number:], dtype=object)) for number in range(len(bases) + 1)]
+
+
+def digits_of(total: int, bases: list[int]) -> list[int]:
+    """The digits of a number, the highest without an end."""
+    found: list[int] = []
+    for base in reversed(bases):
+        total, digit = divmod(total, base)
+        found.insert(0, digit)
+    return [total, *found]
+
+
+@settings(max_examples=25, deadline=None)
+@given(data=st.data(), bases=radices(), shape=st.sampled_from(["sum", "turned", "nested"]))
+def test_digits_become_one_number(data, bases, shape):
+    """`.t <-> .f0 * 3600 + .f1 * 60 + .f2`: exact both ways, and a digit that is none is refused."""
+    names = [f"f{number}" for number in range(len(bases) + 1)]
+    terms = [f".{name} * {weight}" if weight > 1 else f".{name}" for name, weight in zip(names, weights(bases), strict=True)]
+    value = " + ".join(reversed(terms) if shape == "turned" else terms)
+    if shape == "nested":
+        value = f".{names[0]}"
+        for name, base in zip(names[1:], bases, strict=True):
+            value = f"({value}) * {base} + .{name}"
+    both = made(" ".join(f'("{name}" :int64)' for name in names), "required int64 t = 1;", f".t <-> {value}")
+    assert str(both.laws) == "messages: exact inverse\nholders: exact inverse"
+    for _ in range(4):
+        total = data.draw(INT64 | st.integers(-5000, 5000))
+        found = dict(zip(names, digits_of(total, bases), strict=True))
+        both.assert_holder({"t": total}, found)
+        if abs(total) < 2**62:  # what is computed on the way may be larger than the number
+            both.assert_message(found, {"t": total})
+        wrong, digit = data.draw(st.sampled_from([*zip(names[1:], bases, strict=True)]))
+        both.assert_message({**found, wrong: data.draw(st.sampled_from([-1, digit, digit + 1]))}, None)
+
+
+@settings(max_examples=25, deadline=None)
+@given(data=st.data(), base=st.integers(2, 10**9), scale=st.sampled_from([1, 3, 1000]), turned=st.booleans())
+def test_one_number_becomes_digits(data, base, scale, turned):
+    """`.a <-> floor_divide(.t, 1000000)` and `.b <-> int32(modulo(.t, 1000000) * 1000)`."""
+    part = f"modulo(.t, {base})" if scale == 1 else f"modulo(.t, {base}) * {scale}"
+    rules = [f".a <-> floor_divide(.t, {base})", f".b <-> {part}"]
+    both = made('("t" :int64)', "required int64 a = 1; required int64 b = 2;", "\n".join(rules[::-1] if turned else rules))
+    assert str(both.laws) == "messages: exact inverse\nholders: exact inverse"
+    for _ in range(4):
+        total = data.draw(INT64 | st.integers(-5000, 5000))
+        both.assert_message({"t": total}, {"a": total // base, "b": total % base * scale})
+        both.assert_holder({"a": data.draw(st.integers(-(2**33), 2**33)), "b": data.draw(st.integers(0, base - 1)) * scale})
+        with pytest.raises(rj.EncodeError):
+            both.packed({"a": 0, "b": base * scale})
+
+
+def test_what_is_known_of_some_elements_is_not_known_of_all():
+    """The loop that checks ends before the one that sets."""
+    texts = files(
+        '("a" (:list :int64)) ("b" (:list :int))',
+        "repeated int64 t = 1;",
+        """unpack-rules:
+  for i from 0 to CHECKED
+    reject "no digit" when .b[i] < 0 or .b[i] >= 60
+  end
+  len(.t) = len(.b)
+  for i from 0 to len(.b)
+    .t[i] = .a[i] * 60 + .b[i]
+  end
+pack-rules:
+  len(.a) = len(.t)
+  len(.b) = len(.t)
+  for i from 0 to len(.t)
+    .a[i] = floor_divide(.t[i], 60)
+    .b[i] = int32(modulo(.t[i], 60))
+  end
+""",
+    )
+    for checked, lost in (("2", {".a[]", ".b[]", "len(.a)"}), ("len(.b)", {"len(.a)"})):
+        mapping = rj.Decoder(
+            "m.mapping",
+            schema={**texts, "m.mapping": texts["m.mapping"].replace("CHECKED", checked)},
+            encoding="yarp3",
+            backend="interpreter",
+        ).mapping
+        assert mapping is not None
+        assert mapping.laws is not None
+        assert {loss.place for loss in mapping.laws.messages.losses} == lost
