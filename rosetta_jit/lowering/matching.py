@@ -111,7 +111,7 @@ def same_place(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
     )
 
 
-def same_ranges(left: Ranges, right: Ranges) -> bool:
+def same_ranges(left: Ranges, right: Ranges, facts: Facts = NOTHING) -> bool:
     """Whether loops run over the same numbers."""
     pairs = [(a, b) for one, other in zip(left, right, strict=False) for a, b in zip(one, other, strict=True)]
-    return len(left) == len(right) and all(same_number(a, b) for a, b in pairs)
+    return len(left) == len(right) and all(same_number(a, b, facts) for a, b in pairs)

@@ -137,6 +137,9 @@ class Trip:
         self.writes: dict[tuple[str, ...], list[_Write]] = {}
         for write in _writes(way.rules, ()):
             self.writes.setdefault(field_names(write.place), []).append(write)
+        places = [found[0].place for found in self.writes.values()]
+        self.origin: Side = "holder" if places and places[0].side == "wire" else "wire"
+        self.plain: Facts | None = None
         self.ranges: Ranges = ()
         self.truths: dict[Expr, tuple[bool, Ranges]] = {}
         self.equal: dict[Expr, list[tuple[Expr, Ranges]]] = {}
@@ -166,6 +169,7 @@ class Trip:
                 self.true(condition, ranges, holds=holds)
 
     def same(self, left: Expr, right: Expr, ranges: Ranges) -> None:
+        self.plain = None
         self.equal.setdefault(left, []).append((right, ranges))
         self.equal.setdefault(right, []).append((left, ranges))
 
@@ -174,7 +178,7 @@ class Trip:
 
     def applies(self, expr: Expr, ranges: Ranges) -> bool:
         """Whether what is known of each round of some loops is known in this round: where the loops are these."""
-        return not has_local(expr) or same_ranges(ranges, self.ranges[: len(ranges)])
+        return not has_local(expr) or same_ranges(ranges, self.ranges[: len(ranges)], self.always())
 
     def truth(self, condition: Expr) -> bool | None:
         """Whether a condition is known to hold."""
@@ -278,6 +282,14 @@ class Trip:
         found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) for each in pair)]
         digits = [digit(each, self.truth) for each in self.truths if not reads_other(each, side)]
         return Facts(tuple(each for each in found if each is not None), tuple(each for each in digits if each is not None))
+
+    def always(self) -> Facts:
+        """What lengths and integers are known to be whatever the round."""
+        if self.plain is None:
+            pairs = [(expr, other) for expr, others in self.equal.items() if isinstance(expr, Access | LenOf) for other, _ in others]
+            found = [fact(*pair) for pair in pairs if not any(has_local(each) or reads_other(each, self.origin) for each in pair)]
+            self.plain = Facts(tuple(each for each in found if each is not None))
+        return self.plain
 
     def is_same(self, value: Expr, goal: Access | LenOf) -> bool:
         """Whether a value is what lies at a place, whatever its indices look like."""
