@@ -109,7 +109,9 @@ def padded_inside(span: Span | None) -> Diagnostic:
 
 def asked_in_order(span: Span | None) -> Diagnostic:
     """A rejection for elements of arrays that do not lie in one row."""
-    help_ = "write `.a[]`, or a slice of it, in the condition; or write the rejection in a loop: `for i from 0 to len(.a) ... .a[i] ... end`"
+    help_ = (
+        "write `.a[]`, or a slice of it, in the condition; or write the rejection in a loop: `for i from 0 to len(.a) ... .a[i] ... end`"
+    )
     return error("layout-order", "a rejection asks the elements of an array as they lie", span, help_=help_)
 
 

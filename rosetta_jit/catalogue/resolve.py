@@ -168,6 +168,13 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
     )
 
 
+def unlike_names(span: Span | None, name: str, wire: str, holder: str, line: str) -> Diagnostic:
+    """Fields of one name that are not of one kind."""
+    help_ = f"write a rule for it: `{shorten(line)}`" if line else f"write `same names except {shorten(name)}`, and a rule for it"
+    message = f"`{shorten(name)}` is {wire} on the wire and {holder} in the holder: its name alone does not say how it is mapped"
+    return error("unlike-names", message, span, help_=help_)
+
+
 def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
     """A bool or an enum where a number belongs."""
     help_ = f"say that its number is meant: {how.replace('...', written_at(span))}"

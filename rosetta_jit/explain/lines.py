@@ -118,8 +118,9 @@ class Lines:
                     yield from self.lines(otherwise, depth + 1)
             case SameNames():
                 used = self.used(rule)
-                others = [each for each in self.typed.get(span_of(rule.span), ()) if not any(_sets(each, use) for use in used)]
-                yield from (self.line(rule, _same_name(each), depth, [each]) for each in others)
+                found = [each for each in self.typed.get(span_of(rule.span), ()) if not isinstance(each, typed.SetLength)]
+                others = [each for each in found if not any(_sets(each, use) for use in used)]
+                yield from (self.line(rule, _same_name(each), depth, _leaves(each)) for each in others)
                 for use in used:
                     yield self.line(rule, _by_type(use), depth, [], use)
                     yield from self.opened(use, depth)
@@ -221,6 +222,11 @@ def _by_type(use: Use) -> str:
     """A field that `same names` maps by another mapping."""
     target, origin = (shown_fields(each.steps[-1:]) for each in (use.place, use.origin))
     return f"{target} = {origin}"
+
+
+def _leaves(rule: Rule) -> list[Rule]:
+    """The rules that set values, without loops around them."""
+    return [leaf for each in rule.body for leaf in _leaves(each)] if isinstance(rule, typed.For) else [rule]
 
 
 def _same_name(rule: Rule) -> str:

@@ -12,7 +12,7 @@ from rosetta_jit.catalogue import derive as words
 from rosetta_jit.lowering.inverse import condition_in
 from rosetta_jit.lowering.packing import Packing, checks_of
 from rosetta_jit.model.expr import Len
-from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
 
 MAX_CONDITIONS = 8
 """Conditions within each other that choose among fields that are parts of one value."""
@@ -101,6 +101,8 @@ def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
             return (replace(rule, body=_unpacking(body, checked)),)
         case When(then=then, otherwise=otherwise):
             return (replace(rule, then=_unpacking(then, checked), otherwise=_unpacking(otherwise, checked)),)
+        case SameNames():
+            return (replace(rule, both=True),)
         case Arranged(cases=cases):
             return (replace(rule, cases=cases[:1]),)
         case _:

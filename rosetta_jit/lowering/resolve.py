@@ -26,6 +26,7 @@ from rosetta_jit.lowering.lengths_first import lengths_first
 from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
 from rosetta_jit.lowering.places import field_names, places_in
+from rosetta_jit.lowering.same_names import OF_TYPES, rule_for, unlike
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.type_texts import is_textual, type_pieces
@@ -161,8 +162,20 @@ class _Block:
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
-        made = (each for name in wanted for each in self.made(_same_name(name, scope.target, rule.span), scope))
-        return [each for each in made if each is not None]
+        return [each for name in wanted for each in self.same_name(name, rule, scope)]
+
+    def same_name(self, name: str, rule: model.SameNames, scope: Scope) -> list[Rule]:
+        """The rules for one field; what is wrong with them is said once, of the field."""
+        problems: list[Diagnostic] = []
+        tried = replace(scope, problems=problems)
+        rules = elementwise((rule_for(name, rule, scope),), tried, self.broken)
+        found = [made for each in rules for made in self.made(each, tried)]
+        if any(problem.code in OF_TYPES for problem in problems):
+            problem = unlike(name, rule, scope)
+            scope.problems.extend([] if problem is None else [problem])
+            return []
+        scope.problems.extend(problems)
+        return [each for each in found if each is not None]
 
     def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
         """The rules that one of the mapping stands for."""
@@ -275,11 +288,6 @@ def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | N
     block = _Block()
     typed = block.whole(rules, scope)
     return TypedRules(typed, tuple(block.broken))
-
-
-def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
-    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in ("wire" if target == "holder" else "holder", target))
-    return model.Assign(here, there, span)
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
