@@ -103,12 +103,6 @@ def alike_blocks(span: Span | None, place: str) -> Diagnostic:
     )
 
 
-def conditional_parts(span: Span | None) -> Diagnostic:
-    """Fields that are parts of one value, within a condition of an expression."""
-    message = "fields that are parts of one value cannot be chosen within an expression"
-    return error("several-fields", message, span, help_="write a `when` with a relation in each block")
-
-
 def too_many_blocks(span: Span | None, most: int) -> Diagnostic:
     """Conditions in expressions that multiply."""
     message = f"to pack, the conditions in these relations make more than {most} blocks"

@@ -107,6 +107,14 @@ def padded_inside(span: Span | None) -> Diagnostic:
     return error("layout-order", "what has padding cannot be put in another order", span, help_=help_)
 
 
+def asked_in_order(span: Span | None) -> Diagnostic:
+    """A rejection for elements of arrays that do not lie in one row."""
+    help_ = (
+        "write `.a[]`, or a slice of it, in the condition; or write the rejection in a loop: `for i from 0 to len(.a) ... .a[i] ... end`"
+    )
+    return error("layout-order", "a rejection asks the elements of an array as they lie", span, help_=help_)
+
+
 def two_orders(span: Span | None) -> Diagnostic:
     """Several arrays in a rule, one of them in rows or planes."""
     help_ = "write two rules: put the array in its order in one, and compute with its elements in another"

@@ -68,3 +68,9 @@ def no_depth(span: Span | None, name: str, most: int) -> Diagnostic:
 def too_deep(most: int) -> str:
     """Why a message is refused that is within others of its type more often than the mapping allows."""
     return f"more than {most} messages within each other"
+
+
+def many_copies(span: Span | None, most: int) -> Diagnostic:
+    """Mappings whose rules come to too many: each use is a copy of them."""
+    message = f"the mappings that are used have more than {most:,} rules, each counted as often as it is used"
+    return Diagnostic("error", "many-uses", message, span, "here again", help="assign messages of one type as a whole, or nest less deeply")

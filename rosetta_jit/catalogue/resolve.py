@@ -167,6 +167,19 @@ def needs_word(span: Span | None, source: str, target: str, how: str) -> Diagnos
     )
 
 
+def many_defaults(span: Span | None, most: int) -> Diagnostic:
+    """A message of messages within each other whose required fields are too many."""
+    message = f"this has more than {most:,} fields that must be set, those of the messages within it included"
+    return error("many-defaults", message, span, help_="set the fields that matter, or use a mapping for the messages: `via`")
+
+
+def unlike_names(span: Span | None, name: str, wire: str, holder: str, line: str) -> Diagnostic:
+    """Fields of one name that are not of one kind."""
+    help_ = f"write a rule for it: `{shorten(line)}`" if line else f"write `same names except {shorten(name)}`, and a rule for it"
+    message = f"`{shorten(name)}` is {wire} on the wire and {holder} in the holder: its name alone does not say how it is mapped"
+    return error("unlike-names", message, span, help_=help_)
+
+
 def no_number(span: Span | None, source: str, target: str, how: str) -> Diagnostic:
     """A bool or an enum where a number belongs."""
     help_ = f"say that its number is meant: {how.replace('...', written_at(span))}"

@@ -16,13 +16,14 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
 from rosetta_jit.explain.lines import MAX_LINES, Line, Lines
-from rosetta_jit.explain.nodes import names_of, nodes
+from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
 from rosetta_jit.frameworks.base import Readers, installed
 from rosetta_jit.frontend.mapping import parse
 from rosetta_jit.frontend.search import SearchPath
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.check import Checked, check
+from rosetta_jit.lowering.places import shown_fields, shown_names
 from rosetta_jit.lowering.reads import unread, unset
 from rosetta_jit.pipeline import Build
 from rosetta_jit.request import Request
@@ -130,23 +131,19 @@ def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Check
 
 
 def _losses(rules: tuple[Rule, ...], lines: tuple[Line, ...], source: Message, target: Message) -> list[Loss]:
-    ignored = [_path(names_of(node.place)) for node in nodes(rules) if isinstance(node, typed.Ignore)]
-    left = [_path(names_of(node.place)) for node in nodes(rules) if isinstance(node, typed.Default)]
+    ignored = [shown_fields(node.place.steps) for node in nodes(rules) if isinstance(node, typed.Ignore)]
+    left = [shown_fields(node.place.steps) for node in nodes(rules) if isinstance(node, typed.Default)]
     changed: dict[str, list[str]] = defaultdict(list)
     for line in lines:
         for note in (note for note in line.notes if note.lossy):
-            changed[note.text].append(_path(line.sets[0]) if line.sets else f"line {line.line}")
+            changed[note.text].append(shown_names(line.sets[0], target) if line.sets else f"line {line.line}")
     return [
         *(Loss(path, "is not read", meant=True) for path in dict.fromkeys(ignored)),
-        *(Loss(_path(names), "is never read", meant=False) for names in unread(rules, source)),
+        *(Loss(shown_names(names, source), "is never read", meant=False) for names in unread(rules, source)),
         *(Loss(path, "is left at its default", meant=True) for path in dict.fromkeys(left)),
-        *(Loss(_path(names), "is never set", meant=False) for names in unset(rules, target)),
+        *(Loss(shown_names(names, target), "is never set", meant=False) for names in unset(rules, target)),
         *(Loss(", ".join(dict.fromkeys(paths)), text, meant=True) for text, paths in changed.items()),
     ]
-
-
-def _path(names: tuple[str, ...]) -> str:
-    return "".join(f".{name}" for name in names)
 
 
 def _field_names(checked: Checked) -> dict[str, str]:

@@ -7,10 +7,12 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
+from rosetta_jit.explain.nodes import by_span, names_of, nodes, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.inverse_texts import as_written
+from rosetta_jit.lowering.inverse_texts import as_written, for_type
+from rosetta_jit.lowering.places import shown_fields
+from rosetta_jit.model.expr import Member
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.explain.nodes import Key
     from rosetta_jit.lowering.others import Use
     from rosetta_jit.lowering.typed import Place, Rule
-    from rosetta_jit.model.expr import Expr, Side
+    from rosetta_jit.model.expr import Expr, Path, Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.mapping import Rule as Untyped
     from rosetta_jit.source import Span
@@ -116,14 +118,15 @@ class Lines:
                     yield from self.lines(otherwise, depth + 1)
             case SameNames():
                 used = self.used(rule)
-                others = [each for each in self.typed.get(span_of(rule.span), ()) if not any(_sets(each, use) for use in used)]
-                yield from (self.line(rule, _same_name(each), depth, [each]) for each in others)
+                found = [each for each in self.typed.get(span_of(rule.span), ()) if not isinstance(each, typed.SetLength)]
+                others = [each for each in found if not any(_sets(each, use) for use in used)]
+                yield from (self.line(rule, _same_name(each), depth, _leaves(each)) for each in others)
                 for use in used:
                     yield self.line(rule, _by_type(use), depth, [], use)
                     yield from self.opened(use, depth)
             case Assign(place, value, via=via):
                 by = "" if via is None else f' via "{via.mapping}"' + ("" if via.depth is None else f" to depth {via.depth}")
-                yield self.line(rule, self.text(rule.span) or f"{show_expr(place)} = {_expr(value)}{by}", depth)
+                yield self.line(rule, self.text(rule.span) or f"{show_expr(place)} = {_expr(self.made(place, value, rule))}{by}", depth)
                 yield from self.of_used(rule, depth)
             case SetLength(place, value):
                 yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
@@ -159,6 +162,13 @@ class Lines:
         """What the mapping says there; nothing where it says it of both directions."""
         text = "" if span is None else " ".join(span.source.text[span.start : span.end].split())
         return "" if "<->" in text and _within(span, self.written.rules) else text
+
+    def made(self, place: Path, value: Expr, rule: Untyped) -> Expr:
+        """A value as it was made for the type of its place, if a typed rule tells that."""
+        names = "".join(f".{step.name}" for step in place.steps if isinstance(step, Member))
+        assigned = (node for node in nodes(tuple(self.typed.get(span_of(rule.span), ()))) if isinstance(node, typed.Assign))
+        found = next((each.place.type for each in assigned if shown_fields(each.place.steps).endswith(names)), None)
+        return value if found is None else for_type(value, found)
 
     def expr(self, value: Expr) -> str:
         """An expression as it is written, or as it was derived."""
@@ -210,11 +220,16 @@ def _sets(rule: Rule, use: Use) -> bool:
 
 def _by_type(use: Use) -> str:
     """A field that `same names` maps by another mapping."""
-    target, origin = ("".join(f".{name}" for name in names_of(each)[-1:]) for each in (use.place, use.origin))
+    target, origin = (shown_fields(each.steps[-1:]) for each in (use.place, use.origin))
     return f"{target} = {origin}"
 
 
+def _leaves(rule: Rule) -> list[Rule]:
+    """The rules that set values, without loops around them."""
+    return [leaf for each in rule.body for leaf in _leaves(each)] if isinstance(rule, typed.For) else [rule]
+
+
 def _same_name(rule: Rule) -> str:
-    found = next(iter(_names((rule,), "holder")), ())
-    path = "".join(f".{name}" for name in found)
+    found = next(iter(places((rule,), "holder")), None)
+    path = "" if found is None else shown_fields(found.steps)
     return f"{path} = {path}"

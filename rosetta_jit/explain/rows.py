@@ -6,6 +6,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.lowering.places import shown_names
 from rosetta_jit.model.printer import show_expr, show_type, show_way
 from rosetta_jit.model.types import Array, Optional, Struct, Union
 
@@ -23,16 +24,13 @@ MAX_DEPTH = 8
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A field: its names from the message on, its type, and what else its schema says."""
+    """A field: its names from the message on, how mappings name it, its type, and what else its schema says."""
 
     names: tuple[str, ...]
+    path: str
     type: str
     unit: str | None
     notes: tuple[str, ...]
-
-    @property
-    def path(self) -> str:
-        return "".join(f".{name}" for name in self.names)
 
 
 def rows(message: Message) -> tuple[tuple[Row, ...], bool]:
@@ -45,7 +43,7 @@ def _rows(message: Message, struct: Struct | Union, names: tuple[str, ...], arou
     """Depth first; a type within itself is not opened again."""
     for field in struct.fields if isinstance(struct, Struct) else struct.cases:
         here = (*names, field.name)
-        yield Row(here, show_type(message.value_type(field.type)), field.unit, tuple(_notes(field, message)))
+        yield Row(here, shown_names(here, message), show_type(message.value_type(field.type)), field.unit, tuple(_notes(field, message)))
         inner = _inner(message, field.type)
         if isinstance(inner, Struct | Union) and inner.name not in around and len(here) < MAX_DEPTH:
             yield from _rows(message, inner, here, (*around, inner.name))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.layouts import ARGUMENTS
-from rosetta_jit.model.expr import Call, Each, Path, Pick, Slice
+from rosetta_jit.model.expr import Call, Each, Held, Index, Path, Pick, Slice
 from rosetta_jit.model.walk import rebuilt
 
 if TYPE_CHECKING:
@@ -41,6 +42,11 @@ def has_each(expr: Expr) -> bool:
     return isinstance(expr, Path) and any(isinstance(step, Each) for step in expr.steps)
 
 
-def substituted(expr: Expr, known: Mapping[Expr, Expr]) -> Expr:
-    """An expression with others in place of some of its parts."""
-    return known[expr] if expr in known else rebuilt(expr, lambda part: substituted(part, known))
+def substituted(expr: Expr, known: Mapping[Expr, Expr], number: Expr) -> Expr:
+    """An expression with others in place of some of its parts; what each element of an array holds is held by that of the number."""
+    if expr in known:
+        return known[expr]
+    if isinstance(expr, Held) and has_each(expr.place):
+        steps = tuple(Index(number, step.span) if isinstance(step, Each) else step for step in expr.place.steps)
+        expr = replace(expr, place=replace(expr.place, steps=steps))
+    return rebuilt(expr, lambda part: substituted(part, known, number))

@@ -18,7 +18,7 @@ from typing import Literal as OneOf
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import EXACT_BITS, bounds
-from rosetta_jit.lowering.text_laws import inner_text, undone
+from rosetta_jit.lowering.text_laws import inner_text, rounds_moment, undone, why_lost
 from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, TextCall, Unary
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 
@@ -40,6 +40,9 @@ WHOLE = {
     "saturate": "it is rounded to a whole number that fits",
 }
 """What becomes of a float that is made an integer."""
+
+NANOSECOND = 4.6e6
+"""Seconds whose float64, rounded, is off by at most half a nanosecond and what rounding that has added: 0.5000003e-9 · 2^53 and more."""
 
 NEGLIGIBLE = 2.0**-800
 """A floor below that is that of no value of a float32."""
@@ -118,7 +121,8 @@ def come_back(expr: Expr, goal: Expr) -> Outcome:
     while expr != goal:
         inner = _inner(expr)
         if inner is None:
-            return UNSHOWN
+            why = why_lost(expr)
+            return UNSHOWN if why is None else Lost(why)
         steps.append(expr)
         expr = inner
     value = _Value(goal.type, goal.type)
@@ -314,12 +318,19 @@ def _bijection(step: Expr, value: _Value) -> _Value:
     if value.opened and value.is_itself:
         opening, before = value.opened[-1]
         if _undoes(step, opening):
-            return before
+            is_moment = isinstance(step, TextCall) and isinstance(opening, TextCall) and rounds_moment(step, opening)
+            return _timed(before) if is_moment else before
     if isinstance(step, Choice):
         found = table_of(step)
         if found is None:
             raise _LostError(UNSHOWN.why)
     return _Value(step.type, step.type, opened=(*value.opened, (step, value)))
+
+
+def _timed(value: _Value) -> _Value:
+    """A float64 of seconds that is rounded to nanoseconds and put together again: off by at most half of one, and one rounding more."""
+    floor = (value.offset + NANOSECOND) / value.size
+    return replace(value, errors=(*value.errors, _Error(2.0**-53, floor, is_tiny=False)))
 
 
 def _undoes(step: Expr, opening: Expr) -> bool:

@@ -7,31 +7,56 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place
+from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place, TextCall
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.model.types import Field, Schema, Type
     from rosetta_jit.source import Span
 
+MAX_DEFAULTS = 1_000
+"""Fields that one `default` sets: a struct of structs of structs has many."""
+
 MAX_NESTED = 20
 """Structs within each other that are looked into for defaults."""
 
 
+class ManyDefaultsError(Exception):
+    """More than `MAX_DEFAULTS`; never leaves `rosetta_jit.lowering.resolve`."""
+
+
 def default_rules(place: Place, message: Message, span: Span | None) -> list[Rule]:
-    """Assignments of the defaults at and below a place; the rest is left alone."""
+    """Assignments of the defaults at and below a place; the rest is left alone.
+
+    Raises
+    ------
+    ManyDefaultsError
+    """
+    found: list[Rule] = []
+    for rule in _rules(place, message, span):
+        found.append(rule)
+        if len(found) > MAX_DEFAULTS:
+            raise ManyDefaultsError
+    return found
+
+
+def _rules(place: Place, message: Message, span: Span | None) -> Iterator[Rule]:
     last = place.steps[-1]
-    if isinstance(last, FieldStep) and _may_lack(last.field):
-        return [Default(place, span)]
     known = _default(last.field, place, span) if isinstance(last, FieldStep) else None
-    if known is not None:
-        return [known]
-    if isinstance(place.type, Struct) and len(place.steps) < MAX_NESTED and _has_defaults(place.type, message):
-        inner = (_below(place, field, message) for field in place.type.fields if field.constant is None)
-        return [rule for each in inner for rule in default_rules(each, message, span)]
-    return [Default(place, span)]
+    if isinstance(last, FieldStep) and _may_lack(last.field):
+        yield Default(place, span)
+    elif known is not None:
+        yield known
+    elif isinstance(place.type, Struct) and len(place.steps) < MAX_NESTED and _has_defaults(place.type, message):
+        for field in place.type.fields:
+            if field.constant is None:
+                yield from _rules(_below(place, field, message), message, span)
+    else:
+        yield Default(place, span)
 
 
 def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
@@ -50,6 +75,9 @@ def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
             return Assign(place, Const(text, String(), span), span)
         case Bytes(), bytes(data) if _is_text(data):
             return Assign(place, Const(data.decode(), String(), span), span)
+        case Bytes(), bytes(data):
+            characters = Const(data.decode("latin-1"), String(), span), Const("latin-1", String(), span)
+            return Assign(place, TextCall("bytes", characters, Bytes(), span), span)
         case _:
             return None
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.array_parts import has_each, is_many, sources_in
+from rosetta_jit.lowering.array_parts import has_each, is_many, sources_in, substituted
 from rosetta_jit.lowering.conversions import same, widens
 from rosetta_jit.lowering.counts import LayoutError, times
 from rosetta_jit.lowering.layouts import ARGUMENTS, PADDED, view_of
-from rosetta_jit.lowering.moves import Moves
+from rosetta_jit.lowering.moves import Moves, element_of
 from rosetta_jit.lowering.scope import element_type, members_of
 from rosetta_jit.lowering.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
@@ -78,6 +78,8 @@ class _Expansion:
                 return tuple(made for each in assigns for made in self.assign(each, lengths, level))
             case For(body=body):
                 return (replace(rule, body=self.block(body, lengths, level)),)
+            case When(condition, (Reject() as refusal,), ()) if any(map(has_each, parts(condition))):
+                return self.refused(rule, refusal, level)
             case When(then=then, otherwise=otherwise):
                 return (replace(rule, then=self.block(then, lengths, level), otherwise=self.block(otherwise, lengths, level)),)
             case _:
@@ -100,6 +102,22 @@ class _Expansion:
             around = (step.field.name for step in self.scope.base(rule.place.side).steps if isinstance(step, FieldStep))
             self.broken.append((*around, *(step.name for step in rule.place.steps if isinstance(step, Member))))
             return ()
+
+    def refused(self, rule: When, refusal: Reject, level: int) -> tuple[Rule, ...]:
+        """A rejection for what some element has, as a loop."""
+        try:
+            views = {source: view_of(source) for source in dict.fromkeys(sources_in(rule.condition))}
+            name = self.variable(level)
+            elements: dict[Expr, Expr] = {source: element_of(view, Name(name)) for source, view in views.items()}
+            first, *others = (view.total for view in views.values())
+        except LayoutError as error:
+            self.scope.problems.append(error.problem)
+            return ()
+        pieces = tuple(substituted(piece, elements, Name(name)) for piece in refusal.pieces)
+        asked = replace(rule, condition=substituted(rule.condition, elements, Name(name)), then=(replace(refusal, pieces=pieces),))
+        wrong = [When(condition, (Reject(why, rule.span),), (), rule.span) for view in views.values() for condition, why in view.refused]
+        same_lengths = [check for total in others for check in _unless_equal(total, first, rule.span)]
+        return (*wrong, *same_lengths, For(name, Literal(0), first, self.block((asked,), {}, level + 1), rule.span))
 
     def chosen(self, rule: Assign, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         """A choice among arrays, as one rule a case."""

@@ -11,7 +11,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.model.expr import Call, Expr, Held, Index, Len, Name, Path
+from rosetta_jit.model.expr import Call, Each, Expr, Held, Index, Len, Name, Path
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ class Knowledge:
         path = path_of(place)
         for length in range(len(path.steps) - (not isinstance(place, Len)), 0, -1):
             whole = self.values.get(key_of(replace(path, steps=path.steps[:length]), loops)[0])
-            if isinstance(whole, Path) and all(isinstance(step, Index) for step in path.steps[length:]):
+            if isinstance(whole, Path) and all(isinstance(step, Index | Each) for step in path.steps[length:]):
                 rest = with_indices(replace(path, steps=path.steps[length:]), lambda index: self.replaced(index, loops))
                 found = Path(whole.side, (*whole.steps, *rest.steps), path.span)
                 return Len(found, place.span) if isinstance(place, Len) else found

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.lowering.matching import reads_other, same_number, same_place
-from rosetta_jit.lowering.places import field_names
+from rosetta_jit.lowering.matching import reads_other, same_number
+from rosetta_jit.lowering.places import field_names, shown_names, shown_place
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
 from rosetta_jit.lowering.roundtrip import Result, Trip, UnfollowedError, Way, ways
-from rosetta_jit.lowering.typed import Access, Const, FieldStep, For, IndexStep, LenOf, Local, When
+from rosetta_jit.lowering.typed import Access, Const, For, IndexStep, LenOf, Local, When
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.lowering.chain import Outcome
     from rosetta_jit.lowering.scope import Message
-    from rosetta_jit.lowering.typed import Expr, Rule
+    from rosetta_jit.lowering.typed import Rule
     from rosetta_jit.source import Span
 
 ORDINARY = (1e-30, 1e30)
@@ -137,22 +137,20 @@ def _outcomes(way: Way, second: tuple[Rule, ...], message: Message) -> Iterator[
         yield _shown(result), _outcome(result, trip), result.span
     touched = {field_names(result.place) for result in results}
     for names in untouched(touched, message, message.root, ()):
-        yield "".join(f".{name}" for name in names), Lost("no rule sets it on the way back"), None
+        yield shown_names(names, message), Lost("no rule sets it on the way back"), None
 
 
 def _shown(result: Result) -> str:
-    text = "".join(f".{step.field.name}" if isinstance(step, FieldStep) else _index(step) for step in result.place.steps)
+    text = shown_place(result.place.steps)
     return f"len({text})" if result.is_length else text
-
-
-def _index(step: IndexStep) -> str:
-    return f"[{step.index.value}]" if isinstance(step.index, Const) else "[]"
 
 
 def _outcome(result: Result, trip: Trip) -> Outcome:
     """What becomes of one field."""
+    trip.ranges = result.ranges
     place, value = result.place, result.value
-    goal: Expr = LenOf(place) if result.is_length else Access(place, place.type)
+    goal = LenOf(place) if result.is_length else Access(place, place.type)
+    value = None if value is None else trip.towards(value, goal)
     match value:
         case None:
             return Lost("it is left out: 0, empty or absent")
@@ -161,7 +159,7 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
         case Access(other) | LenOf(other) if other.side != place.side:
             is_element = any(isinstance(step, IndexStep) for step in other.steps)
             return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
-        case _ if same_place(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
+        case _ if trip.is_same(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
             return None
         case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
             return None

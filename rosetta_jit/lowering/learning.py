@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.lowering.inverse_parts import part, plain, put_together, rest_of, taken_part
 from rosetta_jit.lowering.knowledge import Beside, Knowledge, Loop, Loops, key_of
-from rosetta_jit.lowering.related import equal_lengths, has_each
+from rosetta_jit.lowering.related import equal_lengths
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation
 from rosetta_jit.model.walk import Field, fields_of, parts, rebuilt
@@ -101,8 +101,6 @@ def _solve_parts(known: Knowledge, rule: Relation, loops: Loops, is_assigned: Ca
         found = part(_with_known(rule.value, unknown, known, loops), place)
     except NoInverseError:
         return False
-    if found.digits and any(map(has_each, (*unknown, rule.place))):
-        return False  # as below
     for setting in found.settings:
         known.setters.setdefault(key_of(setting.place, loops)[0], (rule, setting.value))
         known.learn(setting.place, setting.value, loops)
@@ -134,8 +132,6 @@ def _put_together(known: Knowledge, rule: Relation, other: Relation, loops: Loop
     except NoInverseError:
         return False
     digits = () if digit is None else (digit,)
-    if digits and any(map(has_each, (solution.place, rule.place))):
-        return False  # what is checked would have to be checked of each
     _say(known, rule, solution.place, solution.value, loops)
     known.beside[id(other)] = Beside(other, "holder", digits)
     return True

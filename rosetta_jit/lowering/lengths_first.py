@@ -20,13 +20,17 @@ Array = tuple["Step", ...]
 
 def lengths_first(rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
     """The rules of a block in an order in which they can run."""
+    wanted = {rule.place.steps for rule in rules if isinstance(rule, SetLength)}
+    if not wanted:
+        return rules
+    sizes = {len(steps) for steps in wanted}  # to hash the way to a place is the work here
     first: dict[Array, int] = {}
     early: dict[int, list[Rule]] = {}
     for number, rule in enumerate(rules):
         if isinstance(rule, SetLength) and rule.place.steps in first:
             early.setdefault(first[rule.place.steps], []).append(rule)
         for place in places_in((rule,)):
-            for array in _arrays(place):
+            for array in _arrays(place, sizes):
                 first.setdefault(array, number)
     moved = {id(rule) for found in early.values() for rule in found}
     return tuple(
@@ -34,8 +38,8 @@ def lengths_first(rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
     )
 
 
-def _arrays(place: Place) -> Iterator[Array]:
-    """The arrays that a place is in."""
+def _arrays(place: Place, sizes: set[int]) -> Iterator[Array]:
+    """The arrays that a place is in, of those with so many steps on the way to them."""
     for number, step in enumerate(place.steps):
-        if isinstance(step, IndexStep):
+        if number in sizes and isinstance(step, IndexStep):
             yield place.steps[:number]

@@ -5,11 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.polynomial import TooComplexError, polynomial_of
+from rosetta_jit.lowering.quotients import NOTHING, are_same, mentions, only_atom
 from rosetta_jit.lowering.rebuild import rebuilt
-from rosetta_jit.lowering.typed import Access, Binary, Convert, Has, IndexStep, LenOf, Local
+from rosetta_jit.lowering.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.lowering.quotients import Digit, Fact, Facts
     from rosetta_jit.lowering.typed import Expr, Step
     from rosetta_jit.model.expr import Side
 
@@ -54,28 +58,60 @@ def reads_other(value: Expr, side: Side) -> bool:
     return any(found)
 
 
-def same_number(value: Expr, goal: Expr) -> bool:
-    """Whether two integers are the same in normal form."""
+def has_local(expr: Expr) -> bool:
+    """Whether an expression depends on the round of a loop."""
+    found = [isinstance(expr, Local)]
+    rebuilt(expr, lambda part: found.append(has_local(part)) or part)
+    return any(found)
+
+
+def fact(expr: Expr, value: Expr) -> Fact | None:
+    """That a field or length is a number, for `same_number`."""
+    if not isinstance(expr.type, Int) or not isinstance(value.type, Int):
+        return None
+    try:
+        atom, known = only_atom(polynomial_of(expr)), polynomial_of(value)
+    except TooComplexError:
+        return None
+    return None if atom is None or mentions(known, atom) else (atom, known)
+
+
+def digit(above: Expr, truth: Callable[[Expr], bool | None]) -> Digit | None:
+    """That an integer is from 0 to below a constant, if one condition says that it is not beyond, and ``truth`` that it is not below 0."""
+    match above:
+        case Binary(">=", value, Const(int(below))) if isinstance(value.type, Int) and truth(above) is False:
+            if truth(Binary("<", value, Const(0, value.type), BOOL)) is not False:
+                return None
+            try:
+                return polynomial_of(value), below
+            except TooComplexError:
+                return None
+        case _:
+            return None
+
+
+def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
+    """Whether two integers are the same where nothing is refused."""
     if not isinstance(value.type, Int) or not isinstance(goal.type, Int):
         return False
     try:
-        return polynomial_of(value) == polynomial_of(goal)
+        return are_same(polynomial_of(value), polynomial_of(goal), facts)
     except TooComplexError:
         return False
 
 
-def same_place(value: Expr, goal: Expr) -> bool:
+def same_place(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
     """Whether two values lie at one place, whatever its indices look like."""
     if not isinstance(value, Access) or not isinstance(goal, Access) or len(value.place.steps) != len(goal.place.steps):
         return False
     pairs = zip(value.place.steps, goal.place.steps, strict=True)
     return value.place.side == goal.place.side and all(
-        same_number(one.index, other.index) if isinstance(one, IndexStep) and isinstance(other, IndexStep) else one == other
+        same_number(one.index, other.index, facts) if isinstance(one, IndexStep) and isinstance(other, IndexStep) else one == other
         for one, other in pairs
     )
 
 
-def same_ranges(left: Ranges, right: Ranges) -> bool:
+def same_ranges(left: Ranges, right: Ranges, facts: Facts = NOTHING) -> bool:
     """Whether loops run over the same numbers."""
     pairs = [(a, b) for one, other in zip(left, right, strict=False) for a, b in zip(one, other, strict=True)]
-    return len(left) == len(right) and all(same_number(a, b) for a, b in pairs)
+    return len(left) == len(right) and all(same_number(a, b, facts) for a, b in pairs)

@@ -122,7 +122,7 @@ class Moves:
     def moved(self, indices: dict[Path | Call, list[Expr]], number: Expr, level: int) -> tuple[Rule, ...]:
         """The rule for one element; itself a loop, if its elements are arrays."""
         elements: dict[Expr, Expr] = {source: _element(self.views[source], at) for source, at in indices.items()}
-        value = substituted(self.rule.value, elements)
+        value = substituted(self.rule.value, elements, number)
         rule = replace(self.rule, place=_element(self.target, [number]), value=value)
         return self.expanded(rule, level)
 
@@ -130,6 +130,18 @@ class Moves:
 def _is_short(axis: Axis) -> bool:
     """Whether an axis is a pixel's channels rather than an image's rows."""
     return axis.listed is not None or (isinstance(axis.count, Literal) and int(axis.count.value) <= SHORT)
+
+
+def element_of(view: View, number: Expr) -> Path:
+    """The element of a number, of a view that is in one order.
+
+    Raises
+    ------
+    LayoutError
+    """
+    if len(view.axes) != 1 or view.axes[0].listed is not None:
+        raise LayoutError(words.asked_in_order(view.array.span))
+    return _element(view, [number])
 
 
 def _element(view: View, indices: list[Expr]) -> Path:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.expressions import type_index
-from rosetta_jit.lowering.others import MAX_USES, Use
+from rosetta_jit.lowering.others import MAX_COPIED, MAX_USES, EnoughError, Use
 from rosetta_jit.lowering.scope import Broken, Message, Scope, resolve_path
 from rosetta_jit.lowering.typed import (
     BOOL,
@@ -130,7 +130,11 @@ def _used(
     if depth and (most is None or most > MAX_DEPTH):
         scope.problems.append(words.no_depth(rule.span, mapping.source.name, MAX_DEPTH))
     elif len(others.uses) > MAX_USES:
-        scope.problems.extend([words.many_uses(rule.span, MAX_USES)] if len(others.uses) == MAX_USES + 1 else [])
+        scope.problems.append(words.many_uses(rule.span, MAX_USES))
+        raise EnoughError
+    elif others.copied() > MAX_COPIED:
+        scope.problems.append(words.many_copies(rule.span, MAX_COPIED))
+        raise EnoughError
     elif most is not None and depth > most:
         return _too_deep(most, place, origin, rule.span)
     else:

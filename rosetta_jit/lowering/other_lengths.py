@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.lowering.places import shown_shape
 from rosetta_jit.lowering.reads import places_read
 from rosetta_jit.lowering.typed import Assign, Binary, Const, FieldStep, For, IndexStep, LenOf, Local, Reject, SetLength, When
 from rosetta_jit.model.types import Array, Bytes
@@ -51,7 +52,7 @@ def _reports(place: Place, agreed: Pairs, loops: dict[str, Place]) -> Iterator[D
         if bound is None or bound.side != place.side or bound.steps == array or frozenset((bound.steps, array)) in agreed:
             continue
         if _has_own_length(array):
-            yield words.other_length(place.span, _text(array), _text(bound.steps))
+            yield words.other_length(place.span, shown_shape(array), shown_shape(bound.steps))
 
 
 def _has_own_length(array: Steps) -> bool:
@@ -60,10 +61,6 @@ def _has_own_length(array: Steps) -> bool:
         return False
     field = array[-1].field
     return field.length is None and not (isinstance(field.type, Array | Bytes) and field.type.length is not None)
-
-
-def _text(array: Steps) -> str:
-    return "".join(f".{step.field.name}" if isinstance(step, FieldStep) else "[]" for step in array)
 
 
 def _agreed(rules: tuple[Rule, ...]) -> Iterator[frozenset[Steps]]:

@@ -30,8 +30,16 @@ MAPPING_SUFFIX = ".mapping"
 MAX_MAPPINGS = 64
 """Mappings that one mapping may use, those that they use included."""
 
+
+class EnoughError(Exception):
+    """What is wrong is so large that nothing more is looked at; never leaves `rosetta_jit.lowering.resolve`."""
+
+
 MAX_USES = 1000
 """How often mappings may be used in all: each use is a copy of its rules."""
+
+MAX_COPIED = 10_000
+"""Rules that all uses together copy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +68,11 @@ class Others:
     def named(self, via: Via) -> model.Mapping | None:
         """The mapping of a ``via``; None where it could not be read, which is reported."""
         return self.found.get((self.using[-1], via.mapping))
+
+    def copied(self) -> int:
+        """How many rules the uses so far have."""
+        blocks = [use.mapping.unpack_rules if use.side == "holder" else use.mapping.pack_rules for use in self.uses]
+        return sum(len(block or ()) for block in blocks)
 
     def mappings(self) -> list[model.Mapping]:
         """Each mapping once."""

@@ -110,7 +110,7 @@ class Packing:
             case Arranged():
                 return self.arranged(rule, loops)
             case SameNames(but, span):
-                return (SameNames(tuple(replace(path, side="wire") for path in but), span),)
+                return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True),)
             case Assign() | SetLength():
                 raise AssertionError(rule)
 

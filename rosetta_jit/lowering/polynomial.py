@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
+from rosetta_jit.lowering.places import shown_shape
 from rosetta_jit.lowering.typed import (
     Access,
     Binary,
@@ -98,6 +99,11 @@ def atom(head: str, *arguments: Polynomial) -> Polynomial:
     return _of(Counter({frozenset({(Atom(head, arguments), 1)}): 1}))
 
 
+def product(monomial: Monomial, coefficient: int) -> Polynomial:
+    """A polynomial of one term."""
+    return _of(Counter({monomial: coefficient}))
+
+
 def add(left: Polynomial, right: Polynomial, factor: int = 1) -> Polynomial:
     """``left + factor · right``"""
     terms = Counter(dict(left.terms))
@@ -165,7 +171,7 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Access(place):
             return _field_value(place)
         case LenOf(place):
-            return atom(f"len({_path_shape(place)})", *_indices(place))
+            return atom(f"len({shown_shape(place.steps)})", *_indices(place))
         case Unary("not", operand):
             return atom("not", polynomial_of(operand))
         case Unary(operand=operand):
@@ -180,11 +186,11 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
         case IsText(place, text):
-            return atom(f"{_path_shape(place)} == {text!r}", *_indices(place))
+            return atom(f"{shown_shape(place.steps)} == {text!r}", *_indices(place))
         case Has(place):
-            return atom(f"has {_path_shape(place)}", *_indices(place))
+            return atom(f"has {shown_shape(place.steps)}", *_indices(place))
         case Search(place, _, condition):
-            return atom(f"in {_path_shape(place)}", *_indices(place), polynomial_of(condition))
+            return atom(f"in {shown_shape(place.steps)}", *_indices(place), polynomial_of(condition))
         case Choice() | Listed() | Given():
             return _chosen(expr)
         case Const(value=value):
@@ -238,11 +244,7 @@ def _field_value(place: Place) -> Polynomial:
         case FieldStep(field) if isinstance(field.constant, Literal) and type(field.constant.value) is int:
             return number(field.constant.value)
         case _:
-            return atom(_path_shape(place), *_indices(place))
-
-
-def _path_shape(place: Place) -> str:
-    return "".join(f".{step.field.name}" if isinstance(step, FieldStep) else "[]" for step in place.steps)
+            return atom(shown_shape(place.steps), *_indices(place))
 
 
 def _indices(place: Place) -> list[Polynomial]:
@@ -270,11 +272,12 @@ def _mentions(factor: Atom, name: str) -> bool:
 
 
 def _shown(monomial: Monomial, coefficient: int) -> str:
-    factors = sorted(_shown_atom(factor) + (f"^{power}" if power > 1 else "") for factor, power in monomial)
+    factors = sorted(shown_atom(factor) + (f"^{power}" if power > 1 else "") for factor, power in monomial)
     return "*".join([str(coefficient), *factors] if coefficient != 1 or not factors else factors)
 
 
-def _shown_atom(factor: Atom) -> str:
+def shown_atom(factor: Atom) -> str:
+    """An atom as text."""
     head = factor.head.replace("$", "#")
     if "[]" in head:
         for argument in factor.arguments:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.places import field_names, places_in
-from rosetta_jit.model.types import Array, Optional, Struct, Union
+from rosetta_jit.lowering.places import field_names, places_in, shown_names, value_inside
+from rosetta_jit.model.types import Optional, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.lowering.scope import Message
     from rosetta_jit.lowering.typed import Expr, Place, Rule
-    from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.model.types import Field
     from rosetta_jit.source import Span
 
 Names = tuple[str, ...]
@@ -24,8 +24,8 @@ Names = tuple[str, ...]
 def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None]) -> list[Diagnostic]:
     """Warnings about one direction; ``spans`` are where the types of source and target are named."""
     return [
-        *(words.never_read(spans[0], _shown(names)) for names in unread(rules, source)),
-        *(words.left_out(spans[1], _shown(names)) for names in unset(rules, target)),
+        *(words.never_read(spans[0], shown_names(names, source)) for names in unread(rules, source)),
+        *(words.left_out(spans[1], shown_names(names, target)) for names in unset(rules, target)),
     ]
 
 
@@ -40,10 +40,6 @@ def unset(rules: tuple[Rule, ...], target: Message) -> list[Names]:
     return [names for names in untouched(written, target, target.root, ()) if _may_be_absent(names, target)]
 
 
-def _shown(names: Names) -> str:
-    return "".join(f".{name}" for name in names)
-
-
 def untouched(touched: set[Names], message: Message, struct: Struct | Union, prefix: Names) -> list[Names]:
     """The outermost fields of which neither a part nor anything around is ``touched``."""
     found: list[Names] = []
@@ -51,7 +47,7 @@ def untouched(touched: set[Names], message: Message, struct: Struct | Union, pre
         names = (*prefix, each.name)
         if each.constant is not None or names in touched:
             continue
-        inner = _inside(message, each.type)
+        inner = value_inside(message, each.type)
         if not any(other[: len(names)] == names for other in touched):
             found.append(names)
         elif isinstance(inner, Struct | Union):
@@ -59,18 +55,12 @@ def untouched(touched: set[Names], message: Message, struct: Struct | Union, pre
     return found
 
 
-def _inside(message: Message, type_: Type) -> Type:
-    """The type of a value, or of an array's innermost element."""
-    value = message.value_type(type_)
-    return _inside(message, value.element) if isinstance(value, Array) else value
-
-
 def _may_be_absent(names: Names, message: Message) -> bool:
     """Whether a field need not be set: that one must be is an error already."""
     *around, name = names
     struct: Struct | Union = message.root
     for each in around:
-        inner = _inside(message, _field(struct, each).type)
+        inner = value_inside(message, _field(struct, each).type)
         assert isinstance(inner, Struct | Union)
         struct = inner
     last = _field(struct, name)

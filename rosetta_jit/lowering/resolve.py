@@ -15,7 +15,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
-from rosetta_jit.lowering.defaults import default_rules, has_array
+from rosetta_jit.lowering.defaults import MAX_DEFAULTS, ManyDefaultsError, default_rules, has_array
 from rosetta_jit.lowering.elementwise import elementwise
 from rosetta_jit.lowering.expressions import type_expr, type_index, type_integer
 from rosetta_jit.lowering.functions import signatures
@@ -25,7 +25,9 @@ from rosetta_jit.lowering.keyed import numbered
 from rosetta_jit.lowering.lengths_first import lengths_first
 from rosetta_jit.lowering.listed import adapted
 from rosetta_jit.lowering.nested import nest
+from rosetta_jit.lowering.others import EnoughError
 from rosetta_jit.lowering.places import field_names, places_in
+from rosetta_jit.lowering.same_names import OF_TYPES, rule_for, unlike
 from rosetta_jit.lowering.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.lowering.type_images import is_bytes
 from rosetta_jit.lowering.type_texts import is_textual, type_pieces
@@ -110,7 +112,7 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
     try:
         unpack = _block(mapping.unpack_rules, scope)
         pack = _block(mapping.pack_rules, replace(scope, target="wire"))
-    except _EnoughError:
+    except EnoughError:
         return tuple(problems)
     return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
 
@@ -124,10 +126,6 @@ def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagno
     else:
         problems.append(words.not_a_message(span, name))
     return None
-
-
-class _EnoughError(Exception):
-    """More problems than anybody reads; never leaves this module."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,8 +159,20 @@ class _Block:
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
-        made = (each for name in wanted for each in self.made(_same_name(name, scope.target, rule.span), scope))
-        return [each for each in made if each is not None]
+        return [each for name in wanted for each in self.same_name(name, rule, scope)]
+
+    def same_name(self, name: str, rule: model.SameNames, scope: Scope) -> list[Rule]:
+        """The rules for one field; what is wrong with them is said once, of the field."""
+        problems: list[Diagnostic] = []
+        tried = replace(scope, problems=problems)
+        rules = elementwise((rule_for(name, rule, scope),), tried, self.broken)
+        found = [made for each in rules for made in self.made(each, tried)]
+        if any(problem.code in OF_TYPES for problem in problems):
+            problem = unlike(name, rule, scope)
+            scope.problems.extend([] if problem is None else [problem])
+            return []
+        scope.problems.extend(problems)
+        return [each for each in found if each is not None]
 
     def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
         """The rules that one of the mapping stands for."""
@@ -171,11 +181,17 @@ class _Block:
             if nested is not None:
                 return [*nested]
         found = self.rule(rule, scope)
-        return [*default_rules(found.place, scope.messages[scope.target], found.span)] if isinstance(found, Default) else [found]
+        if not isinstance(found, Default):
+            return [found]
+        try:
+            return [*default_rules(found.place, scope.messages[scope.target], found.span)]
+        except ManyDefaultsError:
+            scope.problems.append(words.many_defaults(found.span, MAX_DEFAULTS))
+            return [found]
 
     def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
         if len(scope.problems) >= MAX_PROBLEMS:
-            raise _EnoughError
+            raise EnoughError
         match rule:
             case model.Assign():
                 return self.assign(rule, scope)
@@ -275,11 +291,6 @@ def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | N
     block = _Block()
     typed = block.whole(rules, scope)
     return TypedRules(typed, tuple(block.broken))
-
-
-def _same_name(name: str, target: Side, span: Span | None) -> model.Assign:
-    there, here = (expr.Path(side, (expr.Member(name, span),), span) for side in ("wire" if target == "holder" else "holder", target))
-    return model.Assign(here, there, span)
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import come_back
 from rosetta_jit.lowering.conversions import adapt, same
-from rosetta_jit.lowering.matching import reads_other, same_number, same_ranges, unify
+from rosetta_jit.lowering.matching import digit, fact, has_local, reads_other, same_number, same_place, same_ranges, unify
+from rosetta_jit.lowering.orders import round_of
 from rosetta_jit.lowering.part_laws import simplified
 from rosetta_jit.lowering.places import field_names
+from rosetta_jit.lowering.quotients import Facts
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
 from rosetta_jit.lowering.typed import (
     BOOL,
@@ -55,7 +57,11 @@ MAX_WAYS = 64
 MAX_LOOKED = 300
 """Rules for one field that are looked at."""
 
-Known = tuple[tuple["Expr", bool], ...]
+MAX_ORDERED = 1_000
+"""Rules in loops that are compared with other loops."""
+
+Known = tuple[tuple["Expr", bool, "Ranges"], ...]
+"""Conditions, whether they hold, and the loops in all of whose rounds."""
 
 
 class UnfollowedError(Exception):
@@ -90,9 +96,11 @@ def _ways_of(rule: Rule) -> list[Way]:
     match rule:
         case When(condition, then, otherwise):
             blocks = [(condition, True, then), (condition, False, otherwise)]
-            return [Way(((known, holds), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
-        case For(body=body):
-            return [Way(way.known, (replace(rule, body=way.rules),)) for way in ways(body)]
+            return [Way(((known, holds, ()), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
+        case For(_, start, stop, body):
+            found = ways(body)
+            around = [tuple((known, holds, ((start, stop), *ranges)) for known, holds, ranges in way.known) for way in found]
+            return [Way(known, (replace(rule, body=way.rules),)) for known, way in zip(around, found, strict=True)]
         case Reject():
             return []
         case _:
@@ -101,12 +109,13 @@ def _ways_of(rule: Rule) -> list[Way]:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a place has when both directions are done; None where that does not follow."""
+    """What a place has when both directions are done, in loops over ``ranges``; None where that does not follow."""
 
     place: Place
     is_length: bool
     value: Expr | None
     span: Span | None
+    ranges: Ranges
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,53 +131,72 @@ class _Write:
 class Trip:
     """The second direction, run on what one way through the first one leaves."""
 
+    """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops."""
+
     def __init__(self, way: Way) -> None:
         self.writes: dict[tuple[str, ...], list[_Write]] = {}
         for write in _writes(way.rules, ()):
             self.writes.setdefault(field_names(write.place), []).append(write)
+        places = [found[0].place for found in self.writes.values()]
+        self.origin: Side = "holder" if places and places[0].side == "wire" else "wire"
+        self.plain: Facts | None = None
         self.ranges: Ranges = ()
-        self.truths: dict[Expr, bool] = {}
-        self.equal: dict[Expr, list[Expr]] = {}
-        for condition, holds in way.known:
-            self.know(condition, holds=holds)
+        self.truths: dict[Expr, tuple[bool, Ranges]] = {}
+        self.equal: dict[Expr, list[tuple[Expr, Ranges]]] = {}
+        for condition, holds, ranges in way.known:
+            self.know(condition, ranges, holds=holds)
         self.refused = False
+        self.by_round = any(has_local(condition) for condition, _, _ in way.known)
+        self.left = MAX_ORDERED
 
-    def know(self, condition: Expr, *, holds: bool) -> None:
-        """What follows from a condition."""
+    def know(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
+        """What follows from a condition, in all rounds of loops over ``ranges``."""
         match condition:
             case Unary("not", operand):
-                self.know(operand, holds=not holds)
+                self.know(operand, ranges, holds=not holds)
             case Binary("and" | "or" as operator, left, right) if (operator == "and") == holds:
-                self.know(left, holds=holds)
-                self.know(right, holds=holds)
-            case Binary("==" | "!=" as operator, left, right) if (operator == "==") == holds:
-                self.equal.setdefault(left, []).append(right)
-                self.equal.setdefault(right, []).append(left)
-                self.truths[replace(condition, operator="==", span=None)] = True
-                self.truths[replace(condition, operator="!=", span=None)] = False
-            case Binary("==" | "!="):
-                self.truths[replace(condition, operator="==", span=None)] = False
-                self.truths[replace(condition, operator="!=", span=None)] = True
-            case Binary("differs", left, right):
-                self.truths[replace(condition, span=None)] = holds
-                if not holds:
-                    self.equal.setdefault(left, []).append(right)
-                    self.equal.setdefault(right, []).append(left)
+                self.know(left, ranges, holds=holds)
+                self.know(right, ranges, holds=holds)
+            case Binary("==" | "!=" as operator, left, right):
+                if (operator == "==") == holds:
+                    self.same(left, right, ranges)
+                self.true(replace(condition, operator="=="), ranges, holds=(operator == "==") == holds)
+                self.true(replace(condition, operator="!="), ranges, holds=(operator == "!=") == holds)
+            case Binary("differs", left, right) if not holds:
+                self.same(left, right, ranges)
+                self.true(condition, ranges, holds=holds)
             case _:
-                self.truths[condition] = holds
+                self.true(condition, ranges, holds=holds)
+
+    def same(self, left: Expr, right: Expr, ranges: Ranges) -> None:
+        self.plain = None
+        self.equal.setdefault(left, []).append((right, ranges))
+        self.equal.setdefault(right, []).append((left, ranges))
+
+    def true(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
+        self.truths[_without_span(condition)] = holds, ranges
+
+    def applies(self, expr: Expr, ranges: Ranges) -> bool:
+        """Whether what is known of each round of some loops is known in this round: where the loops are these."""
+        return not has_local(expr) or same_ranges(ranges, self.ranges[: len(ranges)], self.always())
+
+    def truth(self, condition: Expr) -> bool | None:
+        """Whether a condition is known to hold."""
+        holds, ranges = self.truths.get(_without_span(condition), (None, ()))
+        return holds if holds is None or self.applies(condition, ranges) else None
 
     def equal_to(self, expr: Expr) -> list[Expr]:
         """What an expression is known to be equal to."""
-        return self.equal.get(expr, [])
+        return [other for other, ranges in self.equal.get(expr, []) if self.applies(Binary("==", expr, other, BOOL), ranges)]
 
     def run(self, rules: tuple[Rule, ...]) -> Iterator[Result]:
         for rule in rules:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span)
+                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span, self.ranges)
                 case Default(place):
-                    yield Result(place, is_length=False, value=None, span=rule.span)
+                    yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
                 case For(_, start, stop, body):
                     around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
                     yield from self.run(body)
@@ -185,14 +213,14 @@ class Trip:
             case Const(bool(holds)):
                 yield from self.run(then if holds else otherwise)
             case _ if all(isinstance(rule, Reject) for rule in then):
-                self.know(condition, holds=False)
+                self.know(condition, self.ranges, holds=False)
                 yield from self.run(otherwise)
             case _ if otherwise and all(isinstance(rule, Reject) for rule in otherwise):
-                self.know(condition, holds=True)
+                self.know(condition, self.ranges, holds=True)
                 yield from self.run(then)
             case _:
                 for write in _writes((*then, *otherwise), ()):
-                    yield Result(write.place, is_length=False, value=Local("?"), span=None)
+                    yield Result(write.place, is_length=False, value=Local("?"), span=None, ranges=self.ranges)
 
     # --- expressions ---------------------------------------------------------------------------------------------------
 
@@ -213,7 +241,7 @@ class Trip:
         if isinstance(last, FieldStep) and isinstance(last.field.constant, Literal):
             return Const(last.field.constant.value, place.type)
         names = field_names(place)
-        found = list(self.matching(names, place, length=length))
+        found = list(self.matching(names, place, length=length)) or list(self.ordered(names, place, length=length))
         if len(found) == 1:
             return self.simple(found[0])
         for count in range(len(names) if not found else 0, 0, -1):
@@ -232,6 +260,50 @@ class Trip:
         # Where several loops set such an element, it is the one over the same numbers that sets this.
         mine = [each for each in alike if same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
         yield from (value for _, value in mine)
+
+    def ordered(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
+        """What loops that run in another order set an element to."""
+        side: Side = "wire" if place.side == "holder" else "holder"
+        indices = [step.index for step in place.steps if isinstance(step, IndexStep)]
+        bounds = [each for bounds in self.ranges for each in bounds]
+        if self.by_round or any(reads_other(each, side) for each in (*indices, *bounds)):
+            return
+        facts = self.facts(side)
+        for write in self.writes.get(names, []):
+            if write.is_length == length and self.left > 0:
+                self.left -= 1
+                bound = round_of(write.place, write.ranges, place, self.ranges, facts)
+                if bound is not None:
+                    yield renamed(write.value, bound)
+
+    def facts(self, side: Side) -> Facts:
+        """What is known of integers of the side that the first direction reads."""
+        pairs = [(expr, other) for expr in self.equal if isinstance(expr, Access | LenOf) for other in self.equal_to(expr)]
+        found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) for each in pair)]
+        digits = [digit(each, self.truth) for each in self.truths if not reads_other(each, side)]
+        return Facts(tuple(each for each in found if each is not None), tuple(each for each in digits if each is not None))
+
+    def always(self) -> Facts:
+        """What lengths and integers are known to be whatever the round."""
+        if self.plain is None:
+            pairs = [(expr, other) for expr, others in self.equal.items() if isinstance(expr, Access | LenOf) for other, _ in others]
+            found = [fact(*pair) for pair in pairs if not any(has_local(each) or reads_other(each, self.origin) for each in pair)]
+            self.plain = Facts(tuple(each for each in found if each is not None))
+        return self.plain
+
+    def is_same(self, value: Expr, goal: Access | LenOf) -> bool:
+        """Whether a value is what lies at a place, whatever its indices look like."""
+        side = goal.place.side
+        if reads_other(value, side):
+            return False
+        facts = self.facts(side)
+        return same_place(value, goal, facts) or same_number(value, goal, facts)
+
+    def towards(self, value: Expr, goal: Access | LenOf) -> Expr:
+        """A value, with the place that it is to come back to named as there."""
+        if isinstance(value, Access):
+            return goal if self.is_same(value, goal) else value
+        return rebuilt(value, lambda part: self.towards(part, goal))
 
     @staticmethod
     def alike(write: Place, place: Place, bound: dict[str, Expr]) -> bool:
@@ -257,7 +329,7 @@ class Trip:
 
     def simple(self, expr: Expr) -> Expr:
         """An expression in place of which something simpler can stand."""
-        known = self.truths.get(replace(expr, span=None)) if isinstance(expr, Binary) else self.truths.get(expr)
+        known = self.truth(expr)
         if known is not None:
             return Const(known, BOOL)
         match expr:
@@ -278,9 +350,9 @@ class Trip:
             case Choice(cases, otherwise):
                 return _decided(cases, otherwise, expr)
             case Convert() | Unary() | Binary():
-                return _itself(expr) or simplified(expr, self.truths) or expr
+                return _itself(expr) or simplified(expr, self.truth) or expr
             case Call() | TextCall():
-                return simplified(expr, self.truths) or expr
+                return simplified(expr, self.truth) or expr
             case _:
                 return expr
 
@@ -341,3 +413,8 @@ def _operand(expr: Expr) -> Expr | None:
             return operand
         case _:
             return None
+
+
+def _without_span(expr: Expr) -> Expr:
+    """An expression that is the same wherever it is written."""
+    return replace(expr, span=None) if isinstance(expr, Binary) else expr

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Compare, For, If, Local, Select, index
 from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.places import shown_fields
 from rosetta_jit.lowering.rebuild import rebuilt
 from rosetta_jit.lowering.text_values import forgetting
 from rosetta_jit.lowering.writer import block
@@ -26,7 +27,7 @@ def number_in(search: typed.Search, values: Values) -> Expr:
     if not search.required:
         return _looked_for(search, values)
     found = values.of(replace(search, required=False))
-    array = "".join(f".{step.field.name}" for step in search.place.steps if isinstance(step, typed.FieldStep))
+    array = shown_fields(search.place.steps)
     for wrong, what in ((NONE, "has no element"), (SEVERAL, "has more than one element")):
         is_right = Compare("ne", found, index(wrong))
         values.writer.expect(is_right, "index", values.where, f"`{array}` {what} {search.wanted}", line=values.line)

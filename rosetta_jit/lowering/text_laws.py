@@ -11,6 +11,8 @@
 | `integer`, `number`  | `text`               | other spellings of the number are lost              |
 | `nanoseconds`        | `iso8601`            | other spellings of the date are lost                |
 | `until_nul`, `padded`| each other           | what is behind the first NUL is lost                |
+| `timestamp`          | `nanoseconds`        | nanoseconds that a float64 does not tell are lost   |
+| `nanoseconds(x)`     | `timestamp`          | rounded to nanoseconds and to a float64             |
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from rosetta_jit.model.types import Float
 
 SPELLING = "a number is written in one way, however it was spelt"
 DATE = "a date is written in one way, in UTC, however it was spelt"
+MOMENT = "it is rounded to a float64, which tells moments of today to about 240 ns"
 BEHIND_NUL = "what is behind the first NUL is dropped"
 
 LOST = {
@@ -27,6 +30,9 @@ LOST = {
     ("number", "written"): SPELLING,
     ("nanoseconds", "iso8601"): DATE,
     ("seconds", "iso8601"): "it becomes a whole second, in UTC",
+    ("seconds", "timestamp"): "what is behind the point is dropped",
+    ("timestamp", "nanoseconds"): MOMENT,
+    ("timestamp", "seconds"): "large integers are rounded to a float",
     ("until_nul", "padded"): BEHIND_NUL,
     ("padded", "until_nul"): BEHIND_NUL,
 }
@@ -42,9 +48,21 @@ def inner_text(call: TextCall) -> Expr | None:
     return others[0] if len(others) == 1 else None
 
 
+def why_lost(expr: Expr) -> str | None:
+    """Why no part of a value of several comes back, where that is known."""
+    return MOMENT if isinstance(expr, TextCall) and expr.function == "timestamp" else None
+
+
+def rounds_moment(step: TextCall, opening: TextCall) -> bool:
+    """Whether a float64 of seconds was made nanoseconds and is made a float64 again."""
+    return (opening.function, step.function) == ("nanoseconds", "timestamp") and isinstance(opening.arguments[0].type, Float)
+
+
 def undone(step: TextCall, opening: TextCall) -> bool | str:
     """Whether a function gives back what another one was given; else why not, where that is known."""
     pair = (opening.function, step.function)
+    if (step.function == "iso8601" and isinstance(opening.arguments[0].type, Float)) or rounds_moment(step, opening):
+        return rounds_moment(step, opening)
     if pair in LOST:
         return LOST[pair]
     if pair in SAME:

@@ -148,10 +148,14 @@ class Default:
 
 @dataclass(frozen=True, slots=True)
 class SameNames:
-    """``same names except .a, .b``: a field that no other rule sets has the value of the field of its name."""
+    """``same names except .a, .b``: a field that no other rule sets has the value of the field of its name.
+
+    ``both`` is whether it was written for both directions.
+    """
 
     but: tuple[Path, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
+    both: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 import pytest
 
+import rosetta_jit as rj
 from rosetta_jit.cli import main
 from rosetta_jit.explain.content import explanation
 from rosetta_jit.explain.page import as_page
@@ -232,3 +233,60 @@ def test_other_mappings_as_text_page_and_json(capsys):
     assert main(["explain", "--json", "track.mapping"]) == 0
     lines = json.loads(capsys.readouterr().out)["directions"][0]["lines"]
     assert [line["file"] for line in lines[:4]] == ["", "spot.mapping", "spot.mapping", ""]
+
+
+def test_what_depends_on_the_type_of_a_field_is_shown(mapping, tmp_path):
+    mapping()
+    (tmp_path / "w.bottle-schema").write_text('"w" (("at" :double) ("spelt" :string) ("whole" :int64) ("n" :int))')
+    (tmp_path / "s.proto").write_text(
+        'syntax = "proto2"; package s; message S { required int64 secs = 1; required int32 nanos = 2; required int64 ns = 3;'
+        "required string number = 4; required string digits = 5; }"
+    )
+    text = """import "w.bottle-schema"
+import "s.proto"
+data-holder: s.S
+wire-schema: w
+rules:
+  .secs <-> seconds(.at)
+  .nanos <-> int32(fraction(.at))
+  .ns <-> nanoseconds(.spelt)
+  .number <-> text(.whole)
+  .digits <-> text(.n)
+"""
+    (tmp_path / "m.mapping").write_text(text)
+    pack = explanation("m.mapping", encoding="yarp4").directions[1]
+    assert [line.text for line in pack.lines] == [
+        ".at = timestamp(.secs, .nanos)",
+        ".spelt = iso8601(.ns)",
+        ".whole = integer(.number)",
+        ".n = integer(.digits)",
+    ]
+
+
+def test_cases_are_shown_as_rules_name_them(mapping, tmp_path):
+    mapping()
+    (tmp_path / "u.idl").write_text("""module u {
+  union Un switch (long) { case 1: long a; case 2: double n; };
+  @final struct Pair { Un u; long x; };
+  @final struct Same { Un u; long x; };
+};""")
+    text = """import "u.idl"
+data-holder: "u::Pair"
+wire-schema: "u::Same"
+rules:
+  same names except .u
+unpack-rules:
+  .u.n = .u.n + 0.5
+  ignore .u.a
+pack-rules:
+  .u.n = .u.n
+"""
+    (tmp_path / "m.mapping").write_text(text)
+    found = explanation("m.mapping", encoding="cdr")
+    unpack, pack = found.directions
+    assert {each.what for each in (*unpack.losses, *pack.losses)} == {".u.a", ".u._d"}
+    assert ".u.n" in {row.path for row in found.wire.rows}
+    assert "_u." not in as_text(found, width=100)
+    assert "_u." not in as_page(found)
+    laws = rj.check("m.mapping").laws
+    assert [loss.place for loss in laws.messages.losses] == [".u.n", ".u._d", ".u.a"]

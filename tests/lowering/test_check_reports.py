@@ -72,7 +72,17 @@ OF_PIECES = ("many_pieces", "lone_brace", "no_value")
 OF_PROGRAMS = ("missing", "unknown", "needless", "not_given", "not_declared", "does_not_compile", "no_compiler", "no_library")
 """What is given to a program, and what is not installed: test_parameters.py, test_functions.py and test_compressed.py have it."""
 
-OF_SIZES = ("many_mappings", "many_uses", "many_items", "long_list", "mixed_list", "too_many", "too_many_parts")
+OF_SIZES = (
+    "many_copies",
+    "many_defaults",
+    "many_mappings",
+    "many_uses",
+    "many_items",
+    "long_list",
+    "mixed_list",
+    "too_many",
+    "too_many_parts",
+)
 """More than is compiled: `test_what_is_too_large` and test_parameters.py have it."""
 
 OF_WIDE_TEXTS = ("wide_text", "text_length")
@@ -163,6 +173,11 @@ message B { optional B x = 1; optional B y = 2; optional int32 n = 3; }"""
     many = "".join(f'  when .n == {n} .x = .x via "m{n}.mapping" else default .x end\n' for n in range(70))
     others = {f"m{n}.mapping": ended for n in range(70)}
     assert "many-mappings" in reports({"t.proto": schema, **others, "m.mapping": head + many})
+    wide = "  " + "ignore .n " * 29 + "\n"
+    copied = {name: text.replace("  .n = .n\n", "  .n = .n\n" + wide) for name, text in {**doubling, "m11.mapping": ended}.items()}
+    assert reports({"t.proto": schema, **copied})[0] == "many-uses"
+    required = schema.replace("optional", "required")
+    assert reports({"t.proto": required, "m.mapping": f"{head}  default .x default .y ignore .x ignore .y\n"}) == ["many-defaults"] * 2
     units = "t.A:\n" + "  .n: m\n" * 5001
     assert "too-many-units" in reports({"t.proto": schema, "u.units": units, "m.mapping": f'import "u.units"\n{ended}'})
 

@@ -253,6 +253,24 @@ def orders(draw: st.DrawFn) -> Part:
     def permuted(value: Any) -> Any:
         return [value[at + origin] for at in range(0, len(value), size) for origin in order]
 
+    def moved(shape: tuple[int, ...], axes: tuple[int, ...]) -> Callable[[Any], Any]:
+        return lambda value: np.array(value).reshape(shape).transpose(axes).ravel().tolist()
+
+    rows, columns, part = (draw(st.integers(1, 4)) for _ in range(3))
+    fixed = st.lists(DOUBLES, min_size=rows * columns * part, max_size=rows * columns * part)
+    shape = draw(st.sampled_from(["", "transposed", "planar", "interleaved", "turned"]))
+    pixels, planes = moved((-1, columns, part), (1, 0, 2)), moved((columns, -1, part), (1, 0, 2))
+    shaped: dict[str, tuple[str, Any]] = {
+        "transposed": (f"transposed(.NAME, {rows}, {columns}, {part})", moved((rows, columns, part), (1, 0, 2))),
+        "planar": (f"planar(.NAME, {columns}, {part})", lambda value: pixels(value) if value else []),
+        "interleaved": (f"interleaved(.NAME, {columns}, {part})", lambda value: planes(value) if value else []),
+        "turned": (f"reversed(planar(.NAME, {columns}, {part}))", lambda value: pixels(value)[::-1] if value else []),
+    }
+    if shape:
+        text, function = shaped[shape]
+        values = fixed if shape == "transposed" else fixed | st.just([])
+        return Part("(:list :double)", "repeated double", f".NAME <-> {text}", function, values, values)
+
     rule, unpack = draw(
         st.sampled_from(
             [

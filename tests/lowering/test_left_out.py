@@ -106,3 +106,16 @@ def test_defaults_of_required_fields_are_there(backend):
     encode = rj.Encoder("m.mapping", schema=files, encoding="protobuf", backend=backend)
     read = rj.Decoder.of("p.All", schema=files, imports=["p.proto"], encoding="protobuf", backend="interpreter")
     assert read(encode(encode.holder_type.from_dict({"x": 7}))).to_dict() == wanted
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+def test_required_bytes_have_their_default_whatever_they_are(backend):
+    files = {
+        "w.bottle-schema": '"w" (("x" :int))',
+        "h.proto": r'syntax = "proto2"; package h; message H { required bytes d = 1 [default = "\377\000a\200"]; required int32 x = 2; }',
+        "m.mapping": 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: h.H\nwire-schema: w\n'
+        "unpack-rules:\n  default .d\n  .x = .x\n",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="yarp3", backend=backend)
+    write = rj.Encoder.of("w", schema=files, imports=["w.bottle-schema"], encoding="yarp3")
+    assert decode(write(write.holder_type.from_dict({"x": 1}))).d == b"\xff\x00a\x80"
