@@ -11,6 +11,7 @@ import pytest
 import rosetta_jit as rj
 from bench.figures import Spread
 from bench.messages import joints_mapping, repeated, specialised
+from bench.processes import run
 
 COUNT = 10_000
 STATUS = Path("/proc/self/statm")
@@ -40,14 +41,26 @@ def test_holders(decoder, record):
     record("memory of 10,000 holders of 24 angles, each", held(lambda: decoder.into(message, decoder.new()), COUNT), None, "KB")
 
 
-def test_programs(tmp_path, record, effort):
+@pytest.mark.parametrize("how", ["compiled", "from the cache"])
+def test_programs(how, tmp_path, record, effort):
     """Of different mappings: each has code of its own."""
-    numbers = iter(range(30, 30 + 200))
+    count, processes = (20, 1) if effort.quick else (60, 3)
+    cached = how == "from the cache"
 
-    def make():
-        return rj.Decoder(joints_mapping(next(numbers), tmp_path), encoding="yarp3")
+    def each(number):
+        cache = tmp_path / ("cache" if cached else f"cache{number}")
+        return float(run("-m", "bench.decoder_memory", str(tmp_path), str(count), ROSETTA_JIT_CACHE_DIR=str(cache)))
 
-    record("memory of decoders of different mappings, each", held(make, 5 if effort.quick else 40, warm=2), None, "KB", "30 to 70 doubles")
+    if cached:
+        each(0)
+    detail = f"30 to {30 + count} doubles; slope of the private memory, in processes of their own"
+    record(
+        f"memory of decoders of different mappings, {how}, each",
+        Spread.of([each(number) for number in range(processes)]),
+        None,
+        "KB",
+        detail,
+    )
 
 
 def test_a_million_rows(decoder, record, effort):

@@ -24,6 +24,7 @@ from rosetta_jit.backends.llvm_expr import (
 )
 from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm_host import host_called
+from rosetta_jit.backends.llvm_rounds import print_switch, rounds_of
 from rosetta_jit.kernel.ir import (
     BEGIN,
     END,
@@ -118,8 +119,8 @@ def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
     match statement:
         case For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
-        case While(condition, body, _, _):
-            _while(frame, condition, body)
+        case While():
+            _while(frame, statement)
         case If(condition, then, otherwise):
             _if(frame, expression(frame, condition), then, otherwise)
         case Switch(value, cases, default):
@@ -253,14 +254,21 @@ def _for(frame: Frame, variable: str, count: ir.Value, body: Block) -> None:
     builder.position_at_end(behind)
 
 
-def _while(frame: Frame, condition: Expr, body: Block) -> None:
+def _while(frame: Frame, loop: While) -> None:
     builder = frame.builder
     head, inside, behind = frame.block("while"), frame.block("round"), frame.block("after")
     builder.branch(head)
     builder.position_at_end(head)
-    builder.cbranch(expression(frame, condition), inside, behind)
+    builder.cbranch(expression(frame, loop.condition), inside, behind)
     builder.position_at_end(inside)
-    _branch(frame, body, head)
+    rounds = rounds_of(loop)
+    if rounds is None:
+        _branch(frame, loop.body, head)
+    else:
+        end = frame.block("end")
+        print_switch(frame, rounds, end, behind, block)
+        builder.position_at_end(end)
+        _branch(frame, rounds.end, head)
     builder.position_at_end(behind)
 
 

@@ -9,6 +9,7 @@ else is appended to it while its message is being read. So a message notes where
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
@@ -16,7 +17,6 @@ from rosetta_jit.kernel.ir import (
     BEGIN,
     WIDTH,
     Advance,
-    Assign,
     Binary,
     Compare,
     Const,
@@ -34,7 +34,6 @@ from rosetta_jit.kernel.ir import (
     Reserve,
     Select,
     SetField,
-    Switch,
     Used,
     While,
     Wire,
@@ -42,6 +41,7 @@ from rosetta_jit.kernel.ir import (
     index,
     mul,
 )
+from rosetta_jit.lowering.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.unknown import skip_unknown
 from rosetta_jit.lowering.varint import from_varint, read_tag, read_varint, varint_bytes
@@ -51,9 +51,14 @@ from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.wire.codec import Blob, Entry, Number, Path, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosetta_jit.kernel.ir import Stmt
 
-GROUP, END_GROUP = 3, 4
+BYTES, GROUP, END_GROUP = 2, 3, 4
+
+MANY = 64
+"""Fields from which on processors foretell badly where a table of them will jump to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,25 +142,38 @@ def _finish(message: Message) -> None:
 
 
 def _read_field(message: Message, ended: Local | None) -> None:
-    writer, where = message.writer, message.fields.where
+    writer, group = message.writer, message.tagged.group
     begin = writer.position
-    tag = writer.let("tag", Convert("i64", read_tag(writer, where)))
-    after = writer.var("next", writer.position)
-    cases: list[tuple[int, tuple[Stmt, ...]]] = []
-    for entry in message.tagged.entries:
-        for wire in _wires(entry):
-            with writer.nested() as body:
-                _read_entry(message, entry, begin, packed=wire == 2 and entry.wire != 2)
-                writer.assign(after, writer.position)
-            cases.append((entry.number << 3 | wire, block(body)))
-    if ended is not None and message.tagged.group is not None:
-        cases.append((message.tagged.group << 3 | END_GROUP, (Assign(ended.name, Const("bool", value=True)),)))
-    with writer.nested() as unknown:
+    tag = writer.let("tag", Convert("i64", read_tag(writer, message.fields.where)))
+    cases = list(_known_fields(message))
+    if ended is not None and group is not None:
+        cases.append(Case(group << 3 | END_GROUP, partial(writer.assign, ended, Const("bool", value=True))))
+
+    def unknown() -> None:
         skip_unknown(writer, message.fields, tag, message.stop)
         _keep(message, begin)
-        writer.assign(after, writer.position)
-    writer.emit(Switch(tag, tuple(cases), block(unknown)))
-    writer.position = after
+
+    read_cases(writer, tag, cases, unknown, message.fields.where, message.stop)
+
+
+def _known_fields(message: Message) -> Iterator[Case]:
+    """A case for each way in which a field can be written, and what is likely to follow: another element, or the next field."""
+    entries = message.tagged.entries
+    # The proof does not follow where groups and recursive messages end.
+    guesses = message.tagged.group is None and message.depth == index(0)
+    for entry, following in zip(entries, (*entries[1:], None), strict=True):
+        next_tag = _likely_tag(message.tagged, following)
+        for wire in _wires(entry):
+            tag, packed = entry.number << 3 | wire, wire == 2 and entry.wire != 2
+            guess = next_tag if packed or entry.label == "single" else tag
+            yield Case(tag, partial(_read_entry, message, entry, packed=packed), guess if guesses else NONE, is_long=wire in (BYTES, GROUP))
+
+
+def _likely_tag(tagged: Tagged, following: Entry | None) -> int:
+    """The tag of the next field, if it must come, or if fields are so many that a wrong guess costs no more than none."""
+    if following is None or not (following.path[-1] in tagged.required or len(tagged.entries) >= MANY):
+        return NONE
+    return following.number << 3 | (2 if following.label == "packed" else following.wire)
 
 
 def _wires(entry: Entry) -> tuple[int, ...]:
@@ -163,13 +181,13 @@ def _wires(entry: Entry) -> tuple[int, ...]:
     return (entry.wire, 2) if entry.label != "single" and entry.wire in (0, 1, 5) else (entry.wire,)
 
 
-def _read_entry(message: Message, entry: Entry, begin: Expr, *, packed: bool) -> None:
+def _read_entry(message: Message, entry: Entry, *, packed: bool) -> None:
     if packed:
         _read_packed(message, entry)
     elif entry.label == "single":
-        _read_single(message, entry, begin)
+        _read_single(message, entry)
     else:
-        _read_element(message, entry, begin)
+        _read_element(message, entry)
 
 
 def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
@@ -189,8 +207,9 @@ def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
 # --- one value ---------------------------------------------------------------------------------------------------------------
 
 
-def _read_single(message: Message, entry: Entry, begin: Expr) -> None:
+def _read_single(message: Message, entry: Entry) -> None:
     writer, fields, where = message.writer, message.fields, message.fields.shown(entry.path)
+    begin = writer.position
     match entry.value:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
@@ -227,8 +246,8 @@ def _varint_value(message: Message, varint: Varint, slot: Slot, where: Where) ->
     return message.writer.let("value", value if scalar == "bool" else converted(value, scalar))
 
 
-def _if_allowed(message: Message, entry: Entry, value: Local, known: list[Stmt], begin: Expr, tag: bytes = b"") -> None:
-    """A number that a closed enum does not name counts as an unknown field."""
+def _if_allowed(message: Message, entry: Entry, value: Local, known: list[Stmt], begin: Expr) -> None:
+    """A number that a closed enum does not name counts as an unknown field. It begins behind its tag."""
     writer = message.writer
     if not entry.allowed:
         writer.emit(*known)
@@ -242,7 +261,7 @@ def _if_allowed(message: Message, entry: Entry, value: Local, known: list[Stmt],
         for each in entry.allowed[1:]:
             allowed = Binary("or", allowed, Compare("eq", number, index(each)))
     with writer.nested() as unknown:
-        _keep(message, begin, tag)
+        _keep(message, begin, varint_bytes(entry.number << 3))
     writer.emit(If(allowed, block(known), block(unknown)))
 
 
@@ -325,9 +344,9 @@ def _set(fields: HolderFields, path: Path, value: Local) -> None:
 # --- arrays ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_element(message: Message, entry: Entry, begin: Expr) -> None:
+def _read_element(message: Message, entry: Entry) -> None:
     """One more element at the end of its lane."""
-    writer, fields = message.writer, message.fields
+    writer, fields, begin = message.writer, message.fields, message.writer.position
     lane = _lane(fields, entry.path)
     where = fields.shown(entry.path).element(Binary("sub", Used(lane), message.starts[entry.path]))
     match entry.value:
@@ -410,7 +429,7 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
         value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
         with writer.nested() as known:
             _append(message, lane, value)
-        _if_allowed(message, entry, value, known, at, varint_bytes(entry.number << 3))
+        _if_allowed(message, entry, value, known, at)
         writer.expect(Compare("le", writer.position, stop), "truncated", where, "the last number goes beyond the array")
         writer.assign(at, writer.position)
     start = message.starts[entry.path]
