@@ -1,6 +1,7 @@
-"""Fields of a tagged message, which may come in any order, mostly come in that of their numbers: behind each one the next is guessed.
+"""Fields of a tagged message may come in any order, and mostly come in that of their numbers: where the next one must come, it is guessed.
 
-A guess that is right costs a comparison: the tag need not be taken apart, and no table be asked where its field is read.
+A guess that is right costs a comparison: the tag need not be taken apart, and no table be asked where its field is read. One that is wrong
+costs several times what it saves, so that what may be absent is not guessed.
 
     case = tag; goes_on = true
     while goes_on:

@@ -57,9 +57,6 @@ if TYPE_CHECKING:
 
 BYTES, GROUP, END_GROUP = 2, 3, 4
 
-MANY = 64
-"""Fields from which on processors foretell badly where a table of them will jump to."""
-
 
 @dataclass(frozen=True, slots=True)
 class Message:
@@ -170,8 +167,8 @@ def _known_fields(message: Message) -> Iterator[Case]:
 
 
 def _likely_tag(tagged: Tagged, following: Entry | None) -> int:
-    """The tag of the next field, if it must come, or if fields are so many that a wrong guess costs no more than none."""
-    if following is None or not (following.path[-1] in tagged.required or len(tagged.entries) >= MANY):
+    """The tag of the next field, if it must come."""
+    if following is None or following.path[-1] not in tagged.required:
         return NONE
     return following.number << 3 | (2 if following.label == "packed" else following.wire)
 
