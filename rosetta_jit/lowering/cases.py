@@ -5,16 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
-from rosetta_jit.lowering.polynomial import Polynomial
+from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError
 from rosetta_jit.lowering.typed import Const
+from rosetta_jit.lowering.writes import enter
 from rosetta_jit.model.births import selected, selecting
-from rosetta_jit.model.types import Union
+from rosetta_jit.model.types import Field, Union
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.lowering.scope import Message
+    from rosetta_jit.lowering.tiling import Run
     from rosetta_jit.lowering.writes import Write
     from rosetta_jit.model.types import Struct
 
@@ -49,6 +51,20 @@ def contradictions(path: str, struct: Struct, writes: Writes, message: Message) 
                 if value is not None and selected(each.type, value) != number:
                     label = selecting(each.type, message.value_type(teller.type), number)
                     yield words.other_case(write.span, f"{path}.{teller.name}", case.name, (value, label))
+
+
+def contradictions_in_elements(path: str, struct: Struct, writes: list[Write], level: int, message: Message) -> Iterator[Diagnostic]:
+    """The same of elements of an array, of those writes that set parts of the same elements; ``level`` is how many arrays are around it."""
+    elements: dict[Run, dict[str, list[Write]]] = {}
+    for write in writes:
+        try:
+            entered = enter(write, level)
+        except TooComplexError:
+            return  # which is said where elements are counted
+        if entered is not None and isinstance(field := entered[1].steps[0], Field):
+            elements.setdefault(entered[0], {}).setdefault(field.name, []).append(entered[1].below())
+    for parts in elements.values():
+        yield from contradictions(path, struct, parts, message)
 
 
 def _constant(write: Write) -> int | None:

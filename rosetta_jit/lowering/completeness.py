@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.cases import contradictions, implied
+from rosetta_jit.lowering.cases import contradictions, contradictions_in_elements, implied
 from rosetta_jit.lowering.coverage import coverage
 from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.lowering.polynomial import Polynomial, TooComplexError, number
@@ -181,6 +181,7 @@ class _Checker:
         whole = [write for write in writes if len(write.steps) == 1]
         by_field = _by_field(parts, 1)
         told = self.implied(where, struct, by_field, 2)
+        self.problems.extend(contradictions_in_elements(where.element().text, struct, parts, where.level, self.target))
         for field in struct.fields:
             if field.name in told:
                 continue

@@ -190,7 +190,7 @@ def test_times_of_one_direction(backend):
         (".n <-> .i * -10 + .j", "several-fields"),
         (".n <-> .i * .j", "several-fields"),
         (".x <-> .x * 10 + .f", "operand"),
-        (".n <-> .i * 10 + .j if .s == .t else .i", "several-fields"),
+        (".n <-> .i * 10 + .j if .s == .t else .i", "undetermined-field"),
         (".n <-> modulo(.i, 10)", "no-inverse"),
         (".n <-> nanoseconds(.i, .x)", "integer-needed"),
         (".n <-> seconds(.i)", "text-needed"),

@@ -199,3 +199,28 @@ def test_a_union_as_a_whole(backend):
     with pytest.raises(rj.DecodeError) as error:
         rj.Decoder("m.mapping", **options, backend=backend)(data)
     assert (error.value.kind, error.value.path) == ("union", ".u")
+
+
+@pytest.mark.parametrize("block", ["unpack", "pack"])
+@pytest.mark.parametrize(
+    "rules",
+    [
+        "len(.us) = 2\n.us[0]._d = 1\n.us[0].n = .x\n.us[1].a = 1\n.us[1]._d = 1",
+        "len(.us) = 2\n.us[1].a = 1\n.us[1]._d = 1\n.us[0].p.x = .x\n.us[0].p.y = .x\n.us[0]._d = 8",
+        "len(.us) = .x\nfor i from 0 to .x\n.us[i]._d = 1\nend\nfor k from 0 to .x\n.us[k].n = .x\nend",
+        "len(.us) = 1\n.us[0].n = .x\ndefault .us[0]._d",
+    ],
+)
+def test_a_constant_discriminator_of_an_element_that_is_of_another_case(rules, block):
+    with pytest.raises(rj.MappingError) as error:
+        made(f"{rules}\nignore .y", block, "interpreter", "m::Many", x=7, y=5)
+    (problem,) = (each for each in error.value.diagnostics if each.severity == "error")
+    assert problem.code == "other-case"
+    assert "`.us[]._d`" in problem.message
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_elements_of_which_each_has_its_own_case(backend):
+    """Discriminators and cases of other elements contradict nothing."""
+    rules = "len(.us) = 2\n.us[0]._d = 1\n.us[1].n = .x\n.us[0].a = 3\n.us[1]._d = 5\nignore .y"
+    assert made(rules, "unpack", backend, "m::Many", x=7, y=5) == {"us": [{"_d": 1, "a": 3}, {"_d": 5, "n": 7.0}]}
