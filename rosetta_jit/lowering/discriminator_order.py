@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.lowering.discriminators import discriminator_of
-from rosetta_jit.lowering.places import field_names, rules_within
+from rosetta_jit.lowering.places import field_names, rules_within, shown_fields
 from rosetta_jit.lowering.typed import Assign, Const, Default, For, IndexStep, Local, SetLength, When
 from rosetta_jit.model.types import Array, Bool, Map
 
@@ -76,7 +76,7 @@ def _zero(place: Place, span: Span | None) -> Const:
 
 
 def _late(place: Place) -> Diagnostic:
-    return words.late_discriminator(place.span, "".join(f".{name}" for name in field_names(place)))
+    return words.late_discriminator(place.span, shown_fields(place.steps))
 
 
 def _before(rules: tuple[Rule, ...], telling: list[list[Place]], told: Mapping[Names, Told]) -> TopologicalSorter[Node]:
