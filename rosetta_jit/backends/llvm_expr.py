@@ -14,7 +14,6 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm_frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
 from rosetta_jit.kernel.ir import (
-    BEGIN,
     WIDTH,
     Address,
     Binary,
@@ -40,8 +39,8 @@ from rosetta_jit.kernel.ir import (
     Unary,
     Used,
     Wire,
-    type_of,
 )
+from rosetta_jit.kernel.terms import BEGIN, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.llvm_frame import Frame

@@ -13,8 +13,8 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm_expr import expression, pointer
 from rosetta_jit.backends.llvm_frame import I8, I64, LLVM_TYPES, POINTER, intrinsic
-from rosetta_jit.kernel.ir import type_of
 from rosetta_jit.kernel.shape import extents_of
+from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.llvm_frame import Frame

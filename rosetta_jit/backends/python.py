@@ -45,10 +45,10 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
     Wire,
-    type_of,
 )
 from rosetta_jit.kernel.shape import expressions_of, extents_of, subexpressions
 from rosetta_jit.kernel.state import CAPACITY, USED, lane_word
+from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

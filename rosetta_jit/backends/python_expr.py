@@ -36,9 +36,9 @@ from rosetta_jit.kernel.ir import (
     Unary,
     Used,
     Wire,
-    type_of,
 )
 from rosetta_jit.kernel.state import NOW, NUMBER
+from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.backends.base import Namespace

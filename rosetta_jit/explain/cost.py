@@ -17,6 +17,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.counts import count_text, named_counts
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import operands
+from rosetta_jit.kernel.terms import END, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -105,9 +106,9 @@ class _Counter:
             case ir.Var(_, value) | ir.Assign(_, value):
                 return self.value(value)
             case ir.Store(at, value):
-                return _sum((self.place(at), self.value(value), Cost(written=ir.WIDTH[ir.type_of(value)])))
+                return _sum((self.place(at), self.value(value), Cost(written=ir.WIDTH[type_of(value)])))
             case ir.SetField(place, value):
-                return _sum((self.address(place), self.value(value), Cost(written=ir.WIDTH[ir.type_of(value)])))
+                return _sum((self.address(place), self.value(value), Cost(written=ir.WIDTH[type_of(value)])))
             case ir.Copy(target, source, size):
                 return _sum((self.address(target), self.address(source), self.stretch(size, Cost(read=1, written=1))))
             case ir.Fill(target, size):
@@ -177,7 +178,7 @@ class _Counter:
 def _bound(condition: ir.Expr) -> ir.Expr:
     """What a loop counts up to, if it counts."""
     match condition:
-        case ir.Compare("lt", ir.Local(), ir.Local(_, name) as bound) if name != ir.END.name:
+        case ir.Compare("lt", ir.Local(), ir.Local(_, name) as bound) if name != END.name:
             return bound
         case _:
             return condition

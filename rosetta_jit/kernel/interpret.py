@@ -12,8 +12,6 @@ from rosetta_jit.kernel import arithmetic, decimals
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
     GROW,
     WIDTH,
     Advance,
@@ -54,10 +52,10 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
     Wire,
-    type_of,
 )
 from rosetta_jit.kernel.shape import extents_of
 from rosetta_jit.kernel.state import CAPACITY, ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, NOW, NUMBER, USED, lane_word
+from rosetta_jit.kernel.terms import BEGIN, END, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,9 +6,6 @@ from itertools import chain
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     Advance,
     Assign,
     Binary,
@@ -50,6 +47,7 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.state import MAX_INDICES
+from rosetta_jit.kernel.terms import BEGIN, END, ROW
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select, add, index, mul, type_of
+from rosetta_jit.kernel.ir import Binary, Bits, Compare, Comparison, Const, Expr, Fits, Select
+from rosetta_jit.kernel.terms import add, index, mul, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Arithmetic

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel.ir import Fill, For, Local, Place, SetField, add, index
+from rosetta_jit.kernel.ir import Fill, For, Local, Place, SetField
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.fields import member_of
 from rosetta_jit.lowering.places import rules_within

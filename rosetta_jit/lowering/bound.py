@@ -11,7 +11,8 @@ from dataclasses import field, replace
 from typing import Protocol
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire, add, index
+from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Expr, Get, index
+from rosetta_jit.kernel.ir import Expr, Get
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.arithmetic import align, binary
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.writer import integer

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Copy, For, Get, If, Local, Place, Switch, index, mul
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Copy, For, Get, If, Local, Place, Switch
+from rosetta_jit.kernel.terms import index, mul
 from rosetta_jit.lowering.fields import presence_bit
 from rosetta_jit.lowering.rescaling import by_number, change_of_member, rescaled
 from rosetta_jit.lowering.writer import MAX_SIZE, block

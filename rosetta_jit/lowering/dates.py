@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Compare, Convert, If, Select, Unary, add, index, mul
+from rosetta_jit.kernel.ir import Binary, Compare, Convert, If, Select, Unary
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.views import TRUE, View, between, byte_at, has_room, is_between, is_one_of, kept, parameters, put, room, scanning
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 

@@ -12,25 +12,8 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    Binary,
-    Compare,
-    Const,
-    Expect,
-    Expr,
-    Get,
-    If,
-    Local,
-    SetField,
-    Switch,
-    Used,
-    While,
-    add,
-    index,
-    mul,
-)
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.members import store_size
 from rosetta_jit.lowering.recursion import MAX_DEPTH, link

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Assign as Set
-from rosetta_jit.kernel.ir import Const, Expr, Switch, index
+from rosetta_jit.kernel.ir import Const, Expr, Switch
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.places import field_names, places_in
 from rosetta_jit.lowering.scope import element_type
 from rosetta_jit.lowering.typed import FieldStep

@@ -6,7 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, If, Select, add, index, mul
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, If, Select
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.views import TRUE, View, has_room, kept, parameters, put, room, scanning
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 

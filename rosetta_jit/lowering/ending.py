@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import BEGIN, END, WIDTH, Binary, Compare, Convert, Load, Store, add, index
+from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Convert, Load, Store
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.leaves import align
 from rosetta_jit.lowering.writer import MESSAGE, integer
 

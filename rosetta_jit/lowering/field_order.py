@@ -15,7 +15,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import BEGIN, END, Assign, Binary, Compare, Const, Convert, If, Load, Select, Switch, While, add, index
+from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, Convert, If, Load, Select, Switch, While
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import block
 
 if TYPE_CHECKING:

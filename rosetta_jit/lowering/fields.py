@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
-    ROW,
     Advance,
     Binary,
     Compare,
@@ -30,11 +29,8 @@ from rosetta_jit.kernel.ir import (
     Unary,
     Used,
     Wire,
-    add,
-    index,
-    mul,
-    type_of,
 )
+from rosetta_jit.kernel.terms import ROW, add, index, mul, type_of
 from rosetta_jit.lowering.writer import MAX_SIZE, MESSAGE, Where, Writer
 from rosetta_jit.model.layout import UNKNOWN, Layout, Member, Number, Row, Slot, Span, Variant
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Advance, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire, index
+from rosetta_jit.kernel.ir import Advance, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.type_images import MEASURES
 

@@ -25,11 +25,8 @@ from rosetta_jit.kernel.ir import (
     Select,
     Store,
     Wire,
-    add,
-    index,
-    mul,
-    type_of,
 )
+from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.computed import evaluate
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, integer

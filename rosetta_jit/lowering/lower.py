@@ -11,8 +11,9 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import BEGIN, END, ROW, Block, Capacity, Compare, Direction, Fill, Kernel, Return, add, index
+from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Kernel, Return
 from rosetta_jit.kernel.ir import Place as KernelPlace
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
 from rosetta_jit.lowering.bear import bear, opened_lanes, places_left
 from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
 from rosetta_jit.lowering.defaults import has_array

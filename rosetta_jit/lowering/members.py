@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import BEGIN, Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While, add, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While
+from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.writer import Writer, block, integer
 

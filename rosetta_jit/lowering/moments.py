@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select, Unary, add, index, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select, Unary
+from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.lowering.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
 from rosetta_jit.lowering.type_texts import is_textual
 

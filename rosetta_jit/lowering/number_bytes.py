@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Binary, Bits, Compare, Const, Convert, Select, Wire, add, index, type_of
+from rosetta_jit.kernel.ir import WIDTH, Binary, Bits, Compare, Const, Convert, Select, Wire
+from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.fields import scalar_name
 from rosetta_jit.lowering.views import byte_at

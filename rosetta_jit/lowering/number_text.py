@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Fits, If, Nearest, Select, Unary, add, index, mul
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Fits, If, Nearest, Select, Unary
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.number_writing import INFINITE, NAN
 from rosetta_jit.lowering.views import TRUE, Scan, View, between, byte_at, is_between, is_one_of, parameters, scanning, sound, within
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block

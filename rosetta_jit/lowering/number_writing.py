@@ -5,24 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    Binary,
-    Compare,
-    Const,
-    Convert,
-    Digits,
-    Get,
-    If,
-    Place,
-    Scale,
-    Select,
-    Unary,
-    While,
-    add,
-    index,
-    mul,
-    type_of,
-)
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Digits, Get, If, Place, Scale, Select, Unary, While
+from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.views import View, between, has_room, kept, lane_of, put, room
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 

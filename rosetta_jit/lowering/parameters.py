@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import BEGIN, END, Assign, Binary, Compare, Const, If, Local, Select, Switch, While, index
+from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, If, Local, Select, Switch, While
+from rosetta_jit.kernel.terms import BEGIN, END, index
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.members import Seen, if_present, store_size
 from rosetta_jit.lowering.writer import Writer, block, integer

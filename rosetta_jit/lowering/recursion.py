@@ -12,25 +12,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    Advance,
-    Binary,
-    Compare,
-    Const,
-    Expr,
-    Fill,
-    Get,
-    If,
-    Place,
-    Reserve,
-    SetField,
-    Used,
-    While,
-    add,
-    index,
-)
+from rosetta_jit.kernel.ir import Advance, Binary, Compare, Const, Expr, Fill, Get, If, Place, Reserve, SetField, Used, While
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.tagged import Message, read_length, read_message
 from rosetta_jit.lowering.unknown import skip

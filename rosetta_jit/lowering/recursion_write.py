@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
     Binary,
     Capacity,
     Compare,
@@ -28,10 +26,8 @@ from rosetta_jit.kernel.ir import (
     Switch,
     Used,
     While,
-    add,
-    index,
-    mul,
 )
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.recursion import BEGIN_WORD, MORE_WORD, SIZE_WORD, link
 from rosetta_jit.lowering.tagged_write import Lengths, present, write_message, write_tag

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Const, Expect, Failure, If, Site, add
+from rosetta_jit.kernel.ir import Binary, Const, Expect, Failure, If, Site
+from rosetta_jit.kernel.terms import add
 from rosetta_jit.lowering.text_values import forgetting, text_of
 from rosetta_jit.lowering.views import Quoted, Text, joined, sound
 from rosetta_jit.lowering.writer import block

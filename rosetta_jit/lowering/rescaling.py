@@ -6,7 +6,8 @@ from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, index, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If
+from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.conversions import FLOAT64
 from rosetta_jit.lowering.units import scaled

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue.pipeline import endless_copy
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
-from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire, add, index
+from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, Wire
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.bound import NotInPlaceError

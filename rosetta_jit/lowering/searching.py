@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Compare, For, If, Local, Select, index
+from rosetta_jit.kernel.ir import Compare, For, If, Local, Select
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.places import shown_fields
 from rosetta_jit.lowering.rebuild import rebuilt

@@ -8,7 +8,8 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Compare, For, Local, Select, Unary, Used, add, index
+from rosetta_jit.kernel.ir import Binary, Compare, For, Local, Select, Unary, Used
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.text_search import find, parts
 from rosetta_jit.lowering.views import Quoted, View, append, between, lane_of, sound
 from rosetta_jit.lowering.writer import block

@@ -9,25 +9,8 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import (
-    WIDTH,
-    Address,
-    Binary,
-    Compare,
-    Const,
-    Expr,
-    Get,
-    If,
-    Load,
-    Place,
-    Select,
-    SetField,
-    Store,
-    Wire,
-    add,
-    index,
-    mul,
-)
+from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Place, Select, SetField, Store, Wire
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.bear import bear, bear_each
 from rosetta_jit.lowering.bound import EACH, NotInPlaceError
 from rosetta_jit.lowering.discriminators import discriminator_of

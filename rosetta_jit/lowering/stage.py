@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Advance, Fill, Place, Reserve, Used, index
+from rosetta_jit.kernel.ir import Advance, Fill, Place, Reserve, Used
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering.fields import Cell, HolderFields
 from rosetta_jit.model.layout import Lane, Layout, Number, behind
 

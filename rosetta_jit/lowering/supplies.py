@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place, index
+from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.sides import HolderSide, wire_key

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
-    BEGIN,
     WIDTH,
     Advance,
     Binary,
@@ -37,10 +36,8 @@ from rosetta_jit.kernel.ir import (
     Used,
     While,
     Wire,
-    add,
-    index,
-    mul,
 )
+from rosetta_jit.kernel.terms import BEGIN, add, index, mul
 from rosetta_jit.lowering.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.unknown import skip_unknown

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
     WIDTH,
     Assign,
     Binary,
@@ -31,10 +29,8 @@ from rosetta_jit.kernel.ir import (
     Store,
     While,
     Wire,
-    add,
-    index,
-    mul,
 )
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.varint import to_varint, varint_bytes, write_varint
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Const, Copy, Fill, If, Place, Select, While, add, index, mul
+from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Const, Copy, Fill, If, Place, Select, While
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.text_search import find, next_start, parts
 from rosetta_jit.lowering.views import LOST, View, has_room, is_between, kept, lane_of, parameters, put, room, scanning
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block

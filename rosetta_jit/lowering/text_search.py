@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, If, Select, While, add, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, If, Select, While
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.views import (
     TRUE,
     View,

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Place, Unary, Used, Wire, index
+from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Place, Unary, Used, Wire
+from rosetta_jit.kernel.terms import index
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.images import bytes_of

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Get, If, Load, Place, Wire, add, index
+from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Expr, Get, If, Load, Place, Wire
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.writer import block
 
 if TYPE_CHECKING:

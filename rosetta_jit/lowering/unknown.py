@@ -6,8 +6,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
     Assign,
     Binary,
     Capacity,
@@ -24,9 +22,8 @@ from rosetta_jit.kernel.ir import (
     Switch,
     Used,
     While,
-    add,
-    index,
 )
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.varint import read_varint
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 

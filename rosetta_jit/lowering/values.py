@@ -25,10 +25,9 @@ from rosetta_jit.kernel.ir import (
     Scalar,
     Switch,
     Unary,
-    index,
-    type_of,
 )
 from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, differ, divided, floored, others
 from rosetta_jit.lowering.asked import asked

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import BEGIN, END, Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While, add, index, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Load, Local, Select, While
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, type_of
 from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 
 if TYPE_CHECKING:

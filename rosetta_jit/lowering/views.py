@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
     Advance,
     Binary,
     Capacity,
@@ -25,9 +23,8 @@ from rosetta_jit.kernel.ir import (
     Used,
     While,
     Wire,
-    add,
-    index,
 )
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.writer import MESSAGE, block
 
 if TYPE_CHECKING:

@@ -7,23 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.kernel.ir import (
-    Assign,
-    Binary,
-    Compare,
-    Const,
-    Convert,
-    Expect,
-    Expr,
-    For,
-    If,
-    Local,
-    Switch,
-    While,
-    add,
-    index,
-    mul,
-)
+from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, Convert, Expect, Expr, For, If, Local, Switch, While
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering import leaves
 from rosetta_jit.lowering.bound import NotInPlaceError
 from rosetta_jit.lowering.fields import scalar_name

@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import state
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     WIDTH,
     Assign,
     Binary,
@@ -37,11 +34,9 @@ from rosetta_jit.kernel.ir import (
     Stmt,
     Store,
     Var,
-    add,
-    index,
-    type_of,
 )
 from rosetta_jit.kernel.shape import subexpressions
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

@@ -5,9 +5,6 @@ from __future__ import annotations
 import math
 
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     Advance,
     Assign,
     Binary,
@@ -42,10 +39,8 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
     Wire,
-    add,
-    index,
-    mul,
 )
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 
 POS, COUNT, AT, START = (Local("i64", name) for name in ("pos", "count", "i", "start"))
 

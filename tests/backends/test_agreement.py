@@ -7,25 +7,9 @@ import struct
 import numpy as np
 import pytest
 
-from rosetta_jit.kernel.ir import BEGIN as AT
-from rosetta_jit.kernel.ir import (
-    ROW,
-    Binary,
-    Compare,
-    Const,
-    Convert,
-    Expect,
-    Fits,
-    Load,
-    Place,
-    Require,
-    Return,
-    Select,
-    SetField,
-    Unary,
-    add,
-    index,
-)
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expect, Fits, Load, Place, Require, Return, Select, SetField, Unary
+from rosetta_jit.kernel.terms import BEGIN as AT
+from rosetta_jit.kernel.terms import ROW, add, index
 from tests.backends import kernels
 from tests.backends.engines import ENGINES, outcome
 from tests.backends.holders import rows

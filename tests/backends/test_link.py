@@ -8,8 +8,9 @@ from dataclasses import replace
 import pytest
 
 from rosetta_jit.backends.link import SYMBOLS, assembly, compile_program, llvm_text
-from rosetta_jit.kernel.ir import BEGIN, ROW, Binary, Const, Convert, Let, Load, Local, Place, SetField, add
+from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.shape import are_long_and_straight
+from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.runtime import native
 from tests.backends import kernels
 

@@ -9,7 +9,8 @@ import pytest
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.backends.python import compile_python, python_text
-from rosetta_jit.kernel.ir import BEGIN, Let, Local, Require, Return, Site, index
+from rosetta_jit.kernel.ir import Let, Local, Require, Return, Site
+from rosetta_jit.kernel.terms import BEGIN, index
 from tests.backends import kernels
 from tests.backends.engines import outcome
 from tests.backends.holders import rows

@@ -6,8 +6,6 @@ import pytest
 
 from rosetta_jit.explain.cost import Cost, Repeated, cost_of, plus
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    ROW,
     Binary,
     Const,
     Convert,
@@ -30,9 +28,8 @@ from rosetta_jit.kernel.ir import (
     Store,
     Switch,
     Wire,
-    add,
-    index,
 )
+from rosetta_jit.kernel.terms import BEGIN, ROW, add, index
 
 SITES = (Site("grow", "", ""), Site("truncated", "", ""), Site("length", ".angles", "must not be negative"))
 FAIL = Failure(1, BEGIN)

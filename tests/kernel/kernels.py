@@ -6,9 +6,6 @@ import numpy as np
 
 from rosetta_jit.kernel import interpret, ir
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     Advance,
     Assign,
     Binary,
@@ -42,11 +39,9 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
     Wire,
-    add,
-    index,
-    mul,
 )
 from rosetta_jit.kernel.state import CAPACITY, STRIDE, USED, lane_word, state_words
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 
 SITES = (
     Site("grow", "", ""),

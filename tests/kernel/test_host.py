@@ -9,9 +9,6 @@ from rosetta_jit.backends.python import compile_python
 from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.host import RefusedError
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     Advance,
     Binary,
     Capacity,
@@ -31,11 +28,11 @@ from rosetta_jit.kernel.ir import (
     Told,
     Used,
     Wire,
-    index,
 )
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.kernel.state import NOW, NUMBER, STRIDE, state_words
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, index
 from rosetta_jit.kernel.verify import VerificationError, verify
 from rosetta_jit.lowering import passes
 

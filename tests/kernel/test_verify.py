@@ -8,9 +8,6 @@ from random import Random
 import pytest
 
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     Advance,
     Binary,
     Const,
@@ -32,10 +29,8 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
     Wire,
-    add,
-    index,
-    mul,
 )
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from rosetta_jit.kernel.verify import VerificationError, verify
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need

@@ -6,8 +6,6 @@ import pytest
 
 from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    ROW,
     Assign,
     Binary,
     Capacity,
@@ -30,12 +28,10 @@ from rosetta_jit.kernel.ir import (
     Store,
     Var,
     While,
-    add,
-    index,
-    mul,
 )
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.state import ERROR_INDICES
+from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
 from rosetta_jit.kernel.verify import verify
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.passes.bulk import bulk

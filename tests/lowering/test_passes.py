@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel.ir import BEGIN, ROW, Const, Expect, For, If, Let, Load, Local, Place, Require, Return, SetField, add, index, mul
+from rosetta_jit.kernel.ir import Const, Expect, For, If, Let, Load, Local, Place, Require, Return, SetField
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
 from rosetta_jit.kernel.verify import verify
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.passes.drop import drop

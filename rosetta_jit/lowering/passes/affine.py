@@ -6,10 +6,11 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Nearest, Used, add, index, mul
+from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Nearest, Used
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
 from rosetta_jit.kernel.shape import bound_names, operands, statements, subexpressions
+from rosetta_jit.kernel.terms import add, index, mul
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import For

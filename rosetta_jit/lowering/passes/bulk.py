@@ -27,11 +27,9 @@ from rosetta_jit.kernel.ir import (
     SetField,
     Store,
     Wire,
-    index,
-    mul,
-    type_of,
 )
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
+from rosetta_jit.kernel.terms import index, mul, type_of
 from rosetta_jit.lowering.passes.affine import rounds_of
 from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from rosetta_jit.kernel import arithmetic
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, Local, Select, Unary, add, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, Fits, Local, Select, Unary
+from rosetta_jit.kernel.terms import add, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.arithmetic import Value

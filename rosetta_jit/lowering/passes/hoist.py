@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Failure, Fits, For, If, Local, Part, Require, Site, add, index, mul
+from rosetta_jit.kernel.ir import Block, Compare, Const, Expect, Failure, Fits, For, If, Local, Part, Require, Site
 from rosetta_jit.kernel.rewrite import may_return, reads_memory, with_blocks
+from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.lowering.passes.affine import rounds_of
 from rosetta_jit.lowering.passes.fold import TRUE, folded
 from rosetta_jit.lowering.passes.widen import widened

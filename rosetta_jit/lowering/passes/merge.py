@@ -11,10 +11,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Block, Const, Expect, Failure, Part, Require, Site, index
+from rosetta_jit.kernel.ir import Binary, Block, Const, Expect, Failure, Part, Require, Site
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks
 from rosetta_jit.kernel.shape import blocks_of
+from rosetta_jit.kernel.terms import index
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Kernel, Stmt

@@ -12,10 +12,11 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, HostCall, Let, Load, Local, Place, SetField, Store, While, type_of
+from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, HostCall, Let, Load, Local, Place, SetField, Store, While
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import blocks_of, bound_names, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

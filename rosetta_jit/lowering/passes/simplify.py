@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import (
-    BEGIN,
-    END,
-    ROW,
     Assign,
     Block,
     Call,
@@ -30,11 +27,10 @@ from rosetta_jit.kernel.ir import (
     Used,
     Var,
     While,
-    index,
-    type_of,
 )
 from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, type_of
 from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 
 if TYPE_CHECKING:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Binary, Call, Copy, Fill, For, Get, HostCall, IsText, Local, Place, SetField, index, mul
+from rosetta_jit.kernel.ir import Binary, Call, Copy, Fill, For, Get, HostCall, IsText, Local, Place, SetField
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, with_blocks, with_bodies
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.terms import index, mul
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, Fits, add, index, mul, type_of
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Failure, Fits
+from rosetta_jit.kernel.terms import add, index, mul, type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
