@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.lowering.absent import written
 from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
 
@@ -48,22 +49,14 @@ def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
             return Assign(place, Const(float(number), place.type, span), span)
         case ((String() | Bytes()), str(text)):
             return Assign(place, Const(text, String(), span), span)
-        case Bytes(), bytes(data) if _is_text(data):
-            return Assign(place, Const(data.decode(), String(), span), span)
+        case Bytes(), bytes(data):
+            return Assign(place, written(data, span), span)
         case _:
             return None
 
 
 def _may_lack(field: Field) -> bool:
     return isinstance(field.type, Optional) and not field.required
-
-
-def _is_text(data: bytes) -> bool:
-    try:
-        data.decode()
-    except UnicodeDecodeError:
-        return False
-    return True
 
 
 def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:

@@ -36,7 +36,7 @@ from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
-from rosetta_jit.model.types import Array, Struct
+from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.births import Births
     from rosetta_jit.model.layout import Member
-    from rosetta_jit.model.types import Constant, Field
+    from rosetta_jit.model.types import Constant
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
@@ -95,12 +95,24 @@ class HolderSide:
     def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
         """What reading gives: the value; where it is absent, its default, or an error if it is required."""
         if last.required:
-            self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
+            self.expect_required(present, last, values)
             return value
         scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
         return Select(present, value, Const(scalar_name(scalar), _number(last.default)))
 
+    def expect_required(self, present: Expr, last: Field, values: Values) -> None:
+        self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
+
     def count(self, place: typed.Place, values: Values) -> Expr:
+        """How many elements or bytes; a required text must be there."""
+        match place.type, place.steps:
+            case ((String() | Bytes()), (*_, FieldStep(Field(required=True) as last))) if self.births is None:
+                fields, path, _ = self.descend(place, values)
+                present = presence(fields, path)
+                if present is not None:
+                    self.expect_required(present, last, values)
+            case _:
+                pass
         return self.array(place, values)[1]
 
     def address(self, place: typed.Place, values: Values) -> Address:
