@@ -34,6 +34,7 @@ from rosetta_jit.lowering.discriminators import discriminator_of
 from rosetta_jit.lowering.fields import OTHER_CASE, converted, has_gaps, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
+from rosetta_jit.lowering.views import between
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
@@ -54,6 +55,21 @@ if TYPE_CHECKING:
 
 Key = tuple[object, ...]
 """A place by names and the expressions of its indices."""
+
+
+def has_product(number: typed.Expr) -> bool:
+    """Whether an index multiplies what is not known: one more factor, and the proof sees no bound of the product."""
+    from rosetta_jit.lowering import typed
+
+    match number:
+        case typed.Binary("*", left, right) if not isinstance(left, typed.Const) and not isinstance(right, typed.Const):
+            return True
+        case typed.Binary(_, left, right):
+            return has_product(left) or has_product(right)
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
+            return has_product(operand)
+        case _:
+            return False
 
 
 def inside(number: Expr, count: Expr) -> Expr:
@@ -304,7 +320,10 @@ class WireSide:
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = self.writer.once(values.of(indices[0]))
         where = Where().members(array).element(number)
-        self.writer.expect(inside(number, self.root.size_of(array)), "index", where, "no such element", line=values.line)
+        count = self.root.size_of(array)
+        self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+        if not isinstance(region.step, Const) and has_product(indices[0]):
+            number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
         at = Binary("add", region.first, mul(number, region.step))
         if not isinstance(region.step, Const):  # written down, for it follows from a product
             self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
