@@ -71,6 +71,12 @@ def not_a_list(span: Span | None) -> Diagnostic:
     return error("not-indexable", "this is no list", span, "has no items", help_=help_)
 
 
+def empty_list(span: Span | None) -> Diagnostic:
+    """An item of a list that has none."""
+    help_ = "ask `len(names) > 0` before: what is in a `when` that is known not to hold is not looked at"
+    return error("index-range", "the list has no items", span, "beyond the list", help_=help_)
+
+
 def list_alone(span: Span | None) -> Diagnostic:
     """A list where a single value is meant."""
     help_ = "take an item, `names[i]`, or assign the list to an array: `.names = names`"

@@ -104,6 +104,8 @@ class _Binder:
             case For(variable=variable, body=body):
                 if variable in self.values:
                     self.problems.append(words.shadowed(rule.span, variable))
+                if isinstance(rule, For) and self.has_no_rounds(rule, bound):
+                    return ()
                 return (replace(bound, body=self.rules(body, (*variables, variable))),)
             case When(condition, then, otherwise):
                 known = self.decided(rule.condition if isinstance(rule, When) else condition, condition)
@@ -133,6 +135,8 @@ class _Binder:
     def item(self, items: Expr, index: Expr, item: Item) -> Expr:
         """An item of a list; the item itself where its number is known."""
         match items, folded(index):
+            case List(()), _:
+                self.problems.append(words.empty_list(item.span))
             case List(values), Literal(int(number)) if 0 <= number < len(values):
                 return values[number]
             case List(values), Literal(int(number)):
@@ -168,6 +172,13 @@ class _Binder:
         if not cases:
             cases = [(Literal(value=False, span=choice.span), self.expr(choice.cases[0][1]))]
         return replace(choice, cases=tuple(cases), otherwise=otherwise)
+
+    def has_no_rounds(self, written_loop: For, loop: For) -> bool:
+        """Whether a loop ends where it starts for the parameters' values, as one over an empty list does."""
+        if not any(isinstance(part, Name) and part.name in self.values for part in parts(written_loop.stop)):
+            return False
+        start, stop = folded(loop.start), folded(loop.stop)
+        return isinstance(start, Literal) and isinstance(stop, Literal) and start.value == stop.value
 
     def decided(self, written_condition: Expr, condition: Expr) -> bool | None:
         """Whether a condition on parameters holds; None where it is on something else, too."""

@@ -238,6 +238,8 @@ def _of_integers(function: Function, numbers: list[int]) -> int | None:
     """What a function of integers gives; None where it refuses them."""
     match function, numbers:
         case "align", [number, quantum]:
+            if number < 0:
+                return None
             return number if quantum <= 1 else -(-number // quantum) * quantum
         case "min", _:
             return reduce(min, numbers)

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place, TextCall
+from rosetta_jit.lowering.absent import written
+from rosetta_jit.lowering.typed import Assign, Const, Default, FieldStep, Place
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
 
 if TYPE_CHECKING:
@@ -73,25 +74,14 @@ def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
             return Assign(place, Const(float(number), place.type, span), span)
         case ((String() | Bytes()), str(text)):
             return Assign(place, Const(text, String(), span), span)
-        case Bytes(), bytes(data) if _is_text(data):
-            return Assign(place, Const(data.decode(), String(), span), span)
         case Bytes(), bytes(data):
-            characters = Const(data.decode("latin-1"), String(), span), Const("latin-1", String(), span)
-            return Assign(place, TextCall("bytes", characters, Bytes(), span), span)
+            return Assign(place, written(data, span), span)
         case _:
             return None
 
 
 def _may_lack(field: Field) -> bool:
     return isinstance(field.type, Optional) and not field.required
-
-
-def _is_text(data: bytes) -> bool:
-    try:
-        data.decode()
-    except UnicodeDecodeError:
-        return False
-    return True
 
 
 def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:

@@ -12,6 +12,7 @@ from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.lowering.absent import length_there, text_there
 from rosetta_jit.lowering.calls import type_call
 from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
@@ -22,7 +23,7 @@ from rosetta_jit.lowering.listed import compared_text, type_listed
 from rosetta_jit.lowering.scope import Broken, Sought, resolve_path
 from rosetta_jit.lowering.type_search import is_found, type_search
 from rosetta_jit.lowering.type_texts import concatenation, is_textual
-from rosetta_jit.lowering.typed import BOOL, INT64, Access, Binary, Const, FieldStep, Has, IndexStep, LenOf, Local, Search, Unary
+from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.lowering.units import check_agree
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
@@ -48,7 +49,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return _name(expr, scope)
         case model.Path():
             place = resolve_path(expr, scope, type_index)
-            return None if isinstance(place, Broken) else Access(place, place.type, expr.span)
+            return None if isinstance(place, Broken) else text_there(place, expr.span)
         case model.Len():
             return _length(expr, scope)
         case model.Unary("not"):
@@ -129,7 +130,7 @@ def _length(expr: model.Len, scope: Scope) -> Expr | None:
         case Array(length=int(length)):
             return Const(length, INT64, expr.span)
         case Array() | Bytes() | String() | Map():
-            return LenOf(place, INT64, expr.span)
+            return length_there(place, expr.span)
         case other:
             scope.problems.append(words.no_length(expr.path.span, describe(other)))
             return None

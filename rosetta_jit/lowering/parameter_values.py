@@ -97,6 +97,8 @@ def _float(value: float, type_: Float, name: str) -> Expr | str:
         rounded = number if type_.bits == 64 else struct.unpack("<f", struct.pack("<f", number))[0]
     except OverflowError:
         return f"{_shown(value)} does not fit {name}"
+    if isinstance(value, int) and rounded != value:
+        return f"{_shown(value)} does not fit {name}"
     return Literal(float(rounded)) if math.isfinite(rounded) else f"{_shown(value)} is not finite"
 
 

@@ -17,9 +17,10 @@ from rosetta_jit.lowering.discriminators import discriminator_of
 from rosetta_jit.lowering.fields import OTHER_CASE, converted, has_gaps, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.typed import FieldStep, IndexStep
+from rosetta_jit.lowering.views import between
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
-from rosetta_jit.model.types import Array, Struct
+from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,11 +33,26 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.births import Births
     from rosetta_jit.model.layout import Member
-    from rosetta_jit.model.types import Constant, Field
+    from rosetta_jit.model.types import Constant
     from rosetta_jit.wire.codec import Path
 
 Key = tuple[object, ...]
 """A place by names and the expressions of its indices."""
+
+
+def has_product(number: typed.Expr) -> bool:
+    """Whether an index multiplies what is not known: one more factor, and the proof sees no bound of the product."""
+    from rosetta_jit.lowering import typed
+
+    match number:
+        case typed.Binary("*", left, right) if not isinstance(left, typed.Const) and not isinstance(right, typed.Const):
+            return True
+        case typed.Binary(_, left, right):
+            return has_product(left) or has_product(right)
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
+            return has_product(operand)
+        case _:
+            return False
 
 
 def inside(number: Expr, count: Expr) -> Expr:
@@ -78,12 +94,24 @@ class HolderSide:
     def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
         """What reading gives: the value; where it is absent, its default, or an error if it is required."""
         if last.required:
-            self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
+            self.expect_required(present, last, values)
             return value
         scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
         return Select(present, value, Const(scalar_name(scalar), _number(last.default)))
 
+    def expect_required(self, present: Expr, last: Field, values: Values) -> None:
+        self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
+
     def count(self, place: typed.Place, values: Values) -> Expr:
+        """How many elements or bytes; a required text must be there."""
+        match place.type, place.steps:
+            case ((String() | Bytes()), (*_, FieldStep(Field(required=True) as last))) if self.births is None:
+                fields, path, _ = self.descend(place, values)
+                present = presence(fields, path)
+                if present is not None:
+                    self.expect_required(present, last, values)
+            case _:
+                pass
         return self.array(place, values)[1]
 
     def address(self, place: typed.Place, values: Values) -> Address:
@@ -275,7 +303,10 @@ class WireSide:
         region, array = self.root.found.regions[key], key[: key.index(EACH)]
         number = self.writer.once(values.of(indices[0]))
         where = Where().members(array).element(number)
-        self.writer.expect(inside(number, self.root.size_of(array)), "index", where, "no such element", line=values.line)
+        count = self.root.size_of(array)
+        self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+        if not isinstance(region.step, Const) and has_product(indices[0]):
+            number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
         at = Binary("add", region.first, mul(number, region.step))
         if not isinstance(region.step, Const):  # written down, for it follows from a product
             self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)

@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.lowering.absent import text_there
 from rosetta_jit.lowering.decisions import type_comparison
 from rosetta_jit.lowering.listed import compared_text
 from rosetta_jit.lowering.scope import Broken, resolve_path
-from rosetta_jit.lowering.typed import BOOL, INT64, Access, Binary, Const, IndexStep, Local, Place, Search
+from rosetta_jit.lowering.typed import BOOL, INT64, Binary, Const, IndexStep, Local, Place, Search
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.printer import show_expr
 
@@ -54,7 +55,7 @@ def _key(sought: Sought, variable: Local, scope: Scope) -> Expr | None:
     path = model.Path(array.side, tuple(model.Member(name, step.span) for name in step.names), step.span)
     within = replace(scope, messages={**scope.messages, array.side: sought.element}, bases={**scope.bases, array.side: element})
     found = resolve_path(path, within, lambda _index, _scope: None)
-    return None if isinstance(found, Broken) else Access(found, found.type, step.span)
+    return None if isinstance(found, Broken) else text_there(found, step.span)
 
 
 def _wanted(step: model.Keyed) -> str:

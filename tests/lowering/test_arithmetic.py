@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import rosetta_jit as rj
+from tests.lowering.pairs import pair
 from tests.lowering.texts import BACKENDS, decoder
 
 HEAD = 'import "t/In.msg"\nimport "t/Out.msg"\ndata-holder: t/Out\nwire-schema: t/In\nunpack-rules:\n'
@@ -142,3 +143,11 @@ def test_two_conditions_that_nothing_is_known_of(backend):
     write = rj.Encoder.of("t/In", schema=files, imports=["t/In.msg"], encoding="ros1", backend="interpreter")
     for b, c in ((False, False), (True, False), (False, True)):
         assert decode(write(write.holder_type.from_dict({"x": 0.5, "b": b, "c": c}))).to_dict() == {"x": 0.5, "n": 1 if b or c else 2}
+
+
+def test_a_constant_below_0_is_aligned_no_more_than_a_field():
+    for number in ("-1", ".a"):
+        numbers = pair('("a" :int64)', "required int64 y = 1;", f"unpack-rules:\n  .y = align({number}, 4)\npack-rules:\n  .a = .y\n")
+        with pytest.raises(rj.DecodeError) as error:
+            numbers.unpack(a=-1)
+        assert error.value.kind == "range"

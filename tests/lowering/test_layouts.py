@@ -10,6 +10,7 @@ from rosetta_jit.kernel.ir import Copy, For, SetField
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.pipeline import Build
 from rosetta_jit.request import Request
+from tests.lowering.pairs import pair
 
 BACKENDS = ["numba", "python", "interpreter"]
 WIRE = {"w.bottle-schema": '"w" (("k" :int) ("a" (:list :int)))'}
@@ -233,3 +234,25 @@ rules:
     data = write(write.holder_type.from_dict({"q": [0.0, 1.0, 2.0, 3.0], "k": list(range(6))}))
     assert decode(data).to_dict() == {"q": [1.0, 2.0, 3.0, 0.0], "k": [0, 3, 1, 4, 2, 5]}
     assert encode(decode(data)) == data
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_slices_whose_ends_and_step_are_fields_of_a_list(backend):
+    """The elements of a bottle's list lie apart as each message says, so that an index that is a product is one more factor."""
+    lists = pair('("i" :int64) ("j" :int64) ("k" :int64) ("a" (:list :double))', "repeated double a = 1;", SLICED, backend)
+    values = [0.5 * number for number in range(9)]
+    for i, j, k in ((0, 9, 1), (1, 9, 3), (2, 2, 5), (8, 9, 1 << 62)):
+        assert lists.unpack(i=i, j=j, k=k, a=values) == {"a": values[i:j:k]}
+    for i, j, k in ((0, 10, 1), (-1, 3, 1), (0, 3, 0), (0, 1 << 62, 1 << 61)):
+        with pytest.raises(rj.DecodeError):
+            lists.unpack(i=i, j=j, k=k, a=values)
+
+
+SLICED = """unpack-rules:
+  .a = .a[.i to .j by .k]
+pack-rules:
+  .i = 0
+  .j = len(.a)
+  .k = 1
+  .a = .a
+"""

@@ -328,3 +328,37 @@ def test_a_mapping_hands_its_defaults_on(inner, given, added):
     decode = rj.Decoder("m.mapping", schema=texts, encoding="ros1", backend="python", parameters=given)
     assert decode(bytes(8)).to_dict() == {"a": {"x": added}}
     assert decode.mapping.warnings == ()
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_loop_over_an_empty_list_has_no_rounds(backend):
+    """There is no item whose type could be known, and none is needed."""
+    rules = """parameter joints: list of string
+unpack-rules:
+  default .angles
+  default .scaled
+  default .mode
+  default .fast
+  len(.names) = len(joints)
+  for i from 0 to len(joints)
+    .names[i] = joints[i] + "!"
+  end
+"""
+    for joints in ([], ["yaw"]):
+        decode = rj.Decoder("m.mapping", schema=files(rules), encoding="yarp3", backend=backend, parameters={"joints": joints})
+        assert decode(wire()).to_dict()["names"] == [f"{joint}!" for joint in joints]
+
+
+def test_an_item_of_an_empty_list_is_refused():
+    rules = "parameter offsets: list of float64\nunpack-rules:\n  .scaled = offsets[.n]\n"
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("m.mapping", schema=files(rules), encoding="yarp3", backend="interpreter", parameters={"offsets": []})
+    assert "the list has no items" in str(error.value)
+
+
+@pytest.mark.parametrize(("kind", "value"), [("float64", 2**53 + 1), ("float32", 2**24 + 1)])
+def test_an_integer_that_its_float_lacks_is_refused(kind, value):
+    rules = f"parameter scale: {kind}\nunpack-rules:\n  .scaled = scale\n"
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("m.mapping", schema=files(rules), encoding="yarp3", backend="interpreter", parameters={"scale": value})
+    assert f"{value} does not fit {kind}" in str(error.value)

@@ -205,3 +205,68 @@ def test_many_texts_are_made(count):
 def test_texts_of_texts_of_texts():
     text = "replace(" * 20 + ".s" + ', "a", "b")' * 20
     assert decoder({"s": text}, "python")(s="banana")["s"] == "bbnbnb"
+
+
+ABSENT = {
+    "w.proto": """syntax = "proto2"; package w;
+message Inner { optional string q = 1 [default = "deep"]; }
+message Wire { optional string s = 1 [default = "abc"]; optional bytes o = 2 [default = "a\\377\\000b"]; optional Inner t = 3;
+  oneof u { string c = 4 [default = "case"]; int32 i = 5; } }""",
+    "h.proto": """syntax = "proto2"; package h;
+message Holder { required string s = 1; required bytes o = 2; required string t = 3; required string c = 4; required int64 n = 5;
+  required bool e = 6; required bool f = 7; required string up = 8; }""",
+    "m.mapping": """import "w.proto"
+import "h.proto"
+data-holder: h.Holder
+wire-schema: w.Wire
+unpack-rules:
+  .s = .s
+  .o = .o
+  .t = "<" + .t.q + ">"
+  .c = .c
+  .n = len(.s) * 100 + len(.o)
+  .e = .s == "abc"
+  .f = .s < "abd"
+  .up = upper(.s)
+""",
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_absent_text_reads_as_its_default(backend):
+    """As absent numbers do, everywhere: proto2 says what is read of a field that did not come."""
+    decode = rj.Decoder("m.mapping", schema=ABSENT, encoding="protobuf", backend=backend)
+    write = rj.Encoder.of("w.Wire", schema=ABSENT, imports=["w.proto"], encoding="protobuf", backend="interpreter")
+    absent = {"s": "abc", "o": b"a\xff\0b", "t": "<deep>", "c": "case", "n": 304, "e": True, "f": True, "up": "ABC"}
+    assert decode(b"").to_dict() == absent
+    empty = write(write.holder_type.from_dict({"s": "", "o": b"", "t": {"q": ""}, "c": ""}))
+    assert decode(empty).to_dict() == {"s": "", "o": b"", "t": "<>", "c": "", "n": 0, "e": False, "f": True, "up": ""}
+
+
+def test_defaults_of_bytes_need_not_be_text():
+    files = {
+        "w.bottle-schema": '"w" (("i" :int))',
+        "h.proto": 'syntax = "proto2"; message Holder { required bytes o = 1 [default = "a\\377\\000b"]; }',
+        "m.mapping": 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: Holder\nwire-schema: w\n'
+        "unpack-rules:\n  ignore .i\n  default .o\n",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="yarp4", backend="python")
+    write = rj.Encoder.of("w", schema=files, imports=["w.bottle-schema"], encoding="yarp4", backend="interpreter")
+    assert decode(write(write.holder_type.from_dict({"i": 1}))).to_dict() == {"o": b"a\xff\0b"}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rule", [".t = .s", '.t = "<" + .s', ".t = text(len(.s))", ".t = upper(.s)"])
+def test_a_required_text_that_was_never_set_is_refused(rule, backend):
+    """As a number is, and not packed as an empty one."""
+    files = {
+        "p/msg/Text.msg": "string t\n",
+        "h.proto": 'syntax = "proto2"; message Holder { required string s = 1; }',
+        "m.mapping": f'import "p/msg/Text.msg"\nimport "h.proto"\ndata-holder: Holder\nwire-schema: p/msg/Text\npack-rules:\n  {rule}\n',
+    }
+    encode = rj.Encoder("m.mapping", schema=files, backend=backend)
+    encode(encode.holder_type.from_dict({"s": ""}))
+    with pytest.raises(rj.EncodeError) as error:
+        encode(encode.holder_type())
+    assert (error.value.kind, error.value.path) == ("missing", ".t")
+    assert "the required `s` is not there" in str(error.value)
