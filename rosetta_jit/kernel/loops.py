@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Advance, Assign, Local
+from rosetta_jit.kernel.ir import Advance, Assign
 from rosetta_jit.kernel.linear import Linear, minus, plus, times
 from rosetta_jit.kernel.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.prove import All
@@ -60,7 +60,7 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
     names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
     at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
-    kept = [guess for guess in guesses(scope, names, replaced_names(loop.body)) if guess not in dropped]
+    kept = [guess for guess in guesses(scope, names) if guess not in dropped]
     while True:
         lost = _round(scope, loop, at_entry, kept)
         scope.rollback(at_entry.mark)
@@ -109,26 +109,19 @@ def changed_names(body: Block) -> set[str]:
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
 
 
-def replaced_names(body: Block) -> set[str]:
-    """The variables that become what others are: they count nothing."""
-    return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign) and isinstance(stmt.value, Local)}
-
-
 def advanced_lanes(body: Block) -> set[int]:
     """The lanes that a loop takes rows of."""
     return {stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Advance)}
 
 
-def guesses(scope: Scope, names: set[str], replaced: set[str]) -> list[Guess]:
+def guesses(scope: Scope, names: set[str]) -> list[Guess]:
     """Relations that hold at the entry: positions stay in the message, and nothing falls below its first value or zero."""
     found: list[Guess] = []
     for name in sorted(names & scope.locals.keys()):
         type_, value = scope.locals[name]
         if type_ == "bool" or not isinstance(value, Linear):
             continue
-        wanted = [Guess(name, 3, 1)]
-        if from_begin(value) or name not in replaced:
-            wanted.append(Guess(name, 2, 1))
+        wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
         if type_ == "i64" and from_begin(value):
             wanted += [Guess(name, 0, 1), Guess(name, 1, -1)]
         found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, (type_, value), value))]
