@@ -330,7 +330,7 @@ def _is_tested(rule: Rule, test: Expr) -> bool:
 
 def _is_zero(constant: Expr) -> bool:
     """Whether it may be compared with a float that is -0, which equals it."""
-    return isinstance(constant, Literal) and repr(constant.value) in {"0", "0.0", "-0.0"}
+    return isinstance(constant, Literal) and constant.value is not False and constant.value == 0
 
 
 def _rejects(rules: tuple[Rule, ...]) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Place, Select, SetField, Store, Wire
 from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.lowering import typed
 from rosetta_jit.lowering.bear import bear, bear_each
 from rosetta_jit.lowering.bound import EACH, NotInPlaceError
 from rosetta_jit.lowering.discriminators import discriminator_of
@@ -25,7 +26,6 @@ from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosetta_jit.lowering import typed
     from rosetta_jit.lowering.bound import Region, WireFields
     from rosetta_jit.lowering.discriminators import Told
     from rosetta_jit.lowering.fields import HolderElements, HolderFields
@@ -42,8 +42,6 @@ Key = tuple[object, ...]
 
 def has_product(number: typed.Expr) -> bool:
     """Whether an index multiplies what is not known: one more factor, and the proof sees no bound of the product."""
-    from rosetta_jit.lowering import typed
-
     match number:
         case typed.Binary("*", left, right) if not isinstance(left, typed.Const) and not isinstance(right, typed.Const):
             return True
@@ -386,9 +384,7 @@ def _case_word(fields: HolderFields, path: Path) -> Place:
 
 
 def _prefix(place: typed.Place, steps: int) -> typed.Place:
-    from rosetta_jit.lowering.typed import Place as TypedPlace
-
-    return TypedPlace(place.side, place.steps[:steps], place.type)
+    return typed.Place(place.side, place.steps[:steps], place.type)
 
 
 def _got(fields: HolderFields, path: Path) -> Expr:

@@ -8,6 +8,7 @@ import struct
 import pytest
 
 import rosetta_jit as rj
+from tests.frameworks.protobuf.proto_files import varint
 
 NUMBERS = [*range(1, 25), *range(120, 134), 2047, 2048]
 """Tags of one byte, of two, and of three."""
@@ -22,14 +23,6 @@ message Mixed {{
 """
 
 pytestmark = pytest.mark.parametrize("backend", ["llvm", "numba", "python", "interpreter"])
-
-
-def varint(value):
-    groups = []
-    while value >= 0x80:
-        groups.append(value & 0x7F | 0x80)
-        value >>= 7
-    return bytes((*groups, value))
 
 
 def field(number, value):

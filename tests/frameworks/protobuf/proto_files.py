@@ -41,3 +41,12 @@ def protoc(folder: Path, name: str, out: Path) -> bytes | None:
 
     arguments = ["protoc", f"-I{folder}", f"-I{SHIPPED}", "--include_imports", f"--descriptor_set_out={out}", name]
     return out.read_bytes() if compiler.main(arguments) == 0 else None
+
+
+def varint(value):
+    """An integer as protobuf writes it, by its manual."""
+    groups = []
+    while value >= 0x80:
+        groups.append(value & 0x7F | 0x80)
+        value >>= 7
+    return bytes((*groups, value))

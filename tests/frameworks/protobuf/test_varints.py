@@ -8,18 +8,11 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from tests.frameworks.protobuf.proto_files import varint
 
 BACKENDS = ["numba", "llvm", "python", "interpreter"]
 MANY = 70
 """Fields of a message: more than the calls of a routine that stay in place."""
-
-
-def varint(value):
-    groups = []
-    while value >= 0x80:
-        groups.append(value & 0x7F | 0x80)
-        value >>= 7
-    return bytes((*groups, value))
 
 
 def schema(fields):
