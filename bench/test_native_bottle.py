@@ -13,8 +13,9 @@ from bench.peers.yarp_native import Peers
 
 CHAPTER = "Native bottle parsing"
 MESSAGES, SERIES = 1_000_000, 20
-OURS, MANY, LEN, LOOP, COPY, TAGGED = (
+OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED = (
     "rosetta_jit",
+    "rosetta_jit, `builtin`",
     "rosetta_jit, `many`",
     "len()",
     "C++ by hand, loop",
@@ -41,6 +42,7 @@ def bottle_contenders(effort, decoder, message, peers):
     into = decoder.many(*rows)
     return [
         Contender(OURS, "ours", HOLDER, effort.call(decoder, message, count=count)),
+        Contender(BUILTIN, "ours", HOLDER, effort.call(decoder.builtin, message, count=count)),
         Contender(MANY, "ours", "10,000 rows of angles, used again", effort.call(many(decoder, rows, into), messages=10_000)),
         Contender(LEN, "limit", "a number", effort.call(len, message, count=count)),
         Contender(peers.dynamic_decoder, "peer", "one heap object an element, in C++", lambda: peers.dynamic(message)(count)),
@@ -82,6 +84,9 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
         ],
         rounds=SERIES,
     )
+    record(
+        "one call, 24 specialised doubles, `builtin`", outcome.ratio(BUILTIN, LEN), 1.3, "x len()", f"{outcome.took(BUILTIN).median:.0f} ns"
+    )
     record("one call, 24 specialised doubles", outcome.ratio(OURS, LEN), 2, "x len()", f"{outcome.took(OURS).median:.0f} ns")
     dynamic = outcome.took(peers.dynamic_decoder).median
     record(
@@ -108,6 +113,7 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
         ],
         rounds=SERIES,
     )
+    record("one call, 16 tagged doubles, `builtin`", outcome.ratio(BUILTIN, LEN), None, "x len()", f"{outcome.took(BUILTIN).median:.0f} ns")
     record("one call, 16 tagged doubles", outcome.ratio(OURS, LEN), 3, "x len()", f"{outcome.took(OURS).median:.0f} ns")
     loop = outcome.took(TAGGED).median
     record("the same against a C++ loop by hand, tagged", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")

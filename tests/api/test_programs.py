@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import struct
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -85,6 +86,44 @@ def test_bad_messages_say_what_and_where(decode, message, kind, path, offset):
         holder.angles  # noqa: B018 - reading raises
     decode.into(MESSAGE, holder)
     assert len(holder.angles) == 3
+
+
+def test_the_built_in_does_what_the_decoder_does(decode):
+    own, built_in = decode.new(), decode.builtin
+    expected = np.radians(DEGREES).astype(np.float32)
+    assert built_in(MESSAGE) is decode(MESSAGE)
+    assert built_in(bytearray(MESSAGE), own) is own
+    assert np.array_equal(own.angles, expected)
+    for wrong in [(), (7,), (MESSAGE, object()), (MESSAGE, own, 3)]:
+        with pytest.raises(TypeError):
+            built_in(*wrong)
+    with pytest.raises(TypeError):
+        built_in(MESSAGE, holder=own)
+    with pytest.raises(rj.DecodeError) as caught:
+        built_in(MESSAGE[:20])
+    assert (caught.value.path, caught.value.offset) == (".roll", 16)
+    encode = rj.Encoder(TORSO, encoding="yarp3").builtin
+    buffer = bytearray(40)
+    assert encode(own, buffer, 4) == 36
+    assert encode(own) == buffer[4:36]
+
+
+def test_a_built_in_keeps_its_program(backend):
+    decode = rj.Decoder(TORSO, encoding="yarp3", backend=backend)
+    seen, built_in = weakref.ref(decode), decode.builtin
+    assert decode.builtin == built_in
+    del decode
+    gc.collect()
+    assert len(built_in(MESSAGE).angles) == 3
+    del built_in
+    gc.collect()
+    assert seen() is None
+
+
+def test_a_program_is_made_once(decode):
+    with pytest.raises(TypeError, match="made already"):
+        decode.__init__(CAMERA)
+    assert len(decode(MESSAGE).angles) == 3
 
 
 def test_wrong_objects_are_type_errors(decode):
