@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -27,6 +28,17 @@ BASELINES = {
 }
 NEEDED = "a process that imports numpy and llvmlite"
 WARM, COLD = "first decode, warm cache", "first decode, nothing cached"
+
+RESIDENT = """
+import sys
+from pathlib import Path
+def resident():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6
+import numpy
+before = resident()
+exec(sys.argv[3])
+print(resident() - before)
+"""
 
 COMPILES = """
 import sys, time
@@ -62,6 +74,16 @@ def test_processes(warm_cache, effort, found, record):
     milliseconds = 1000 * Spread.of(taken[WARM]).median
     what, unit = "fresh process to first decode, warm cache", "x importing numpy and llvmlite"
     record(what, ratio(taken[WARM], taken[NEEDED]), 1.5, unit, f"{milliseconds:.0f} ms")
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads the resident set from /proc")
+def test_memory(warm_cache, effort, record):
+    """LLVM alone is 42 MB, if it is loaded."""
+    mapping, cache = warm_cache
+    held = [
+        float(run("-c", RESIDENT, mapping, "warm", FIRST_DECODE, ROSETTA_JIT_CACHE_DIR=str(cache))) for _ in range(3 if effort.quick else 7)
+    ]
+    record("memory of a process that has decoded, warm cache", Spread.of(held), None, "MB", "beyond a process that has imported numpy")
 
 
 @pytest.mark.parametrize(("fields", "aim_ms"), [(10, 100), (100, 400)])

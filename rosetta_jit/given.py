@@ -10,7 +10,8 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.host import UserFunction
 from rosetta_jit.kernel.shape import calls_to_host
 from rosetta_jit.lowering.values import scalar_type
-from rosetta_jit.runtime.native import ALLOWED, undefined_symbols
+from rosetta_jit.runtime.allowed import ALLOWED
+from rosetta_jit.runtime.object_file import undefined_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

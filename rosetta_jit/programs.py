@@ -13,6 +13,7 @@ from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.garbage import imported, seldom_collected
 from rosetta_jit.request import GivenFunction, Request, plain_parameters
 from rosetta_jit.runtime import native, run
+from rosetta_jit.runtime.allowed import ForeignCodeError
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
 from rosetta_jit.runtime.callable import callable_class
@@ -272,7 +273,7 @@ def _shared(name: str, cache: Cache) -> Loaded:
         raise KeyError(name)
     try:
         return _linked(entry.header, entry.image)
-    except native.ForeignCodeError as error:
+    except ForeignCodeError as error:
         _warn(str(error))
         raise KeyError(name) from error
 

@@ -1,6 +1,6 @@
 """Functions of the host that are found at run time: each reads its address from a table that whoever loads the code fills in.
 
-@host = global [n x ptr]        in the order of `kernel.shape.our_functions`
+@host = dso_local global [n x ptr]        in the order of `kernel.shape.our_functions`
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def table_text(kernels: Sequence[Kernel]) -> str:
         FUNCTION.format(name=symbol(name), table=TABLE, number=number, parameters=_parameters(*shapes[name]))
         for number, name in enumerate(names)
     ]
-    return f"@{TABLE} = global [{len(names)} x ptr] zeroinitializer\n{''.join(functions)}"
+    return f"@{TABLE} = dso_local global [{len(names)} x ptr] zeroinitializer\n{''.join(functions)}"
 
 
 def _parameters(numbers: int, extents: int) -> str:

@@ -15,6 +15,7 @@ from llvmlite import binding, ir
 
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
+from rosetta_jit.backends.prelink import prelinked
 from rosetta_jit.kernel.shape import are_long_and_straight, calls_to_host, is_large, is_told, our_functions
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ FUNCTIONS = ("kernel", "size")
 
 
 def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
-    """Object code (position-independent, for this machine's CPU).
+    """Code for this machine's CPU, to be loaded by `runtime.native`: prelinked, or else an object file.
 
     Parameters
     ----------
@@ -53,6 +54,12 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: 
     functions
         Those of the user's that the kernels call; they need numba.
     """
+    image = object_file(kernels, entry, with_numba=with_numba, functions=functions)
+    return prelinked(image) or image
+
+
+def object_file(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
+    """The same as an object file, which only a linker can load."""
     machine = target_machine()
     return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
 

@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosetta_jit.runtime.processor import processor
 from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
@@ -37,17 +38,13 @@ def request_name(request: Mapping[str, object]) -> str:
 def surroundings() -> str:
     """What compiled code depends on besides its kernel, as text; the same for the life of a process."""
     import llvmlite
-    import llvmlite.binding as llvm
 
     facts: dict[str, object] = {
         "abi": ABI,
         "package": _package_digest(),
         "llvmlite": llvmlite.__version__,
-        "llvm": ".".join(str(part) for part in llvm.llvm_version_info),
         "numba": _numba_version(),
-        "triple": llvm.get_process_triple(),
-        "cpu": llvm.get_host_cpu_name(),
-        "features": llvm.get_host_cpu_features().flatten(),
+        "processor": processor(),
         "python": [sys.implementation.cache_tag, getattr(sys, "abiflags", ""), hasattr(sys, "gettotalrefcount")],
     }
     return json.dumps(facts, sort_keys=True)

@@ -17,6 +17,7 @@ angles = decode(struct.pack("<ii3d", 266, 3, 180, 0, 0)).angles
 assert abs(angles[0] - 3.14159) < 1e-4, angles
 heavy = ("numba", "lark", "rosetta_jit.pipeline", "rosetta_jit.model.expr", "rosetta_jit.lowering.lower", "google.protobuf")
 print(*[name for name in heavy if name in sys.modules])
+print("llvmlite.binding" in sys.modules, file=sys.stderr)
 """
 
 
@@ -35,6 +36,12 @@ def start(folder, mode="quiet"):
 def test_the_second_process_compiles_nothing(tmp_path):
     assert "rosetta_jit.lowering.lower" in start(tmp_path / "cache").stdout
     assert start(tmp_path / "cache").stdout.split() == []
+
+
+@pytest.mark.skipif(sys.platform != "linux" or os.uname().machine != "x86_64", reason="other systems have no prelinked code")
+def test_the_second_process_needs_no_llvm(tmp_path):
+    assert start(tmp_path / "cache").stderr.split() == ["True"]
+    assert start(tmp_path / "cache").stderr.split() == ["False"]
 
 
 def test_no_process_imports_numba_unless_it_is_asked_for(tmp_path):

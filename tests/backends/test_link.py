@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import pytest
 
-from rosetta_jit.backends.link import SYMBOLS, assembly, compile_program, llvm_text
+from rosetta_jit.backends.link import SYMBOLS, assembly, compile_program, llvm_text, object_file
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.shape import are_long_and_straight
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.runtime import native
+from rosetta_jit.runtime.allowed import ALLOWED
+from rosetta_jit.runtime.object_file import undefined_symbols
 from tests.backends import kernels
 
 PROGRAMS = [("decode", (kernels.counted(),)), ("borrow", (kernels.tagged(),)), ("encode", kernels.encoder())]
@@ -20,12 +22,13 @@ PROGRAMS = [("decode", (kernels.counted(),)), ("borrow", (kernels.tagged(),)), (
 @pytest.mark.parametrize(("entry", "program"), PROGRAMS)
 @pytest.mark.parametrize("with_numba", [False, True])
 def test_programs_link_with_nothing_but_what_is_allowed(entry, program, with_numba):
-    image = compile_program(program, entry, with_numba=with_numba)
-    wanted = native.undefined_symbols(image)
-    assert wanted <= native.ALLOWED
+    image = object_file(program, entry, with_numba=with_numba)
+    wanted = undefined_symbols(image)
+    assert wanted <= ALLOWED
     assert "PyObject_Vectorcall" in wanted
-    library = native.load(image, SYMBOLS[entry])
-    assert all(library[symbol] for symbol in SYMBOLS[entry])
+    for each in (image, compile_program(program, entry, with_numba=with_numba)):
+        library = native.load(each, SYMBOLS[entry])
+        assert all(library[symbol] for symbol in SYMBOLS[entry])
 
 
 @pytest.mark.parametrize("with_numba", [False, True])

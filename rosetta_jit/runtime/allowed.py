@@ -1,0 +1,51 @@
+"""What loaded code may take from the process. Code comes from the cache, a trusted folder, and yet is held to this list."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+MATHEMATICS = (
+    *("acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "copysign", "cos", "cosh", "erf", "erfc", "exp", "exp2", "expm1"),
+    *("fabs", "fma", "fmax", "fmin", "frexp", "hypot", "ldexp", "lgamma", "log", "log10", "log1p", "log2", "nearbyint", "pow", "round"),
+    *("roundeven", "sin", "sincos", "sinh", "tan", "tanh", "tgamma"),
+)
+"""Functions of the C library that users' functions call; those of float32 end in f."""
+
+ALLOWED = frozenset(
+    [
+        "PyBuffer_Release",
+        "PyByteArray_Type",
+        "PyBytes_FromStringAndSize",
+        "PyBytes_Type",
+        "PyErr_Occurred",
+        "PyList_SetItem",
+        "PyLong_AsSsize_t",
+        "PyLong_FromSsize_t",
+        "PyMemoryView_FromObject",
+        "PyObject_GetBuffer",
+        "PyObject_Vectorcall",
+        "Py_DecRef",
+        "Py_IncRef",
+        "clock_gettime",
+        *("memcmp", "memcpy", "memmove", "memset"),
+        *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
+        *("snprintf", "strtod", "strtoll"),
+        *("acos", "asin", "atan", "atan2", "cos", "sin", "sincos", "tan"),
+        *(f"{name}{suffix}" for suffix in ("", "f") for name in MATHEMATICS),
+    ]
+)
+"""Everything that object code may take from the process: what the entries call, and what LLVM turns intrinsics into."""
+
+
+class ForeignCodeError(ValueError):
+    """Code that is none of ours."""
+
+
+def check_wanted(names: Iterable[str]) -> None:
+    """ForeignCodeError if one of the names is not on the list."""
+    foreign = sorted(set(names) - ALLOWED)
+    if foreign:
+        raise ForeignCodeError(f"the code wants {', '.join(foreign[:3])} from the process")
