@@ -26,6 +26,7 @@ from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import Mapped, lower
+from rosetta_jit.lowering.writer import TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
@@ -109,7 +110,11 @@ class Build:
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types = self.types
         mapped = None if types.rules is None else self._mapped(types.rules)
-        return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
+        try:
+            return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
+        except TooManyStatementsError as error:
+            span = types.wire.span if mapped is None else self.checked.mapping.wire_span
+            raise _report(self.request, words.too_many_statements(span, str(error))) from error
 
     def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
         types = self.types

@@ -80,6 +80,12 @@ def too_large(name: str, span: Span | None, why: str) -> Diagnostic:
     return Diagnostic("error", "too-large", f"`{name}` is too large for a holder: {why}", span, help="split it, or bound what repeats")
 
 
+def too_many_statements(span: Span | None, most: str) -> Diagnostic:
+    """A program that would take minutes and much memory to compile."""
+    title = f"the program that this becomes has more than {most} statements"
+    return Diagnostic("error", "too-large", title, span, help="map less at once: fewer fields, rules or cases in each of several mappings")
+
+
 def endless_copy(span: Span | None) -> Diagnostic:
     """A message that can hold others of its own type, assigned as a whole."""
     label = "it can hold messages of its own type, to any depth"

@@ -45,6 +45,27 @@ MAX_SIZE = 1 << 56
 """No message that fits in memory is larger, so sums of sizes below this cannot wrap."""
 
 
+MAX_STATEMENTS = 200_000
+"""Statements of one program: some thirteen a field of a bottle, of other wires fewer. So many take minutes and a gigabyte to compile."""
+
+
+class TooManyStatementsError(Exception):
+    """A program beyond `MAX_STATEMENTS`, which it says; never leaves the pipeline."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """How many statements a program has so far, its routines included."""
+
+    statements: int = 0
+
+    def add(self, count: int) -> None:
+        """So many more, or TooManyStatementsError."""
+        self.statements += count
+        if self.statements > MAX_STATEMENTS:
+            raise TooManyStatementsError(f"{MAX_STATEMENTS:,}")
+
+
 @dataclass(frozen=True, slots=True)
 class Where:
     """The field that is being read or written: its path with a ``{}`` for each index, and the indices."""
@@ -103,6 +124,7 @@ class Writer:
     stems: dict[str, int] = field(default_factory=dict[str, int])
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
     routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
+    tally: Tally = field(default_factory=Tally)
 
     def lane(self, name: str, stride: int) -> int:
         """The hidden lane of a name: for whatever a kernel must keep that the holder has no field for."""
@@ -128,6 +150,7 @@ class Writer:
         self.origin = outer
 
     def emit(self, *statements: Stmt) -> None:
+        self.tally.add(len(statements))
         self.block.extend(statements)
 
     def fresh(self, stem: str) -> str:
@@ -202,7 +225,7 @@ class Writer:
     def call(self, name: str, make: Callable[[Writer], Contract], arguments: tuple[Expr, ...], where: Where) -> tuple[Local, ...]:
         """The results of a routine, which is made, with a writer of its own, where it is first called."""
         if name not in self.routines:
-            inner = Writer(self.direction, self.strides, self.hidden, routines=self.routines)
+            inner = Writer(self.direction, self.strides, self.hidden, routines=self.routines, tally=self.tally)
             made = make(inner)
             self.routines[name] = Routine(
                 name, made.parameters, made.results, block(inner.block), made.requires, made.ensures, tuple(inner.sites)

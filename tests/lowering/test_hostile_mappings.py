@@ -6,11 +6,13 @@ import time
 
 import pytest
 
+import rosetta_jit as rj
 from rosetta_jit.diagnostics import MAX_REPORTED, Diagnostic, render, render_all, to_json
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.base import Readers, installed
 from rosetta_jit.frontend.mapping import parse
 from rosetta_jit.frontend.search import SearchPath
+from rosetta_jit.lowering import writer
 from rosetta_jit.lowering.check import check
 from rosetta_jit.source import Source, Span
 
@@ -124,3 +126,21 @@ def test_a_caret_stands_below_its_place(text):
     shown, caret = render(Diagnostic("error", "e", "m", Span(source, start, start + 2), "here")).splitlines()[3:5]
     assert caret.endswith("^^ here")
     assert cells(shown[: shown.index(".x")]) == caret.index("^")
+
+
+def test_programs_are_of_a_size_that_can_be_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rules of six words, each of which becomes some twenty statements."""
+    monkeypatch.setattr(writer, "MAX_STATEMENTS", 5_000)
+    shown = "".join(f'reject "{{upper(replace(.s, \\"a\\", \\"b\\"))}}" when .n == {number}\n' for number in range(400))
+    files = {
+        "w.bottle-schema": '"w" (("n" :int) ("s" :string))',
+        "h.proto": 'syntax = "proto2"; package h; message H { required int32 n = 1; required string s = 2; }',
+        "m.mapping": f"{HEAD}rules:\n.n <-> .n .s <-> .s\n{shown}",
+    }
+    for program in (rj.Decoder, rj.Encoder):
+        with pytest.raises(MappingError, match="5,000 statements") as caught:
+            program("m.mapping", schema=files, encoding="yarp4")
+        assert [each.code for each in caught.value.diagnostics] == ["too-large"]
+    files = {"lab/msg/Many.msg": "\n".join(f"string s{number}" for number in range(2_000))}
+    with pytest.raises(rj.SchemaError, match="5,000 statements"):
+        rj.Decoder.of("lab/msg/Many", schema=files, encoding="cdr")
