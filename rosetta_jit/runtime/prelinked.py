@@ -13,7 +13,9 @@ from __future__ import annotations
 import ctypes
 import json
 import mmap
+import os
 import struct
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.dataclass import dataclass
@@ -29,6 +31,7 @@ PAGE = 4096
 """Of the processors for which there is such code."""
 
 _SIZE = struct.Struct("<I")
+_FAILED = 2**64 - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,13 +89,13 @@ def place(image: bytes, symbols: Sequence[str]) -> tuple[dict[str, int], Callabl
     if missing:
         raise ForeignCodeError(f"the code has no {', '.join(missing)}")
     begin = data_offset(prelinked.code)
-    memory = mmap.mmap(-1, begin + len(prelinked.data), flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
-    memory[: len(prelinked.code)] = prelinked.code
-    memory[begin:] = prelinked.data
-    struct.pack_into(f"<{len(prelinked.wants)}Q", memory, prelinked.slots, *map(_address_of, prelinked.wants))
-    base = ctypes.addressof(ctypes.c_char.from_buffer(memory))
+    code = bytearray(prelinked.code.ljust(begin, b"\0"))
+    struct.pack_into(f"<{len(prelinked.wants)}Q", code, prelinked.slots, *map(_address_of, prelinked.wants))
+    size = begin + len(prelinked.data)
+    base = _writable(size)
+    ctypes.memmove(base, bytes(code) + prelinked.data, size)
     _make_executable(base, begin)
-    return {symbol: base + prelinked.gives[symbol] for symbol in symbols}, memory.close
+    return {symbol: base + prelinked.gives[symbol] for symbol in symbols}, partial(_system().munmap, base, size)
 
 
 def _address_of(name: str) -> int:
@@ -103,8 +106,26 @@ def _address_of(name: str) -> int:
     return cast("int", ctypes.cast(found, ctypes.c_void_p).value)
 
 
+def _writable(size: int) -> int:
+    """Memory of our own. No object gives it up when Python ends: others may still call what is in it."""
+    address = _system().mmap(None, size, mmap.PROT_READ | mmap.PROT_WRITE, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS, -1, 0)
+    if address == _FAILED:
+        raise MemoryError(f"{size} bytes for code")
+    return address
+
+
 def _make_executable(address: int, size: int) -> None:
-    protect = ctypes.CDLL(None, use_errno=True).mprotect
-    protect.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int]
-    if protect(address, size, mmap.PROT_READ | mmap.PROT_EXEC):
-        raise ForeignCodeError(f"the system lets no memory be executed: errno {ctypes.get_errno()}")
+    if _system().mprotect(address, size, mmap.PROT_READ | mmap.PROT_EXEC):
+        why = os.strerror(ctypes.get_errno())
+        _system().munmap(address, size)
+        raise ForeignCodeError(f"this system lets no memory be executed: {why}")
+
+
+@cache
+def _system() -> ctypes.CDLL:
+    """The C library, whose functions are those of POSIX."""
+    system = ctypes.CDLL(None, use_errno=True)
+    extent = [ctypes.c_void_p, ctypes.c_size_t]
+    system.mmap.restype, system.mmap.argtypes = ctypes.c_void_p, [*extent, ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_long]
+    system.mprotect.argtypes, system.munmap.argtypes = [*extent, ctypes.c_int], extent
+    return system

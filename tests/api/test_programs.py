@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import gc
 import struct
+import subprocess
+import sys
 import threading
 import weakref
 
@@ -345,3 +347,33 @@ def test_errors_of_making_programs():
         rj.Encoder(TORSO)
     with pytest.raises(rj.SchemaError, match="unknown-type"):
         rj.Decoder.of("rst.vision.Imag", imports=["rst/vision/Image.proto"])
+
+
+AT_THE_END = """
+import builtins, struct, sys
+import rosetta_jit as rj
+
+MESSAGE = struct.pack("<ii3d", 266, 3, 1, 2, 3)
+
+
+class Last:
+    def __init__(self, decode):
+        self.decode, self.built_in = decode, decode.builtin
+
+    def __del__(self):
+        self.decode(MESSAGE)
+        self.built_in(MESSAGE)
+        print("decoded")
+
+
+decode = rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
+builtins.last, of_the_module, sys.modules["last"] = Last(decode), Last(decode), Last(decode)
+in_a_cycle = Last(decode)
+in_a_cycle.itself = in_a_cycle
+"""
+
+
+def test_what_python_clears_at_its_end_may_still_decode():
+    ended = subprocess.run([sys.executable, "-c", AT_THE_END], check=False, capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.split() == ["decoded"] * 4
