@@ -39,7 +39,7 @@ def imported(name: str) -> ModuleType:
     What modules define is there to stay: to look for garbage in a hundred new ones takes a twentieth of the first program's time.
     """
     if name in sys.modules:
-        return sys.modules[name]
+        return import_module(name)  # another thread may not be done with it: this waits
     with seldom_collected():
         module = import_module(name)
         _call_all_old()

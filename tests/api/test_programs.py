@@ -377,3 +377,32 @@ def test_what_python_clears_at_its_end_may_still_decode():
     ended = subprocess.run([sys.executable, "-c", AT_THE_END], check=False, capture_output=True, text=True)
     assert (ended.returncode, ended.stderr) == (0, "")
     assert ended.stdout.split() == ["decoded"] * 4
+
+
+AT_ONCE = """
+import sys, threading
+import rosetta_jit as rj
+
+sys.setswitchinterval(1e-6)
+together, made = threading.Barrier(6), []
+
+
+def make(program, name, encoding):
+    together.wait()
+    made.append(program.of(name, encoding=encoding))
+
+
+names = [("sensor_msgs/Imu", "ros1"), ("sensor_msgs/msg/Imu", "cdr"), ("rst.kinematics.JointAngles", "protobuf")]
+threads = [threading.Thread(target=make, args=(program, *each)) for each in names for program in (rj.Decoder, rj.Encoder)]
+for each in threads:
+    each.start()
+for each in threads:
+    each.join()
+print(len(made))
+"""
+
+
+@pytest.mark.parametrize("_round", range(3))
+def test_threads_of_a_new_process_make_programs_at_once(_round):
+    ended = subprocess.run([sys.executable, "-c", AT_ONCE], check=False, capture_output=True, text=True)
+    assert (ended.stdout.strip(), ended.stderr) == ("6", "")
