@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache, cached_property
+from threading import RLock
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -63,6 +64,9 @@ def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class
     return {}
 
 
+_ONE_AT_A_TIME = RLock()
+"""Held where a class is made: two of one type would take each other's holders for foreign."""
+
 PLAIN = Manners(Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members)
 
 
@@ -81,10 +85,17 @@ class Family:
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
         self.struct = cast("Struct", self.schema.resolve(self.type))
+        self._holder: type[Holder] | None = None
 
-    @cached_property
+    @property
     def holder(self) -> type[Holder]:
-        """The holder class."""
+        """The holder class, one however many threads ask for it at once."""
+        if self._holder is None:
+            with _ONE_AT_A_TIME:
+                self._holder = self._holder or self._made()
+        return self._holder
+
+    def _made(self) -> type[Holder]:
         access = self.access(self.tree.root)
         entries = self.tree.root.entries
         shown = _shown(self.tree.root, self.manners.base)
@@ -178,9 +189,14 @@ def holder_class_of(plain: Mapping[str, Any], manners: Manners = PLAIN) -> type[
     return family_of(json.dumps(plain, sort_keys=True), manners).holder
 
 
-@cache
 def family_of(text: str, manners: Manners) -> Family:
-    """The family of a type as text; the same one for the same text."""
+    """The family of a type as text; the same one for the same text, for threads that ask at once too."""
+    with _ONE_AT_A_TIME:
+        return _family_of(text, manners)
+
+
+@cache
+def _family_of(text: str, manners: Manners) -> Family:
     return Family(text, manners)
 
 
