@@ -61,8 +61,8 @@ def effort(request):
 def record(request, found):
     """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted."""
 
-    def record_row(what, measured, at_most, unit, detail=""):
-        row = Row(what, measured, at_most, unit, detail)
+    def record_row(what, measured, at_most, unit, detail="", against=""):
+        row = Row(what, measured, at_most, unit, detail, against)
         found("rows", row)
         if not request.config.getoption("--bench-report"):
             assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"

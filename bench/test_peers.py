@@ -56,6 +56,8 @@ def test_encode(name, effort, compare, record):
     message, decode, encode = subject.message, subject.decoder(), subject.encoder()
     holder, buffer = decode(message), bytearray(len(message))
     assert encode(holder) == message
+    encode(holder, buffer, 0)
+    assert buffer == message
     peers = [(peer, peer.decode(message)) for peer in python_peers(subject) if peer.encode is not None]
     for peer, value in peers:
         assert bytes(peer.encode(value)) == message, peer.who

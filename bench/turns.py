@@ -64,7 +64,8 @@ class Effort:
         return Call(function, arguments, timer, count or self._count(timer), messages)
 
     def _count(self, timer: timeit.Timer) -> int:
-        """How many calls fill a round."""
+        """How many calls fill a round. The first call does not count: in it, peers write and compile their functions."""
+        timer.timeit(1)
         count = 1
         while (took := timer.timeit(count)) < self.round_s / 4:
             count *= 4

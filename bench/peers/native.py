@@ -42,17 +42,25 @@ def native_peers(subject: Subject) -> tuple[NativePeer, ...]:
     if subject.encoding not in _LIBRARIES:
         return ()
     name, who, makes = _LIBRARIES[subject.encoding]
-    path = FOLDER / f"lib{name}_peer.so"
-    if not path.exists():
+    if not _path(name).exists():
         return ()
-    library = ctypes.CDLL(str(path))
+    library = ctypes.CDLL(str(_path(name)))
     jobs = tuple(partial(_nanoseconds, library[f"{job}_ns"], subject) for job in ("decode", "encode"))
     return (NativePeer(who, makes, *jobs),)
 
 
 def built() -> tuple[str, ...]:
     """The native peers whose libraries were built."""
-    return tuple(who for name, who, _ in _LIBRARIES.values() if (FOLDER / f"lib{name}_peer.so").exists())
+    return tuple(who for name, who, _ in _LIBRARIES.values() if _path(name).exists())
+
+
+def absent() -> tuple[str, ...]:
+    """Those for which headers or generators are not installed."""
+    return tuple(who for name, who, _ in _LIBRARIES.values() if not _path(name).exists())
+
+
+def _path(name: str) -> Path:
+    return FOLDER / f"lib{name}_peer.so"
 
 
 def rounds_of(job: Callable[[int], float], round_s: float) -> Callable[[], float]:

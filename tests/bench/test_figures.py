@@ -66,6 +66,18 @@ def test_a_call_is_timed_without_what_waits():
     assert 0 < asleep() < 10e6
 
 
+def test_a_first_call_that_compiles_does_not_shorten_the_rounds():
+    """Peers write their functions at the first call: were it counted, a round would be one call, and that a cold one."""
+    made = []
+
+    def decode():
+        if not made:
+            made.append(sum(range(3_000_000)))
+
+    effort = Effort(3, 0.004, quick=True)
+    assert effort.call(decode).count > 1000
+
+
 def test_a_call_counts_messages():
     effort = Effort(3, 0.001, quick=True)
     one, thousand = effort.call(sum, range(10_000), count=20), effort.call(sum, range(10_000), count=20, messages=1000)
