@@ -47,7 +47,7 @@ bench-check: $(VENV)/.bench native ## the same, failing where a target is missed
 	mkdir -p $(dir $(RUN))
 	$(BIN)/python -m pytest bench $(BENCH) $(ARGS)
 
-bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file; fails where a ratio with a target is 15 % worse
+bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file or several; fails where a ratio with a target is 15 % worse
 	@test -n "$(OLD)" || { echo "name a run: make bench-compare OLD=build/bench/runs/..." >&2; exit 2; }
 	$(BIN)/python -m bench.compare $(OLD) $(RUN)
 
