@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 OUTPUT ?= demo-output
 NATIVE := build/native/libpeers.so
 YARP := build/yarp
-BENCH = --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --benchmark-storage=file://build/bench/runs $(if $(QUICK),--quick)
+BENCH = -vv --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --benchmark-storage=file://build/bench/runs $(if $(QUICK),--quick)
 
 .DEFAULT_GOAL := help
 RUN := build/bench/run.json

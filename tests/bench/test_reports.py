@@ -9,8 +9,9 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from bench import compare
-from bench.figures import from_json
+from bench.figures import Comparison, Figure, from_json
 from bench.report import __main__ as reports
+from bench.report import tables
 from bench.report.readme import BEGIN, END, insert_in_readme
 from bench.run import of
 from tests.bench import runs
@@ -24,9 +25,9 @@ def written(tmp_path):
 
 def test_the_table_marks_what_was_missed(written):
     text = (written / "report.md").read_text("utf-8")
-    assert "| fast | 1.5 x len() | 2 x len() | met - 25 ns |" in text
-    assert "| slow | 3 x len() | 2 x len() | **missed** - 25 ns |" in text
-    assert "| reported | 1.5 x len() |  | 25 ns |" in text
+    assert "| fast | 1.5 (1.4 to 1.6) x len() | 2 x len() | met - 25 ns |" in text
+    assert "| slow | 3 (2.9 to 3.1) x len() | 2 x len() | **missed** - 25 ns |" in text
+    assert "| reported | 1.5 (1.4 to 1.6) x len() |  | 25 ns |" in text
 
 
 def test_the_table_says_what_peers_make_and_how_we_stand_to_them(written):
@@ -34,6 +35,24 @@ def test_the_table_says_what_peers_make_and_how_we_stand_to_them(written):
     assert "| len() | a number | 10 ns (10 to 10) | 3 (2.5 to 3.5) |" in lines
     (peer,) = [line for line in lines if "alert" in line and "anew" in line]
     assert peer.endswith("| an object, anew | 400 ns (300 to 500) | 0.1 (0.075 to 0.1) |")
+
+
+def test_each_of_ours_is_compared_with_each_peer_and_limits_among_themselves():
+    figures = [Figure(who, "ours", "", (ns,)) for who, ns in (("used again", 10.0), ("anew", 40.0))]
+    peer, limit, other = Figure("peer", "peer", "", (80.0,)), Figure("len()", "limit", "", (20.0,)), Figure("empty", "limit", "", (10.0,))
+    head, lines = tables.contenders(Comparison("", "", (*figures, peer)))
+    assert head[3:] == ("used again, as a multiple", "anew, as a multiple")
+    ratios = [tuple(cell.partition(" ")[0] for cell in line[3:]) for line in lines]
+    assert ratios == [("", ""), ("", ""), ("0.125", "0.5")]
+    head, lines = tables.contenders(Comparison("", "", (limit, other)))
+    assert head[3:] == ("as a multiple of len()",)
+    assert [line[3].partition(" ")[0] for line in lines] == ["", "0.5"]
+
+
+def test_curves_in_parts_have_a_slope_of_the_whole():
+    *_, stacked = runs.report().curves
+    *_, (who, reach, *_) = tables.growth(stacked)
+    assert (who, reach) == ("the whole", "1 to 10 fields: 4 to 8 ms")
 
 
 def test_slopes_are_stated_and_superlinear_ones_are_flagged(written):

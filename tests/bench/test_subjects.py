@@ -48,7 +48,7 @@ def test_doubles_have_their_size(size):
     assert len(values) == size // 8 - 1
 
 
-@pytest.mark.parametrize("make", [growing.fields, growing.tagged_fields])
+@pytest.mark.parametrize("make", [growing.fields, growing.optional_fields, growing.required_fields])
 def test_fields_are_what_they_say(make):
     subject = make(20)
     holder = subject.decoder()(subject.message)
