@@ -37,8 +37,9 @@ PYTHON_SHARES = {"Imu": 50, "JointState, 32 joints": 30, "PoseArray 1000": None,
 def test_decode(name, effort, compare, record):
     subject = ALL[name]
     message, decode = subject.message, subject.decoder()
+    assert subject.encoder()(decode(message)) == message
     contenders = [
-        Contender(OURS, "ours", "a holder of lanes, used again", effort.call(decode, message)),
+        Contender(OURS, "ours", "a holder of lanes, used again", effort.placed(lambda: effort.call(subject.decoder(), anew(message)))),
         Contender(FRESH, "ours", "a holder of lanes, anew", effort.call(lambda: decode.into(message, decode.new()))),
         *borrowed(effort, name, subject),
         *limits(effort, message),
@@ -53,8 +54,8 @@ def test_decode(name, effort, compare, record):
 @pytest.mark.parametrize("name", ALL)
 def test_encode(name, effort, compare, record):
     subject = ALL[name]
-    message, decode, encode = subject.message, subject.decoder(), subject.encoder()
-    holder, buffer = decode(message), bytearray(len(message))
+    message, encode = subject.message, subject.encoder()
+    holder, buffer = subject.decoder()(message), bytearray(len(message))
     assert encode(holder) == message
     encode(holder, buffer, 0)
     assert buffer == message
@@ -62,9 +63,9 @@ def test_encode(name, effort, compare, record):
     for peer, value in peers:
         assert bytes(peer.encode(value)) == message, peer.who
     contenders = [
-        Contender(INTO, "ours", "a buffer that is given", effort.call(encode, holder, buffer, 0)),
-        Contender(OURS, "ours", "bytes, anew", effort.call(encode, holder)),
-        Contender("its decode", "limit", "a holder, used again", effort.call(decode, message)),
+        Contender(INTO, "ours", "a buffer that is given", effort.placed(lambda: into_a_buffer(effort, subject))),
+        Contender(OURS, "ours", "bytes, anew", effort.placed(lambda: effort.call(encode, subject.decoder()(message)))),
+        Contender("its decode", "limit", "a holder, used again", effort.placed(lambda: effort.call(subject.decoder(), anew(message)))),
         *limits(effort, message),
         *(Contender(peer.who, "peer", "bytes, anew", effort.call(peer.encode, value)) for peer, value in peers),
         *(Contender(peer.who, "peer", "a buffer that is given", rounds_of(peer.encode, effort.round_s)) for peer in native_peers(subject)),
@@ -75,21 +76,37 @@ def test_encode(name, effort, compare, record):
         record(f"{name}, encode", outcome.ratio(INTO, "its decode"), 1.5, "x its decode", f"{took:.0f} ns")
 
 
+def anew(message):
+    """The same bytes in another place."""
+    return bytes(bytearray(message))
+
+
+def into_a_buffer(effort, subject):
+    return effort.call(subject.encoder(), subject.decoder()(subject.message), bytearray(len(subject.message)), 0)
+
+
 def borrowed(effort, name, subject):
     """Ours once more, for what can stay where it is."""
     if name not in BLOBS:
         return []
     decode = subject.decoder(borrow=True)
+    assert subject.encoder()(decode(subject.message)) == subject.message
     return [Contender(BORROWED, "ours", "a holder, used again; bytes are a view of the message", effort.call(decode, subject.message))]
 
 
 def limits(effort, message):
     """What no decoder in Python can do without: a call, and the bytes moved."""
-    source, target = np.frombuffer(message, np.uint8), np.empty(len(message), np.uint8)
+
+    def copied():
+        return effort.call(np.copyto, np.empty(len(message), np.uint8), np.frombuffer(anew(message), np.uint8))
+
+    def moved():
+        return rounds_of(Peers().memmove(len(message)), effort.round_s)
+
     return [
         Contender(LEN, "limit", "a number", effort.call(len, message)),
-        Contender(COPY, "limit", "the message's bytes, elsewhere", effort.call(np.copyto, target, source)),
-        Contender(MOVE, "limit", "the same, without a call from Python", rounds_of(Peers().memmove(len(message)), effort.round_s)),
+        Contender(COPY, "limit", "the message's bytes, elsewhere", effort.placed(copied)),
+        Contender(MOVE, "limit", "the same, without a call from Python", effort.placed(moved)),
     ]
 
 

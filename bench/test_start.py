@@ -55,7 +55,7 @@ def test_processes(warm_cache, effort, found, record):
         COLD: lambda: took_s(FIRST_DECODE, mapping, "cold", ROSETTA_JIT_CACHE="off"),
         **{name: lambda program=program: took_s(program) for name, program in BASELINES.items()},
     }
-    taken = in_turns(processes, 5 if effort.quick else 11)
+    taken = in_turns(processes, 5 if effort.quick else 15)
     roles = dict.fromkeys(BASELINES, "limit")
     figures = tuple(Figure(who, roles.get(who, "ours"), "", tuple(1e9 * each for each in values)) for who, values in taken.items())
     found("comparisons", Comparison("Limits", "a process, from its start to its end", figures))

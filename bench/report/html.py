@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 HOW = (
     "All contenders of a job were measured in turns. Figures are medians over the rounds with their quartiles; ratios are those of single "
-    "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread on a processor. "
-    "Bars and curves have logarithmic axes."
+    "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread, or of the process, on a processor; where "
+    "several threads work it is the clock's. Bars and curves have logarithmic axes."
 )
 STYLE = Path(__file__).with_name("style.css")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from functools import partial
 
 import pytest
 
@@ -76,6 +77,15 @@ def test_a_first_call_that_compiles_does_not_shorten_the_rounds():
 
     effort = Effort(3, 0.004, quick=True)
     assert effort.call(decode).count > 1000
+
+
+def test_a_job_is_in_another_place_each_round():
+    """A place in which copies are slow decides nothing."""
+    costs = iter([1.0, 10.0, 2.0])
+    placed = Effort(6, 0.001, quick=True).placed(lambda cost=costs: partial(float, next(cost)))
+    taken = Effort(6, 0.001, quick=True).in_turns({"a": placed})["a"]
+    assert sorted(taken) == [1.0, 1.0, 2.0, 2.0, 10.0, 10.0]
+    assert Spread.of(taken).median == 2.0
 
 
 def test_a_call_counts_messages():
