@@ -9,6 +9,7 @@ from bench.contest import Contender
 from bench.peers import python_peers
 from bench.peers.native import native_peers, rounds_of
 from bench.peers.yarp_native import Peers
+from bench.report import words
 from bench.subjects import ROS_2, SUBJECTS
 
 OURS, FRESH, INTO, BORROWED, LEN, COPY, MOVE = (
@@ -72,8 +73,8 @@ def test_encode(name, effort, compare, record):
     ]
     outcome = compare("Encoding", name, contenders)
     if name in SUBJECTS:
-        took = outcome.took(INTO).median
-        record(f"{name}, encode", outcome.ratio(INTO, "its decode"), 1.5, "x its decode", f"{took:.0f} ns")
+        took = words.time(outcome.took(INTO).median)
+        record(f"{name}, encode", outcome.ratio(INTO, "its decode"), 1.5, "x its decode", took)
 
 
 def anew(message):
@@ -112,26 +113,25 @@ def limits(effort, message):
 
 def decode_rows(name, outcome, peers):
     """The rows of the table that this message has."""
-    took, len_ = outcome.took(OURS).median, outcome.took(LEN).median
-    moved = outcome.took(MOVE).median
+    took, len_, moved = words.time(outcome.took(OURS).median), outcome.took(LEN).median, outcome.took(MOVE).median
     if name in SMALL:
         allowed = SMALL[name] + (moved / len_ if name == "Imu" else 0)
-        yield f"{name}, decode", outcome.ratio(OURS, LEN), allowed, "x len()", f"{took:.0f} ns"
+        yield f"{name}, decode", outcome.ratio(OURS, LEN), allowed, "x len()", took
     if name in ARRAYS:
-        allowed, detail = ARRAYS[name] + len_ / moved, f"{took:.0f} ns, the call in the limit"
+        allowed, detail = ARRAYS[name] + len_ / moved, f"{took}, the call in the limit"
         yield f"{name}, decode", outcome.ratio(OURS, MOVE), allowed, "x memmove", detail
     if name in BLOBS:
-        yield f"{name}, copied", outcome.ratio(OURS, COPY), 1.15, "x memmove", f"{took / 1000:.1f} µs"
-        yield f"{name}, borrowed", outcome.ratio(BORROWED, LEN), 4, "x len()", f"{outcome.took(BORROWED).median:.0f} ns"
+        yield f"{name}, copied", outcome.ratio(OURS, COPY), 1.15, "x memmove", took
+        yield f"{name}, borrowed", outcome.ratio(BORROWED, LEN), 4, "x len()", words.time(outcome.took(BORROWED).median)
     if name in PYTHON_SHARES and peers:
         yield against_python(name, outcome, peers)
     if name == "JointState, 32 joints" and "roscpp in C++" in outcome.rounds_ns:
         roscpp = outcome.took("roscpp in C++").median
-        yield f"{name}, against roscpp in C++", outcome.ratio(OURS, "roscpp in C++"), 1.2, "x", f"{roscpp:.0f} ns, object used again"
+        yield f"{name}, against roscpp in C++", outcome.ratio(OURS, "roscpp in C++"), 1.2, "x", f"{words.time(roscpp)}, object used again"
 
 
 def against_python(name, outcome, peers):
     peer, part = outcome.fastest(peers), PYTHON_SHARES[name]
     share = None if part is None else 1 / part
-    detail = f"{peer}: {outcome.took(peer).median / 1000:.1f} µs"
+    detail = f"{peer}: {words.time(outcome.took(peer).median)}"
     return f"{name}, against the fastest Python peer", outcome.ratio(OURS, peer), share, "of it", detail
