@@ -17,6 +17,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "build" / "native"
 
 _LIBRARIES = {
     "ros1": ("roscpp", "roscpp in C++", "an object, used again; std::vector and std::string"),
+    "cdr": ("fastcdr", "Fast CDR in C++", "an object, used again; std::vector and std::string"),
     "protobuf": ("protobuf", "protobuf in C++", "a message, used again; RepeatedField and std::string"),
     "cdr-giop": ("omniorb", "omniORB in C++", "a struct, used again; its sequence allocates"),
     "lcm": ("lcm", "lcm-gen's C++", "an object, used again; std::vector"),
