@@ -37,7 +37,7 @@ class Peers:
         function = self.library.dynamic_values
         function.restype = ctypes.c_int64
         count = function(message, ctypes.c_int64(len(message)), values.ctypes, ctypes.c_int64(len(values)))
-        return values[:count]
+        return values[: max(count, 0)]
 
     def yarp(self, class_: str, message: bytes) -> Callable[[int], float] | None:
         """YARP's ``image`` or ``vector``, if real YARP was linked."""

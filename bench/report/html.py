@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 HOW = (
     "All contenders of a job were measured in turns. Figures are medians over the rounds with their quartiles; ratios are those of single "
     "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread, or of the process, on a processor; where "
-    "several threads work it is the clock's. Bars and curves have logarithmic axes."
+    "several threads work it is the clock's. Contenders and curves have logarithmic axes."
 )
 STYLE = Path(__file__).with_name("style.css")
 
@@ -49,7 +49,7 @@ def _comparison(comparison: Comparison) -> str:
 
 
 def _curve(curve: Curve) -> str:
-    drawn = plot.stacked(curve) if curve.parts else plot.lines(curve)
+    drawn = plot.stacked(curve) + _table(*tables.shares(curve)) if curve.parts else plot.lines(curve)
     note = f"<p>{escape(curve.note)}</p>" if curve.note else ""
     return f"<section><h3>{escape(curve.title)}</h3>{drawn}{note}{_table(tables.GROWTH, tables.growth(curve))}</section>"
 

@@ -19,6 +19,7 @@ def page(report: Report, about: Mapping[str, str]) -> str:
     for chapter, comparisons in chapters(report.comparisons).items():
         parts += [f"\n## {chapter}\n", *(f"\n### {each.title}\n\n{table(*tables.contenders(each))}" for each in comparisons)]
     parts += ["\n## How costs grow\n", slopes(report.curves)]
+    parts += [f"\n### {each.title}\n\n{table(*tables.shares(each))}" for each in report.curves if each.parts]
     return "\n".join(parts)
 
 

@@ -11,7 +11,7 @@ from bench.slopes import exponent, too_steep, with_whole
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from bench.figures import Comparison, Curve, Figure, Row
+    from bench.figures import Comparison, Curve, Figure, Row, Series, Spread
 
 Line = tuple[str, ...]
 
@@ -38,6 +38,18 @@ def contenders(comparison: Comparison) -> tuple[Line, Sequence[Line]]:
 def _ratios(figure: Figure, ours: Sequence[Figure], first: Figure) -> Iterator[str]:
     for one, other in [(each, figure) for each in ours] or [(figure, first)]:
         yield "" if one is other or figure.role == "ours" else words.ratio(ratio(one.rounds_ns, other.rounds_ns))
+
+
+def shares(curve: Curve) -> tuple[Line, Sequence[Line]]:
+    """What each series of a curve in parts has of the whole, at each x."""
+    *parts, whole = with_whole(curve).series
+    head = ("share of", *(f"{words.count(x)} {curve.x}" for x, _ in whole.points))
+    lines = [(each.who, *(f"{100 * part.median / all_.median:.0f} %" for part, all_ in _costs(each, whole))) for each in parts]
+    return head, [*lines, (whole.who, *(f"{words.number(cost.median)} {curve.y}" for _, cost in whole.points))]
+
+
+def _costs(one: Series, other: Series) -> Iterator[tuple[Spread, Spread]]:
+    return zip((cost for _, cost in one.points), (cost for _, cost in other.points), strict=True)
 
 
 def growth(curve: Curve) -> Iterator[Line]:

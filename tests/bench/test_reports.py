@@ -11,7 +11,7 @@ import pytest
 from bench import compare
 from bench.figures import Comparison, Figure, from_json
 from bench.report import __main__ as reports
-from bench.report import tables
+from bench.report import plot, tables
 from bench.report.readme import BEGIN, END, insert_in_readme
 from bench.run import of
 from tests.bench import runs
@@ -53,6 +53,21 @@ def test_curves_in_parts_have_a_slope_of_the_whole():
     *_, stacked = runs.report().curves
     *_, (who, reach, *_) = tables.growth(stacked)
     assert (who, reach) == ("the whole", "1 to 10 fields: 4 to 8 ms")
+
+
+def test_shares_are_told_in_both_reports(written):
+    assert "| share of | 1 fields | 10 fields |" in (text := (written / "report.md").read_text("utf-8"))
+    assert "| parse | 25 % | 25 % |" in text
+    assert "| the whole | 4 ms | 8 ms |" in text
+    assert "<td>parse</td><td>25 %</td><td>25 %</td>" in (written / "report.html").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "ticks"),
+    [(150, 400, [200.0, 500.0, 1000.0]), (9, 12, [10.0, 20.0, 50.0, 100.0]), (1, 10**4, [1.0, 10.0, 100.0, 1000.0, 10_000.0])],
+)
+def test_axes_have_ticks_that_can_be_read(low, high, ticks):
+    assert plot.Scale.over([low, high], 0, 100).ticks() == ticks
 
 
 def test_slopes_are_stated_and_superlinear_ones_are_flagged(written):
