@@ -81,11 +81,11 @@ def test_a_first_call_that_compiles_does_not_shorten_the_rounds():
 
 def test_a_job_is_in_another_place_each_round():
     """A place in which copies are slow decides nothing."""
-    costs = iter([1.0, 10.0, 2.0])
-    placed = Effort(6, 0.001, quick=True).placed(lambda cost=costs: partial(float, next(cost)))
-    taken = Effort(6, 0.001, quick=True).in_turns({"a": placed})["a"]
-    assert sorted(taken) == [1.0, 1.0, 2.0, 2.0, 10.0, 10.0]
-    assert Spread.of(taken).median == 2.0
+    costs = iter([1.0, 10.0, 2.0, 3.0, 4.0])
+    placed = Effort(10, 0.001, quick=True).placed(lambda cost=costs: partial(float, next(cost)))
+    taken = Effort(10, 0.001, quick=True).in_turns({"a": placed})["a"]
+    assert sorted(taken) == [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 10.0, 10.0]
+    assert Spread.of(taken).median == 3.0
 
 
 def test_a_call_counts_messages():
