@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 OUTPUT ?= demo-output
 NATIVE := build/native/libpeers.so
 YARP := build/yarp
-BENCH = --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --benchmark-storage=file://build/bench/runs $(if $(QUICK),--quick)
+BENCH = -vv --benchmark-quiet --benchmark-json=$(RUN) --benchmark-autosave --benchmark-storage=file://build/bench/runs $(if $(QUICK),--quick)
 
 .DEFAULT_GOAL := help
 RUN := build/bench/run.json
@@ -47,7 +47,7 @@ bench-check: $(VENV)/.bench native ## the same, failing where a target is missed
 	mkdir -p $(dir $(RUN))
 	$(BIN)/python -m pytest bench $(BENCH) $(ARGS)
 
-bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file; fails where a ratio with a target is 15 % worse
+bench-compare: $(VENV)/.bench ## what changed since the run in OLD, a JSON file or several; fails where a ratio with a target is 15 % worse
 	@test -n "$(OLD)" || { echo "name a run: make bench-compare OLD=build/bench/runs/..." >&2; exit 2; }
 	$(BIN)/python -m bench.compare $(OLD) $(RUN)
 

@@ -1,29 +1,36 @@
-"""`python -m bench.compare OLD.json NEW.json`: what changed beyond the noise.
+"""`python -m bench.compare OLD.json… NEW.json`: what changed beyond the noise.
 
-It ends with 1 where a ratio that has a target got more than 15 % worse. Absolute times decide nothing: they tell of the machine. A
-change is beyond the noise where the quartiles of both runs lie apart.
+It ends with 1 where a ratio that has a target got more than 15 % worse, and with 2 where a file is no run. Absolute times decide nothing:
+they tell of the machine. A change is beyond the noise where the quartiles of both runs lie apart. Quartiles tell of the noise within
+a process; that between processes (where the memory of a holder came to lie) shows where several old runs of one version are given, whose
+spread is that of all.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
+import statistics
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.figures import Row, from_json
+from bench.figures import Row, Spread
 from bench.report import words
 from bench.report.markdown import table
+from bench.run import Run, RunError, read
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from bench.figures import Report
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 REGRESSION = 1.15
 """A ratio with a target that has grown by more than this factor is a regression."""
+
+RESOLUTION = 0.02
+"""Changes of a smaller part are not told, however narrow the quartiles are."""
+
+OF_THE_MOMENT = frozenset({"when", "commit", "load average"})
+"""What differs between any two runs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,21 +42,42 @@ class Change:
 
     @property
     def factor(self) -> float:
-        return self.new.measured.median / self.old.measured.median
+        """New by old; 1 where the old one is no quantity that can grow in proportion."""
+        old = self.old.measured.median
+        return self.new.measured.median / old if old > 0 else 1.0
 
     @property
     def is_noise(self) -> bool:
-        return self.old.measured.meets(self.new.measured)
+        return self.old.measured.meets(self.new.measured) or abs(self.factor - 1) < RESOLUTION
 
     @property
     def is_regression(self) -> bool:
-        return self.new.at_most is not None and self.factor > REGRESSION
+        """Of a target, by more than is allowed, to where the old runs rarely were."""
+        return self.new.at_most is not None and self.factor > REGRESSION and self.new.measured.median > self.old.measured.high
+
+    @property
+    def is_comparable(self) -> bool:
+        """Whether both are ratios to the same; old files do not say to what."""
+        return not self.old.against or not self.new.against or self.old.against == self.new.against
 
 
-def changes(old: Report, new: Report) -> tuple[Change, ...]:
-    """The rows that both runs have."""
-    before: Mapping[str, Row] = {row.what: row for row in old.rows}
-    return tuple(Change(before[row.what], row) for row in new.rows if row.what in before)
+def together(runs: Sequence[Sequence[Row]]) -> tuple[Row, ...]:
+    """The rows of several runs of one version: the median of their medians, between the lowest and the highest quartile."""
+    by_name: dict[str, list[Row]] = {}
+    for row in (row for rows in runs for row in rows):
+        by_name.setdefault(row.what, []).append(row)
+    return tuple(replace(rows[-1], measured=_across([row.measured for row in rows])) for rows in by_name.values())
+
+
+def _across(spreads: Sequence[Spread]) -> Spread:
+    median = statistics.median(each.median for each in spreads)
+    return Spread(median, min(each.low for each in spreads), max(each.high for each in spreads))
+
+
+def changes(old: Iterable[Row], new: Iterable[Row]) -> tuple[Change, ...]:
+    """The rows that both have."""
+    before: Mapping[str, Row] = {row.what: row for row in old}
+    return tuple(Change(before[row.what], row) for row in new if row.what in before)
 
 
 def show(found: Sequence[Change]) -> str:
@@ -61,30 +89,51 @@ def show(found: Sequence[Change]) -> str:
             words.ratio(each.old.measured),
             f"{words.ratio(each.new.measured)} {each.new.unit}",
             f"{100 * (each.factor - 1):+.0f} %",
-            "**regression**" if each.is_regression else "",
+            "**regression**" if each.is_regression else "" if each.new.at_most is None else "has a target",
         )
         for each in sorted(told, key=lambda each: each.factor, reverse=True)
     )
     return table(("what", "old", "new", "change", ""), lines) if told else "nothing changed beyond the noise\n"
 
 
-def missing(old: Report, new: Report) -> tuple[str, ...]:
-    """The rows with a target that the new run does not have."""
-    after = {row.what for row in new.rows}
-    return tuple(row.what for row in old.rows if row.at_most is not None and row.what not in after)
+def remarks(old: Run, before: Sequence[Row], new: Run, found: Sequence[Change]) -> Iterator[str]:
+    """What the table does not say: how the runs differ, and which rows only one of them has."""
+    for name in sorted({*old.about, *new.about} - OF_THE_MOMENT):
+        one, other = (run.about.get(name, "not told") for run in (old, new))
+        if one != other:
+            yield f"the runs differ in {name}: {one} -> {other}"
+    for each in found:
+        if not each.is_comparable:
+            yield f"not compared, a ratio to something else: {each.new.what}: {each.old.against} -> {each.new.against}"
+    after, known = {row.what for row in new.report.rows}, {row.what for row in before}
+    for row in before:
+        if row.what not in after:
+            yield f"not measured any more: {row.what}{'' if row.at_most is None else ', which has a target'}"
+    for row in new.report.rows:
+        if row.what not in known:
+            yield f"new: {row.what}: {words.ratio(row.measured)} {row.unit}"
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="bench.compare", description="What changed between two runs, beyond the noise.")
-    parser.add_argument("old", type=Path)
-    parser.add_argument("new", type=Path)
+    parser = argparse.ArgumentParser(
+        prog="bench.compare",
+        description="What changed between runs, beyond the noise. Ends with 1 where a ratio that has a target got more than 15 % worse.",
+    )
+    parser.add_argument("old", type=Path, nargs="+", help="a run's JSON; several of one version tell how much runs vary")
+    parser.add_argument("new", type=Path, help="the JSON of the run that is judged")
     asked = parser.parse_args(given)
-    old, new = (from_json(json.loads(path.read_text("utf-8"))["rosetta_jit"]) for path in (asked.old, asked.new))
-    found = changes(old, new)
-    print(show(found), end="")
-    for what in missing(old, new):
-        print(f"not measured any more: {what}")
-    return int(any(each.is_regression for each in found))
+    try:
+        olds, new = [read(path) for path in asked.old], read(asked.new)
+    except RunError as error:
+        print(f"bench.compare: {error}", file=sys.stderr)
+        return 2
+    before = together([run.report.rows for run in olds])
+    found = changes(before, new.report.rows)
+    compared = [each for each in found if each.is_comparable]
+    print(show(compared), end="")
+    for remark in remarks(olds[-1], before, new, found):
+        print(remark)
+    return int(any(each.is_regression for each in compared))
 
 
 if __name__ == "__main__":

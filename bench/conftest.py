@@ -11,7 +11,7 @@ from bench.figures import Curve, Report, Row, to_json
 from bench.machine import versions
 from bench.report.markdown import targets
 from bench.report.readme import insert_in_readme
-from bench.turns import Call, Effort
+from bench.turns import Call, Effort, Placed
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = ("native_bottle", "native_image", "reorder", "mapped", "peers", "start", "memory", "limits", "curves")
@@ -61,8 +61,8 @@ def effort(request):
 def record(request, found):
     """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted."""
 
-    def record_row(what, measured, at_most, unit, detail=""):
-        row = Row(what, measured, at_most, unit, detail)
+    def record_row(what, measured, at_most, unit, detail="", against=""):
+        row = Row(what, measured, at_most, unit, detail, against)
         found("rows", row)
         if not request.config.getoption("--bench-report"):
             assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"
@@ -77,7 +77,8 @@ def compare(found, effort, benchmark):
     def measure(chapter, title, contenders, *, rounds=None):
         outcome = contest.held(effort, contenders, rounds=rounds)
         found("comparisons", contest.comparison(chapter, title, contenders, outcome))
-        ours = contenders[0].timed
+        timed = contenders[0].timed
+        ours = timed.calls[0] if isinstance(timed, Placed) else timed
         assert isinstance(ours, Call)
         benchmark.group = chapter
         benchmark.extra_info.update({who: outcome.took(who).median for who in outcome.rounds_ns})

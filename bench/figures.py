@@ -49,13 +49,18 @@ def ratio(one: Sequence[float], other: Sequence[float]) -> Spread:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One line of the README. ``at_most`` None: no target, the figure is only reported."""
+    """One line of the README.
+
+    ``at_most`` None: no target, the figure is only reported. ``against``: which of several the ratio was taken to, where that depends on
+    what is installed.
+    """
 
     what: str
     measured: Spread
     at_most: float | None
     unit: str  # of `measured` and `at_most`: "x len()", "ms", …
     detail: str = ""
+    against: str = ""
 
     @property
     def met(self) -> bool:
@@ -135,16 +140,25 @@ def to_json(report: Report) -> dict[str, Any]:
 def from_json(data: Mapping[str, Any]) -> Report:
     """The report that `to_json` wrote."""
     return Report(
-        tuple(Row(each["what"], Spread(**each["measured"]), each["at_most"], each["unit"], each["detail"]) for each in data["rows"]),
+        tuple(
+            Row(each["what"], _spread(each["measured"]), each["at_most"], each["unit"], each["detail"], each.get("against", ""))
+            for each in data["rows"]
+        ),
         tuple(Comparison(each["chapter"], each["title"], tuple(map(_figure, each["figures"]))) for each in data["comparisons"]),
         tuple(map(_curve, data["curves"])),
     )
 
 
+def _spread(data: Mapping[str, Any]) -> Spread:
+    return Spread(float(data["median"]), float(data["low"]), float(data["high"]))
+
+
 def _figure(data: Mapping[str, Any]) -> Figure:
-    return Figure(data["who"], data["role"], data["makes"], tuple(data["rounds_ns"]))
+    return Figure(data["who"], data["role"], data["makes"], tuple(map(float, data["rounds_ns"])))
 
 
 def _curve(data: Mapping[str, Any]) -> Curve:
-    series = tuple(Series(each["who"], each["role"], tuple((x, Spread(**cost)) for x, cost in each["points"])) for each in data["series"])
+    series = tuple(
+        Series(each["who"], each["role"], tuple((float(x), _spread(cost)) for x, cost in each["points"])) for each in data["series"]
+    )
     return Curve(data["title"], data["x"], data["y"], series, data["may_grow"], data["note"], data["parts"])

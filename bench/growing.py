@@ -27,9 +27,18 @@ def fields(count: int) -> Subject:
     return Subject("bench/Fields", "ros1", np.arange(count, dtype="<f8").tobytes(), {"schema": {"bench/msg/Fields.msg": text}})
 
 
-def tagged_fields(count: int) -> Subject:
+def optional_fields(count: int) -> Subject:
     """A protobuf message of so many doubles, each a field with a tag before it."""
-    text = "\n".join(f"  optional double field{index} = {index + 1};" for index in range(count))
+    return _tagged_fields("optional", count)
+
+
+def required_fields(count: int) -> Subject:
+    """The same of fields that must be there, which decoders guess."""
+    return _tagged_fields("required", count)
+
+
+def _tagged_fields(label: str, count: int) -> Subject:
+    text = "\n".join(f"  {label} double field{index} = {index + 1};" for index in range(count))
     message = b"".join(varint(index + 1 << 3 | 1) + struct.pack("<d", index) for index in range(count))
     return Subject("bench.Fields", "protobuf", message, _proto(f"message Fields {{\n{text}\n}}"))
 

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from bench.peers import packages
-from bench.peers.native import built
+from bench.peers.native import absent, built
 
 LIBRARIES = ("rosetta-jit", "numpy", "numba", "llvmlite", "pytest-benchmark")
 
@@ -23,7 +23,8 @@ def versions() -> dict[str, str]:
         **found,
         "LLVM": ".".join(map(str, binding.llvm_version_info)),
         "C++ compiler": _compiler(),
-        "native peers": ", ".join(built()),
+        "native peers": ", ".join(built()) or "none",
+        "native peers not built": ", ".join(absent()) or "none",
         "load average": ", ".join(f"{load:.1f}" for load in os.getloadavg()),
         "clock": _governor(),
     }

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import math
 import statistics
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
-if TYPE_CHECKING:
-    from bench.figures import Curve, Series
+from bench.figures import Curve, Series, Spread
 
 TOLERANCE = 0.15
 """By how much an exponent may exceed what the job has: caches end, and clocks are noisy."""
@@ -23,6 +22,19 @@ def exponent(series: Series) -> float:
     if len(upper) < 2:
         return 0.0
     return statistics.linear_regression([math.log(x) for x, _ in upper], [math.log(y) for _, y in upper]).slope
+
+
+def with_whole(curve: Curve) -> Curve:
+    """A curve in parts with one series more, their sum; any other as it is."""
+    if not curve.parts:
+        return curve
+    columns = zip(*(each.points for each in curve.series), strict=True)
+    whole = Series("the whole", "ours", tuple((column[0][0], _sum([cost for _, cost in column])) for column in columns))
+    return replace(curve, series=(*curve.series, whole))
+
+
+def _sum(costs: list[Spread]) -> Spread:
+    return Spread(sum(each.median for each in costs), sum(each.low for each in costs), sum(each.high for each in costs))
 
 
 def too_steep(curve: Curve) -> tuple[str, ...]:

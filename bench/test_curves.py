@@ -16,6 +16,12 @@ from bench.messages import joints_mapping, repeated, specialised
 BOTTLE = 16
 """Bytes of a bottle of one double: small, so that ten million fit in memory."""
 
+FIELDS = {
+    "ROS 1": (growing.fields, ""),
+    "protobuf, optional": (growing.optional_fields, "each field is a jump by its tag, and processors foretell few hundred jumps"),
+    "protobuf, required": (growing.required_fields, "the next field is guessed"),
+}
+
 
 def spreads(effort, contenders, rounds=None):
     """What each contender took, measured in turns."""
@@ -53,9 +59,10 @@ def test_message_size(effort, draw):
     draw("message size", "bytes", "ns", over(sizes, measure), note="memory ends each cache, as memmove's line shows")
 
 
-@pytest.mark.parametrize(("what", "make"), [("ROS 1", growing.fields), ("protobuf", growing.tagged_fields)])
-def test_fields(what, make, effort, draw):
-    counts = [1, 10, 100] if effort.quick else [1, 3, 10, 30, 100, 300, 1000] if what == "ROS 1" else [1, 3, 10, 30, 100, 300]
+@pytest.mark.parametrize("what", FIELDS)
+def test_fields(what, effort, draw):
+    make, note = FIELDS[what]
+    counts = [1, 10, 100] if effort.quick else [1, 3, 10, 30, 100, 300, 1000]
 
     def measure(count):
         subject = make(count)
@@ -70,7 +77,7 @@ def test_fields(what, make, effort, draw):
             },
         )
 
-    draw(f"number of fields, {what}", "fields", "ns", over(counts, measure))
+    draw(f"number of fields, {what}", "fields", "ns", over(counts, measure), note=note)
 
 
 @pytest.mark.parametrize(("what", "make"), [("ROS 1, fixed size", growing.nested), ("protobuf", growing.nested_tagged)])

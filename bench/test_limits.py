@@ -26,7 +26,7 @@ def test_calls(effort, compare):
         [
             Contender("len()", "limit", "a number", effort.call(len, message)),
             Contender("an empty builtin of one argument", "limit", "its argument", effort.call(empty, message)),
-            Contender("a weak reference, the least that an object which is no function does", "limit", "an object", effort.call(alive)),
+            Contender("a weak reference", "limit", "an object; the least that an object which is no function does", effort.call(alive)),
             Contender("an empty function in Python", "limit", "None", effort.call(nothing, message)),
             Contender("a numpy copy of 200 bytes", "limit", "an array, used again", effort.call(np.copyto, target, array)),
         ],

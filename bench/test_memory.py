@@ -67,7 +67,7 @@ def test_a_million_rows(decoder, record, effort):
     rows = 100_000 if effort.quick else 1_000_000
     buffer, offsets = repeated(specialised(24), rows)
     size = held(lambda: decoder.many(buffer, offsets), 1, warm=0).times(1000 / rows)
-    record("memory of a million rows of 24 angles, each", size, None, "bytes", "96 bytes of them angles")
+    record("memory of a million rows of 24 angles, each", size, None, "bytes", f"96 bytes of them angles; {rows:,} rows")
 
 
 def held(make, count, *, warm=20):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -36,24 +38,76 @@ def series(effort):
     return MESSAGES // SERIES // (10 if effort.quick else 1)
 
 
+def decodes(effort):
+    return f"{SERIES * series(effort):,} decodes"
+
+
+def degrees_of(message):
+    """The numbers of a bottle, as its writer had them."""
+    return np.array([10.0 * index - 7.25 for index in range(16 if message == tagged() else 24)])
+
+
+def same(found, wanted):
+    """Before anything is timed: each contender has the numbers."""
+    assert np.asarray(found) == pytest.approx(wanted, rel=1e-6)
+
+
 def bottle_contenders(effort, decoder, message, peers):
-    """Who reads either form."""
-    count, rows = series(effort), repeated(message, 10_000)
+    """Who reads either form: ours, YARP, numba, numpy."""
+    count, degrees, radians = series(effort), degrees_of(message), np.radians(degrees_of(message))
+    rows = repeated(message, 10_000)
     into = decoder.many(*rows)
+    array, holder = np.frombuffer(message, np.uint8), decoder.into(message, decoder.new())
+    kernel, state = bottle_by_hand.numba_kernel(decoder, holder)
+    view, anew = bottle_by_hand.frombuffer(message), bottle_by_hand.radians(message)
+    same(decoder(message).angles, radians)
+    same(decoder.builtin(message).angles, radians)
+    same(into.angles.to_numpy()[[0, -1]], np.array([radians, radians]))
+    same(peers.dynamic_values(message), degrees)
+    holder.angles[:] = 0
+    assert kernel(array, state) >= 0
+    same(holder.angles, radians)
+    same(view(message), degrees)
+    same(anew(message), radians)
     return [
         Contender(OURS, "ours", HOLDER, effort.call(decoder, message, count=count)),
         Contender(BUILTIN, "ours", HOLDER, effort.call(decoder.builtin, message, count=count)),
         Contender(MANY, "ours", "10,000 rows of angles, used again", effort.call(many(decoder, rows, into), messages=10_000)),
         Contender(LEN, "limit", "a number", effort.call(len, message, count=count)),
-        Contender(peers.dynamic_decoder, "peer", "one heap object an element, in C++", lambda: peers.dynamic(message)(count)),
+        Contender(peers.dynamic_decoder, "peer", "one heap object an element, in C++", partial(peers.dynamic(message), count)),
+        numba_by_hand(effort, message, array, radians),
+        Contender("our kernel through numba's dispatcher", "peer", HOLDER, effort.call(kernel, array, state, count=count)),
+        Contender("numpy.frombuffer, unchecked", "peer", "a view of degrees", effort.call(view, message, count=count)),
+        Contender("numpy, as radians, unchecked", "peer", "an array, anew", effort.call(anew, message, count=count)),
     ]
+
+
+def numba_by_hand(effort, message, array, radians):
+    write = bottle_by_hand.numba_tagged if message == tagged() else bottle_by_hand.numba_specialised
+    decode, angles = write(), np.zeros(len(radians), np.float32)
+    assert decode(array, angles) == len(message)
+    same(angles, radians)
+    return Contender("numba by hand", "peer", "an array, used again", effort.call(decode, array, angles, count=series(effort)))
+
+
+def in_cpp(who, makes, timed, target, wanted, count):
+    """A decoder by hand in C++, which fills a target."""
+    timed(1)
+    same(target, wanted)
+    return Contender(who, "peer", makes, partial(timed, count))
+
+
+def by_struct(effort, message, makes):
+    values = bottle_by_hand.unpacked(message)
+    same(values(message, 8)[-1], degrees_of(message)[-1])
+    return Contender("struct, unchecked", "peer", makes, effort.call(values, message, 8, count=series(effort)))
 
 
 def yarp_vector(peers, message, count):
     """YARP's class for this list alone, where it is installed."""
     read = peers.yarp("vector", message)
     if read is not None:
-        yield Contender("YARP's Vector", "peer", "an array of float64 degrees, used again, in C++", lambda: read(count))
+        yield Contender("YARP's Vector", "peer", "an array of float64 degrees, used again, in C++", partial(read, count))
 
 
 def many(decoder, rows, into):
@@ -63,24 +117,17 @@ def many(decoder, rows, into):
 
 def test_24_specialised_doubles(decoders, effort, compare, record):
     decoder, message, peers, count = decoders[24], specialised(24), Peers(), series(effort)
-    assert decoder(message).angles == pytest.approx(np.radians([10.0 * index - 7.25 for index in range(24)]), rel=1e-6)
-    array, by_hand = np.frombuffer(message, np.uint8), bottle_by_hand.numba_by_hand()
-    kernel, state = bottle_by_hand.numba_kernel(decoder, message)
-    assert by_hand(array, np.empty(24, np.float32)) == len(message)
-    assert kernel(array, state) >= 0
+    angles, degrees = np.zeros(24, np.float32), np.zeros(24)
+    wanted = degrees_of(message)
     outcome = compare(
         CHAPTER,
-        "24 specialised doubles, 200 bytes, 1,000,000 decodes",
+        f"24 specialised doubles, 200 bytes, {decodes(effort)}",
         [
             *bottle_contenders(effort, decoder, message, peers),
             *yarp_vector(peers, message, count),
-            Contender(LOOP, "peer", "an array of float32 radians, used again", lambda: peers.loop(message, 266)(count)),
-            Contender(COPY, "peer", "an array of float64 degrees, used again", lambda: peers.copy(message, 266)(count)),
-            Contender("numba by hand", "peer", "an array, used again", effort.call(by_hand, array, np.empty(24, np.float32), count=count)),
-            Contender("our kernel through numba's dispatcher", "peer", HOLDER, effort.call(kernel, array, state, count=count)),
-            Contender("numpy.frombuffer", "peer", "a view of degrees", effort.call(bottle_by_hand.frombuffer, message, count=count)),
-            Contender("numpy, as radians", "peer", "an array, anew", effort.call(bottle_by_hand.frombuffer_radians, message, count=count)),
-            Contender("struct", "peer", "a tuple of degrees", effort.call(bottle_by_hand.struct_unpack(24), message, count=count)),
+            in_cpp(LOOP, "an array of float32 radians, used again", peers.loop(message, 266, angles), angles, np.radians(wanted), count),
+            in_cpp(COPY, "an array of float64 degrees, used again", peers.copy(message, 266, degrees), degrees, wanted, count),
+            by_struct(effort, message, "a tuple of degrees, anew"),
         ],
         rounds=SERIES,
     )
@@ -88,14 +135,7 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
         "one call, 24 specialised doubles, `builtin`", outcome.ratio(BUILTIN, LEN), 1.3, "x len()", f"{outcome.took(BUILTIN).median:.0f} ns"
     )
     record("one call, 24 specialised doubles", outcome.ratio(OURS, LEN), 2, "x len()", f"{outcome.took(OURS).median:.0f} ns")
-    dynamic = outcome.took(peers.dynamic_decoder).median
-    record(
-        "the same against a dynamic C++ decoder",
-        outcome.ratio(OURS, peers.dynamic_decoder),
-        1 / 30,
-        "of it",
-        f"{peers.dynamic_decoder}: {dynamic:.0f} ns",
-    )
+    against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder", 1 / 30)
     loop, copy = (outcome.took(who).median for who in (LOOP, COPY))
     detail = f"loop {loop:.1f} ns, header check and memcpy {copy:.1f} ns"
     record("the same against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)
@@ -103,33 +143,52 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
 
 def test_16_tagged_doubles(decoders, effort, compare, record):
     decoder, message, peers = decoders[16], tagged(16), Peers()
+    angles = np.zeros(16, np.float32)
     outcome = compare(
         CHAPTER,
-        "16 tagged doubles, 200 bytes, 1,000,000 decodes",
+        f"16 tagged doubles, 200 bytes, {decodes(effort)}",
         [
             *bottle_contenders(effort, decoder, message, peers),
-            Contender(TAGGED, "peer", "an array of float32 radians, used again", lambda: peers.tagged_loop(message, 10)(series(effort))),
-            Contender("struct", "peer", "a tuple of tags and degrees", effort.call(bottle_by_hand.struct_tagged(16), message)),
+            in_cpp(
+                TAGGED,
+                "an array of float32 radians, used again",
+                peers.tagged_loop(message, 10, angles),
+                angles,
+                np.radians(degrees_of(message)),
+                series(effort),
+            ),
+            by_struct(effort, message, "a tuple of tags and degrees, anew"),
         ],
         rounds=SERIES,
     )
     record("one call, 16 tagged doubles, `builtin`", outcome.ratio(BUILTIN, LEN), None, "x len()", f"{outcome.took(BUILTIN).median:.0f} ns")
     record("one call, 16 tagged doubles", outcome.ratio(OURS, LEN), 3, "x len()", f"{outcome.took(OURS).median:.0f} ns")
+    against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder, tagged", None)
     loop = outcome.took(TAGGED).median
     record("the same against a C++ loop by hand, tagged", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")
 
 
+def against_dynamic(record, outcome, peers, what, at_most):
+    who = peers.dynamic_decoder
+    record(what, outcome.ratio(OURS, who), at_most, "of it", f"{who}: {outcome.took(who).median:.0f} ns", against=who)
+
+
 def test_encode(decoders, effort, compare, record):
     message, holder = specialised(24), decoders[24](specialised(24))
-    encode = rj.Encoder(decoders[24]._request.mapping, encoding="yarp3")
-    assert len(encode(holder)) == len(message)
+    encode, buffer = rj.Encoder(decoders[24]._request.mapping, encoding="yarp3"), bytearray(len(message))
+    pack, values = bottle_by_hand.packed(message)
+    assert encode.into(holder, buffer, 0) == len(message)
+    for written in (encode(holder), buffer):
+        same(np.frombuffer(written, np.float64, offset=8), degrees_of(message))
+    assert pack(*values) == message
     outcome = compare(
         CHAPTER,
         "24 specialised doubles, encoded",
         [
             Contender(OURS, "ours", "bytes, anew", effort.call(encode, holder)),
-            Contender("rosetta_jit, into", "ours", "a buffer that is given", effort.call(encode, holder, bytearray(len(message)), 0)),
+            Contender("rosetta_jit, into", "ours", "a buffer that is given", effort.call(encode, holder, buffer, 0)),
             Contender(LEN, "limit", "a number", effort.call(len, message)),
+            Contender("struct", "peer", "bytes, anew; nothing is converted", effort.call(pack, *values)),
         ],
     )
     record("`encode`, one call, 24 doubles", outcome.ratio(OURS, LEN), 3, "x len()", f"{outcome.took(OURS).median:.0f} ns")
@@ -139,10 +198,10 @@ def test_a_million_in_one_call(decoders, effort, compare, record):
     count = MESSAGES // 10 if effort.quick else MESSAGES
     buffer, offsets = batch(count)
     rows, target = decoders[24].many(buffer, offsets), np.empty_like(buffer)
-    assert len(rows) == count
+    same(rows.angles.to_numpy()[[0, -1]], np.radians([degrees_of(specialised())] * 2))
     outcome = compare(
         CHAPTER,
-        "1,000,000 messages in one call",
+        f"{count:,} messages in one call",
         [
             Contender(MANY, "ours", "rows of angles, used again", effort.call(many(decoders[24], (buffer, offsets), rows), messages=count)),
             Contender("memmove", "limit", "their bytes, elsewhere", effort.call(np.copyto, target, buffer, messages=count)),
@@ -150,4 +209,4 @@ def test_a_million_in_one_call(decoders, effort, compare, record):
         rounds=7,
     )
     took = outcome.took(MANY).median
-    record("`many`, 10⁶ such messages", outcome.ratio(MANY, "memmove"), 1.2, "x memmove", f"{took:.1f} ns a message")
+    record("`many`, 10⁶ such messages", outcome.ratio(MANY, "memmove"), 1.2, "x memmove", f"{took:.1f} ns a message, of {count:,}")

@@ -13,7 +13,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
+
+PLACES = 5
+"""Places of the data of one contender."""
+
+STEP = 1376
+"""Bytes by which the places are moved apart, about a third of a page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +34,22 @@ class Call:
 
     def __call__(self) -> float:
         return 1e9 * self.timer.timeit(self.count) / (self.count * self.messages)
+
+
+@dataclass(slots=True)
+class Placed:
+    """One job on data in several places, in another one each round.
+
+    Where two blocks lie modulo a page can make a copy ten times slower, and stays as it is for a process: in one place alone, a run
+    would measure its luck.
+    """
+
+    calls: Sequence[Callable[[], float]]
+    turn: int = 0
+
+    def __call__(self) -> float:
+        self.turn += 1
+        return self.calls[self.turn % len(self.calls)]()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +85,18 @@ class Effort:
         timer = timeit.Timer(f"function({', '.join(names)})", setup, clock, given)
         return Call(function, arguments, timer, count or self._count(timer), messages)
 
+    def placed(self, place: Callable[[], Callable[[], float]]) -> Placed:
+        """A contender that ``place`` makes, each time with data of its own."""
+        calls: list[Callable[[], float]] = []
+        between: list[bytearray] = []
+        for number in range(PLACES):
+            between.append(bytearray(STEP * number))
+            calls.append(place())
+        return Placed(calls)
+
     def _count(self, timer: timeit.Timer) -> int:
-        """How many calls fill a round."""
+        """How many calls fill a round. The first call does not count: in it, peers write and compile their functions."""
+        timer.timeit(1)
         count = 1
         while (took := timer.timeit(count)) < self.round_s / 4:
             count *= 4

@@ -40,6 +40,7 @@ private:
 template <typename Readable>
 double read_ns(const unsigned char* message, std::int64_t size, std::int64_t iterations) {
     Readable value;
+    publish(value);
     const yarp::os::Route route;
     return nanoseconds(iterations, [&] {
         Message stream(message, static_cast<std::size_t>(size));
@@ -54,6 +55,17 @@ double read_ns(const unsigned char* message, std::int64_t size, std::int64_t ite
 extern "C" {
 
 const char* dynamic_decoder() { return "YARP " YARP_VERSION; }
+
+// What it reads, so that it can be compared.
+std::int64_t dynamic_values(const unsigned char* message, std::int64_t size, double* values, std::int64_t room) {
+    yarp::os::Bottle bottle;
+    bottle.fromBinary(reinterpret_cast<const char*>(message), static_cast<std::size_t>(size));
+    const auto count = static_cast<std::int64_t>(bottle.size());
+    for (std::int64_t index = 0; index < count && index < room; ++index) {
+        values[index] = bottle.get(static_cast<std::size_t>(index)).asFloat64();
+    }
+    return count;
+}
 
 double dynamic_decode_ns(const unsigned char* message, std::int64_t size, std::int64_t iterations) {
     yarp::os::Bottle bottle;

@@ -21,6 +21,7 @@ extern "C" {
 
 double decode_ns(const char*, const unsigned char* message, std::int64_t size, std::int64_t iterations) {
     RTC::TimedDoubleSeq value;
+    publish(value);
     return nanoseconds(iterations, [&] {
         Reading from(message, size);
         value <<= from.stream;

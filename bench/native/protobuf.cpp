@@ -15,6 +15,7 @@ using Job = double (*)(const unsigned char*, int, std::int64_t);
 template <typename Message>
 double decode(const unsigned char* data, int size, std::int64_t iterations) {
     Message message;
+    publish(message);
     return nanoseconds(iterations, [&] { return message.ParseFromArray(data, size); });
 }
 
@@ -25,6 +26,7 @@ double encode(const unsigned char* data, int size, std::int64_t iterations) {
         return -1;
     }
     std::vector<unsigned char> buffer(static_cast<std::size_t>(size));
+    publish(buffer);
     const double took = nanoseconds(iterations, [&] { return message.SerializeToArray(buffer.data(), size); });
     return std::memcmp(buffer.data(), data, buffer.size()) == 0 ? took : -1;
 }

@@ -26,6 +26,7 @@ void read(unsigned char* data, std::uint32_t size, Message& message) {
 template <typename Message>
 double decode(unsigned char* data, std::uint32_t size, std::int64_t iterations) {
     Message message;
+    publish(message);
     return nanoseconds(iterations, [&] {
         read(data, size, message);
         return true;
@@ -37,6 +38,7 @@ double encode(unsigned char* data, std::uint32_t size, std::int64_t iterations) 
     Message message;
     read(data, size, message);
     std::vector<unsigned char> buffer(size);
+    publish(buffer);
     const double took = nanoseconds(iterations, [&] {
         ros::serialization::OStream stream(buffer.data(), size);
         ros::serialization::serialize(stream, message);

@@ -8,6 +8,12 @@
 // The compiler must believe that somebody else reads and writes all memory between two messages.
 inline void forget() { asm volatile("" ::: "memory"); }
 
+// The compiler must believe that somebody else knows an object: else it may leave out to write what nobody reads.
+template <typename Object>
+void publish(Object& object) {
+    asm volatile("" : : "r"(&object) : "memory");
+}
+
 // Nanoseconds that this thread has had a processor: what others do meanwhile does not count.
 inline double now_ns() {
     timespec now{};

@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from bench.peers import by_hand, cyclone, lcm_gen, mcap, protobuf, rosbags
+from bench.peers import betterproto, by_hand, cyclone, lcm_gen, mcap, protobuf, pybag, rosbags
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -20,19 +20,26 @@ _PACKAGES: Mapping[str, tuple[str, Callable[[Subject], tuple[Peer, ...]]]] = {
     "rosbags": ("rosbags", rosbags.peers),
     "mcap-ros1-support": ("mcap_ros1", mcap.ros1_peers),
     "mcap-ros2-support": ("mcap_ros2", mcap.ros2_peers),
+    "pybag-sdk": ("pybag", pybag.peers),
     "cyclonedds": ("cyclonedds", cyclone.peers),
     "lcm": ("lcm", lcm_gen.peers),
     "protobuf": ("grpc_tools", protobuf.peers),
+    "betterproto2": ("betterproto2", betterproto.peers),
 }
 """Distribution → what to look for, and its peers for a message."""
 
 
 def packages() -> tuple[str, ...]:
-    """The distributions of peers that are installed."""
+    """The distributions of peers that there are, installed or not."""
+    return tuple(_PACKAGES)
+
+
+def installed() -> tuple[str, ...]:
+    """Those of them that take part."""
     return tuple(name for name, (module, _) in _PACKAGES.items() if find_spec(module) is not None)
 
 
 def python_peers(subject: Subject) -> tuple[Peer, ...]:
     """All that read the subject's message in this process; what a person writes by hand comes last."""
-    found = [peer for name in packages() for peer in _PACKAGES[name][1](subject)]
+    found = [peer for name in installed() for peer in _PACKAGES[name][1](subject)]
     return (*found, *by_hand.peers(subject))

@@ -1,8 +1,9 @@
-"""What a person writes in Python for the bottle that is measured: numba on arrays, numpy, struct. Only numba's checks the header."""
+"""What a person writes in Python for the bottles that are measured: numba on arrays, numpy, struct. Only numba checks headers and tags."""
 
 from __future__ import annotations
 
 import struct
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,9 +13,11 @@ if TYPE_CHECKING:
 
 HEADER = 8
 DEGREE = np.float32(np.pi / 180)
+TAGGED = np.dtype([("tag", "<i4"), ("degrees", "<f8")])
+"""An element with its tag before it."""
 
 
-def numba_by_hand() -> Any:
+def numba_specialised() -> Any:
     """Header check and loop in numba, without any of ours: from an array of bytes into an array of angles."""
     import numba
 
@@ -33,8 +36,29 @@ def numba_by_hand() -> Any:
     return decode
 
 
-def numba_kernel(decoder: Any, message: bytes) -> tuple[Any, Any]:
-    """Our kernel, called through numba's dispatcher instead of our entry; and the state of a holder that is large enough."""
+def numba_tagged() -> Any:
+    """The same with a tag before each number."""
+    import numba
+
+    @numba.njit
+    def decode(message: Any, angles: Any) -> int:
+        if message.size < HEADER:
+            return -1
+        head = message[:HEADER].view(np.int32)
+        if head[0] != 256 or message.size != HEADER + 12 * head[1] or angles.size != head[1]:
+            return -1
+        elements = message[HEADER:].view(TAGGED)
+        for index in range(angles.size):
+            if elements[index].tag != 10:
+                return -1
+            angles[index] = np.float32(elements[index].degrees) * DEGREE
+        return message.size
+
+    return decode
+
+
+def numba_kernel(decoder: Any, holder: Any) -> tuple[Any, Any]:
+    """Our kernel, called through numba's dispatcher instead of our entry; and the state of a holder, which must be large enough."""
     import numba
 
     from rosetta_jit.backends.numba import data_pointer
@@ -45,26 +69,37 @@ def numba_kernel(decoder: Any, message: bytes) -> tuple[Any, Any]:
     def decode(message: Any, state: Any) -> int:
         return kernel(data_pointer(message), 0, message.size, data_pointer(state), 0)
 
-    return decode, decoder.into(message, decoder.new()).lanes_.state
+    return decode, holder.lanes_.state
 
 
-def frombuffer(message: bytes) -> Any:
+def frombuffer(message: bytes) -> Callable[[bytes], np.ndarray]:
     """A view of the degrees."""
-    return np.frombuffer(message, np.float64, offset=HEADER)
+    if _is_tagged(message):
+        return lambda message: np.frombuffer(message, TAGGED, offset=HEADER)["degrees"]
+    return partial(np.frombuffer, dtype=np.float64, offset=HEADER)
 
 
-def frombuffer_radians(message: bytes) -> Any:
+def radians(message: bytes) -> Callable[[bytes], np.ndarray]:
     """The angles, as our decoder gives them, anew."""
-    return np.radians(np.frombuffer(message, np.float64, offset=HEADER)).astype(np.float32)
+    view = frombuffer(message)
+    return lambda message: np.radians(view(message)).astype(np.float32)
 
 
-def struct_unpack(count: int) -> Callable[[bytes], tuple[float, ...]]:
-    """A tuple of degrees."""
-    unpack_from = struct.Struct(f"<{count}d").unpack_from
-    return lambda message: unpack_from(message, HEADER)
+def unpacked(message: bytes) -> Callable[[bytes, int], tuple[float, ...]]:
+    """A tuple of degrees, with their tags if they have some."""
+    return _format(message).unpack_from
 
 
-def struct_tagged(count: int) -> Callable[[bytes], tuple[float, ...]]:
-    """A tuple of tags and degrees."""
-    unpack_from = struct.Struct("<" + count * "id").unpack_from
-    return lambda message: unpack_from(message, HEADER)
+def packed(message: bytes) -> tuple[Callable[..., bytes], tuple[float, ...]]:
+    """The message out of numbers, and the numbers."""
+    whole = struct.Struct(f"<ii{_format(message).format.lstrip('<')}")
+    return whole.pack, whole.unpack(message)
+
+
+def _format(message: bytes) -> struct.Struct:
+    count = struct.unpack_from("<ii", message)[1]
+    return struct.Struct("<" + ("id" * count if _is_tagged(message) else f"{count}d"))
+
+
+def _is_tagged(message: bytes) -> bool:
+    return struct.unpack_from("<i", message)[0] == 256

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,8 @@ def peers(subject: Subject) -> tuple[Peer, ...]:
     unpack_from = struct.Struct(f"{order}{(len(subject.message) - begin) // 8}d").unpack_from
     type_ = np.dtype(f"{order}f8")
     return (
-        Peer("struct by hand, unchecked", "a tuple, anew", lambda message: unpack_from(message, begin)),
-        Peer("numpy.frombuffer, unchecked", "a view of the message", lambda message: np.frombuffer(message, type_, offset=begin)),
+        Peer("struct by hand, unchecked", "a tuple, anew", partial(unpack_from, offset=begin)),
+        Peer("numpy.frombuffer, unchecked", "a view of the message", partial(np.frombuffer, dtype=type_, offset=begin)),
         Peer(
             "numpy.frombuffer and astype, unchecked",
             "an array, anew",

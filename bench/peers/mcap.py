@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from bench.peers.base import Peer
 from bench.peers.rosbags import store, type_name
@@ -20,11 +23,12 @@ def ros1_peers(subject: Subject) -> tuple[Peer, ...]:
 
     decode = DecoderFactory().decoder_for("ros1", Schema(1, definition(subject, 1).encode(), "ros1msg", subject.type))
     makes = "genpy's message class, anew; tuples, bytes and lists of objects"
-    again = "the same, used again"
-    reused = decode(subject.message)
+    reused, viewing = decode(subject.message), decode(subject.message)
     return (
         Peer("mcap-ros1-support (genpy)", makes, decode, _serialized),
-        Peer("genpy's deserialize", again, reused.deserialize),
+        Peer("genpy's deserialize", "the same, used again", reused.deserialize),
+        # It does not write: its serialize_numpy calls what numpy has no more.
+        Peer("genpy's deserialize_numpy", "the same, used again; arrays are numpy views of the message", partial(_viewed, viewing)),
     )
 
 
@@ -42,6 +46,10 @@ def definition(subject: Subject, version: int) -> str:
     """The concatenated definitions that a bag carries."""
     text, _ = store(subject.encoding).generate_msgdef(type_name(subject), ros_version=version)
     return text
+
+
+def _viewed(value: Any, message: bytes) -> Any:
+    return value.deserialize_numpy(message, np)
 
 
 def _serialized(value: Any) -> bytes:

@@ -17,6 +17,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "build" / "native"
 
 _LIBRARIES = {
     "ros1": ("roscpp", "roscpp in C++", "an object, used again; std::vector and std::string"),
+    "cdr": ("fastcdr", "Fast CDR in C++", "an object, used again; std::vector and std::string"),
     "protobuf": ("protobuf", "protobuf in C++", "a message, used again; RepeatedField and std::string"),
     "cdr-giop": ("omniorb", "omniORB in C++", "a struct, used again; its sequence allocates"),
     "lcm": ("lcm", "lcm-gen's C++", "an object, used again; std::vector"),
@@ -42,17 +43,25 @@ def native_peers(subject: Subject) -> tuple[NativePeer, ...]:
     if subject.encoding not in _LIBRARIES:
         return ()
     name, who, makes = _LIBRARIES[subject.encoding]
-    path = FOLDER / f"lib{name}_peer.so"
-    if not path.exists():
+    if not _path(name).exists():
         return ()
-    library = ctypes.CDLL(str(path))
+    library = ctypes.CDLL(str(_path(name)))
     jobs = tuple(partial(_nanoseconds, library[f"{job}_ns"], subject) for job in ("decode", "encode"))
     return (NativePeer(who, makes, *jobs),)
 
 
 def built() -> tuple[str, ...]:
     """The native peers whose libraries were built."""
-    return tuple(who for name, who, _ in _LIBRARIES.values() if (FOLDER / f"lib{name}_peer.so").exists())
+    return tuple(who for name, who, _ in _LIBRARIES.values() if _path(name).exists())
+
+
+def absent() -> tuple[str, ...]:
+    """Those for which headers or generators are not installed."""
+    return tuple(who for name, who, _ in _LIBRARIES.values() if not _path(name).exists())
+
+
+def _path(name: str) -> Path:
+    return FOLDER / f"lib{name}_peer.so"
 
 
 def rounds_of(job: Callable[[int], float], round_s: float) -> Callable[[], float]:

@@ -8,6 +8,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from bench.peers.base import Peer
 
 if TYPE_CHECKING:
@@ -27,8 +29,15 @@ def peers(subject: Subject) -> tuple[Peer, ...]:
     who = f"protobuf ({api_implementation.Type()})"
     return (
         Peer(who, "a message, anew; fields are read through it", made.FromString, made.SerializeToString),
+        # A message that is used again keeps all that it ever held, so that its memory grows.
         Peer(f"{who}, ParseFromString", "the same, used again", made().ParseFromString),
+        *((Peer(f"{who}, as an array", "the numbers alone, a numpy array, anew", _array_of(made)),) if "Angles" in subject.type else ()),
     )
+
+
+def _array_of(made: Any) -> Any:
+    """What it takes to have what our holders have."""
+    return lambda message: np.array(made.FromString(message).angles)
 
 
 def _message_class(name: str) -> Any:

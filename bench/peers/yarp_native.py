@@ -6,6 +6,8 @@ import ctypes
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from bench.peers.native import FOLDER
 
 if TYPE_CHECKING:
@@ -15,7 +17,7 @@ LIBRARY = FOLDER / "libpeers.so"
 
 
 class Peers:
-    """Each method gives a function from iterations to nanoseconds a message."""
+    """Most methods give a function from iterations to nanoseconds a message; it keeps the arrays that it fills."""
 
     def __init__(self) -> None:
         self.library = ctypes.CDLL(str(LIBRARY))
@@ -29,23 +31,31 @@ class Peers:
     def dynamic(self, message: bytes) -> Callable[[int], float]:
         return self._timed("dynamic_decode_ns", message)
 
+    def dynamic_values(self, message: bytes) -> np.ndarray:
+        """The numbers that the dynamic decoder reads."""
+        values = np.zeros(len(message) // 8)
+        function = self.library.dynamic_values
+        function.restype = ctypes.c_int64
+        count = function(message, ctypes.c_int64(len(message)), values.ctypes, ctypes.c_int64(len(values)))
+        return values[: max(count, 0)]
+
     def yarp(self, class_: str, message: bytes) -> Callable[[int], float] | None:
         """YARP's ``image`` or ``vector``, if real YARP was linked."""
         name = f"yarp_{class_}_ns"
         return self._timed(name, message) if hasattr(self.library, name) else None
 
-    def loop(self, message: bytes, tag: int) -> Callable[[int], float]:
-        return self._timed("loop_decode_ns", message, tag, (ctypes.c_float * (len(message) // 8))())
+    def loop(self, message: bytes, tag: int, angles: np.ndarray) -> Callable[[int], float]:
+        return self._timed("loop_decode_ns", message, tag, angles.ctypes)
 
-    def tagged_loop(self, message: bytes, tag: int) -> Callable[[int], float]:
-        return self._timed("tagged_decode_ns", message, tag, (ctypes.c_float * (len(message) // 12))())
+    def tagged_loop(self, message: bytes, tag: int, angles: np.ndarray) -> Callable[[int], float]:
+        return self._timed("tagged_decode_ns", message, tag, angles.ctypes)
 
-    def copy(self, message: bytes, tag: int) -> Callable[[int], float]:
-        return self._timed("copy_decode_ns", message, tag, (ctypes.c_double * (len(message) // 8))())
+    def copy(self, message: bytes, tag: int, degrees: np.ndarray) -> Callable[[int], float]:
+        return self._timed("copy_decode_ns", message, tag, degrees.ctypes)
 
-    def image(self, job: str, message: bytes) -> Callable[[int], float]:
+    def image(self, job: str, message: bytes, pixels: np.ndarray) -> Callable[[int], float]:
         """``job``: ``unpad``, ``swap`` or ``planar``."""
-        return self._timed(f"image_{job}_ns", message, (ctypes.c_uint8 * len(message))())
+        return self._timed(f"image_{job}_ns", message, pixels.ctypes)
 
     def memmove(self, size: int) -> Callable[[int], float]:
         function = self._function("memmove_ns")

@@ -6,19 +6,18 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.figures import chapters, ratio
-from bench.report import plot, words
-from bench.slopes import exponent, too_steep
+from bench.figures import chapters
+from bench.report import plot, tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from bench.figures import Comparison, Curve, Report, Row
+    from bench.figures import Comparison, Curve, Report
 
 HOW = (
     "All contenders of a job were measured in turns. Figures are medians over the rounds with their quartiles; ratios are those of single "
-    "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread on a processor. "
-    "Bars and curves have logarithmic axes."
+    "rounds, so that a busy moment of the machine hits both alike. Time is that of the thread, or of the process, on a processor; where "
+    "several threads work it is the clock's. Contenders and curves have logarithmic axes."
 )
 STYLE = Path(__file__).with_name("style.css")
 
@@ -36,7 +35,7 @@ def _body(report: Report, about: Mapping[str, str]) -> Iterator[str]:
     yield f"<p>{escape(HOW)}</p>"
     yield _table((), about.items())
     yield "<h2>Targets</h2>"
-    yield _table(("what", "measured", "at most", "", ""), map(_target, report.rows))
+    yield _table(tables.TARGETS, map(tables.target, report.rows))
     for chapter, comparisons in chapters(report.comparisons).items():
         yield f"<h2>{escape(chapter)}</h2>"
         yield from map(_comparison, comparisons)
@@ -44,37 +43,15 @@ def _body(report: Report, about: Mapping[str, str]) -> Iterator[str]:
     yield from map(_curve, report.curves)
 
 
-def _target(row: Row) -> tuple[str, ...]:
-    at_most = "" if row.at_most is None else f"{row.at_most:.3g} {row.unit}"
-    mark = "" if row.at_most is None else "met" if row.met else "missed"
-    return row.what, f"{words.ratio(row.measured)} {row.unit}", at_most, mark, row.detail
-
-
 def _comparison(comparison: Comparison) -> str:
-    ours = comparison.figures[0]
-    lines = (
-        (
-            each.who,
-            each.makes,
-            words.spread_of_time(each.took),
-            "" if each is ours or ours.role != "ours" else words.ratio(ratio(ours.rounds_ns, each.rounds_ns)),
-        )
-        for each in comparison.figures
-    )
-    multiple = f"{ours.who}, as a multiple" if ours.role == "ours" else ""
-    table = _table(("who", "makes", "median (quartiles)", multiple), lines)
+    table = _table(*tables.contenders(comparison))
     return f"<section><h3>{escape(comparison.title)}</h3>{plot.bars(comparison)}{table}</section>"
 
 
 def _curve(curve: Curve) -> str:
-    steep = too_steep(curve)
-    lines = (
-        (each.who, f"x^{exponent(each):.2f}", f"steeper than the job, which is x^{curve.may_grow:g}" if each.who in steep else "")
-        for each in curve.series
-    )
-    drawn = plot.stacked(curve) if curve.parts else plot.lines(curve)
+    drawn = plot.stacked(curve) + _table(*tables.shares(curve)) if curve.parts else plot.lines(curve)
     note = f"<p>{escape(curve.note)}</p>" if curve.note else ""
-    return f"<section><h3>{escape(curve.title)}</h3>{drawn}{note}{_table(('of', 'grows as', ''), lines)}</section>"
+    return f"<section><h3>{escape(curve.title)}</h3>{drawn}{note}{_table(tables.GROWTH, tables.growth(curve))}</section>"
 
 
 def _table(head: Iterable[str], lines: Iterable[Iterable[str]]) -> str:

@@ -4,61 +4,42 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from bench.figures import chapters, ratio
-from bench.report import words
-from bench.slopes import exponent, too_steep
+from bench.figures import chapters
+from bench.report import tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from bench.figures import Comparison, Curve, Report, Row
+    from bench.figures import Curve, Report, Row
 
 
 def page(report: Report, about: Mapping[str, str]) -> str:
     """The whole report."""
     parts = ["# Benchmarks\n", table(("", ""), about.items()), "\n## Targets\n", targets(report.rows)]
     for chapter, comparisons in chapters(report.comparisons).items():
-        parts += [f"\n## {chapter}\n", *(f"\n### {each.title}\n\n{contenders(each)}" for each in comparisons)]
+        parts += [f"\n## {chapter}\n", *(f"\n### {each.title}\n\n{table(*tables.contenders(each))}" for each in comparisons)]
     parts += ["\n## How costs grow\n", slopes(report.curves)]
+    parts += [f"\n### {each.title}\n\n{table(*tables.shares(each))}" for each in report.curves if each.parts]
     return "\n".join(parts)
 
 
 def targets(rows: Sequence[Row]) -> str:
     """The table of the README: ratios against their limits."""
-    lines: list[tuple[str, ...]] = []
-    for row in rows:
-        target = "" if row.at_most is None else f"{row.at_most:.3g} {row.unit}"
-        mark = "" if row.at_most is None else "met" if row.met else "**missed**"
-        lines.append((row.what, f"{row.measured.median:.3g} {row.unit}", target, " - ".join(each for each in (mark, row.detail) if each)))
-    return table(("what", "measured", "at most", ""), lines)
-
-
-def contenders(comparison: Comparison) -> str:
-    """One job: who took how long, what that is of ours, and what it made."""
-    ours = comparison.figures[0]
-    lines = [
-        (
-            each.who,
-            each.makes,
-            words.spread_of_time(each.took),
-            "" if each is ours or ours.role != "ours" else words.ratio(ratio(ours.rounds_ns, each.rounds_ns)),
-        )
-        for each in comparison.figures
-    ]
-    return table(("who", "makes", "median (quartiles)", f"{ours.who}, as a multiple" if ours.role == "ours" else ""), lines)
+    lines = (
+        (what, measured, at_most, " - ".join(each for each in ("**missed**" if mark == "missed" else mark, detail) if each))
+        for what, measured, at_most, mark, detail in map(tables.target, rows)
+    )
+    return table(tables.TARGETS[:-1], lines)
 
 
 def slopes(curves: Sequence[Curve]) -> str:
     """The exponent of each series, and what is superlinear."""
-    lines: list[tuple[str, ...]] = []
-    for curve in curves:
-        steep = too_steep(curve)
-        for each in curve.series:
-            (first, lowest), (last, highest) = each.points[0], each.points[-1]
-            reach = f"{words.count(first)} to {words.count(last)}: {lowest.median:.3g} to {highest.median:.3g} {curve.y}"
-            mark = f"**steeper than the job** (x^{curve.may_grow:g})" if each.who in steep else ""
-            lines.append((curve.title, each.who, reach, f"x^{exponent(each):.2f}", " - ".join(part for part in (mark, curve.note) if part)))
-    return table(("curve", "of", "reach", "grows as", ""), lines)
+    lines = (
+        (curve.title, who, reach, grows, " - ".join(each for each in (f"**{mark}**" if mark else "", curve.note) if each))
+        for curve in curves
+        for who, reach, grows, mark in tables.growth(curve)
+    )
+    return table(("curve", *tables.GROWTH), lines)
 
 
 def table(head: Iterable[str], lines: Iterable[Iterable[str]]) -> str:

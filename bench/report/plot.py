@@ -40,11 +40,13 @@ class Scale:
         share = math.log(max(value, self.low) / self.low) / math.log(self.high / self.low)
         return self.begin + share * (self.end - self.begin)
 
-    def decades(self) -> list[float]:
-        """Powers of ten within, and no more of them than can be read."""
-        first, last = math.ceil(math.log10(self.low)), math.floor(math.log10(self.high))
-        step = max(1, (last - first) // 8 + 1)
-        return [10.0**power for power in range(first, last + 1, step)]
+    def ticks(self) -> list[float]:
+        """Powers of ten within, no more of them than can be read; where they are few, what lies between."""
+        first, last = math.floor(math.log10(self.low)), math.floor(math.log10(self.high))
+        step = max(1, (last - first - 1) // 8 + 1)
+        between = (1.0, 2.0, 5.0) if last - first < 3 else (1.0,)
+        found = [part * 10.0**power for power in range(first, last + 1, step) for part in between]
+        return [value for value in found if self.low <= value <= self.high]
 
 
 def lines(curve: Curve) -> str:
@@ -77,7 +79,7 @@ def stacked(curve: Curve) -> str:
     parts: list[str] = []
     for number, x in enumerate(xs):
         top, left = TOP + number * ROW * 1.3, float(LEFT)
-        parts.append(f'<text class="name" x="{LEFT - 6}" y="{top + 14:.1f}">{words.count(x)}</text>')
+        parts.append(f'<text class="name" x="{LEFT - 6}" y="{top + 14:.1f}">{words.count(x)} {escape(curve.x)}</text>')
         for hue, series in enumerate(curve.series):
             cost = series.points[number][1].median
             width = cost / max(totals) * (WIDTH - LEFT - 90)
@@ -95,7 +97,7 @@ def bars(comparison: Comparison) -> str:
     height = TOP + ROW * len(took) + BOTTOM / 2
     across = Scale.over([each.low for each in took] + [each.high for each in took], LABEL, WIDTH - RIGHT - 60)
     parts: list[str] = []
-    for value in across.decades():
+    for value in across.ticks():
         place = across.at(value)
         parts.append(f'<line class="grid" x1="{place:.1f}" x2="{place:.1f}" y1="{TOP}" y2="{height - BOTTOM / 2:.1f}"/>')
         parts.append(f'<text class="tick" x="{place:.1f}" y="{height - 6:.1f}">{words.time(value)}</text>')
@@ -109,11 +111,11 @@ def bars(comparison: Comparison) -> str:
 
 
 def _grid(across: Scale, up: Scale, x: str, y: str) -> Iterable[str]:
-    for value in across.decades():
+    for value in across.ticks():
         place = across.at(value)
         yield f'<line class="grid" x1="{place:.1f}" x2="{place:.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}"/>'
         yield f'<text class="tick" x="{place:.1f}" y="{HEIGHT - BOTTOM + 16}">{words.count(value)}</text>'
-    for value in up.decades():
+    for value in up.ticks():
         place = up.at(value)
         yield f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{place:.1f}" y2="{place:.1f}"/>'
         yield f'<text class="name" x="{LEFT - 6}" y="{place + 4:.1f}">{words.count(value)}</text>'

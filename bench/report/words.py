@@ -13,18 +13,18 @@ _TIMES = ((1e9, "s"), (1e6, "ms"), (1e3, "µs"), (1.0, "ns"))
 def time(nanoseconds: float) -> str:
     """`1.23 µs`."""
     size, unit = next(((size, unit) for size, unit in _TIMES if nanoseconds >= size), _TIMES[-1])
-    return f"{_three(nanoseconds / size)} {unit}"
+    return f"{number(nanoseconds / size)} {unit}"
 
 
 def spread_of_time(took: Spread) -> str:
     """`1.23 µs (1.20 to 1.31)`: quartiles in the median's unit."""
     size, unit = next(((size, unit) for size, unit in _TIMES if took.median >= size), _TIMES[-1])
-    return f"{_three(took.median / size)} {unit} ({_three(took.low / size)} to {_three(took.high / size)})"
+    return f"{number(took.median / size)} {unit} ({number(took.low / size)} to {number(took.high / size)})"
 
 
 def ratio(value: Spread) -> str:
     """`1.23 (1.20 to 1.31)`."""
-    return f"{_three(value.median)} ({_three(value.low)} to {_three(value.high)})"
+    return f"{number(value.median)} ({number(value.low)} to {number(value.high)})"
 
 
 def count(value: float) -> str:
@@ -35,7 +35,7 @@ def count(value: float) -> str:
     return f"{value:.3g}"
 
 
-def _three(value: float) -> str:
+def number(value: float) -> str:
     """Three digits, never an exponent."""
     if value >= 100:
         return f"{value:.0f}"

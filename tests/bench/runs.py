@@ -7,8 +7,8 @@ from bench.figures import Comparison, Curve, Figure, Report, Row, Series, Spread
 HOSTILE = '<script>alert("|")</script>'
 
 
-def row(what="decode", median=1.5, *, at_most=2.0, width=0.1):
-    return Row(what, Spread(median, median - width, median + width), at_most, "x len()", "25 ns")
+def row(what="decode", median=1.5, *, at_most=2.0, width=0.1, against=""):
+    return Row(what, Spread(median, median - width, median + width), at_most, "x len()", "25 ns", against)
 
 
 def curve(exponent, *, role="ours", may_grow=1.0, factor=3.0):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from functools import partial
 
 import pytest
 
@@ -64,6 +65,27 @@ def test_a_call_is_timed_without_what_waits():
     """The clock is the thread's: it stands while the thread sleeps."""
     asleep = Effort(3, 0.001, quick=True).call(time.sleep, 0.02, count=2)
     assert 0 < asleep() < 10e6
+
+
+def test_a_first_call_that_compiles_does_not_shorten_the_rounds():
+    """Peers write their functions at the first call: were it counted, a round would be one call, and that a cold one."""
+    made = []
+
+    def decode():
+        if not made:
+            made.append(sum(range(3_000_000)))
+
+    effort = Effort(3, 0.004, quick=True)
+    assert effort.call(decode).count > 1000
+
+
+def test_a_job_is_in_another_place_each_round():
+    """A place in which copies are slow decides nothing."""
+    costs = iter([1.0, 10.0, 2.0, 3.0, 4.0])
+    placed = Effort(10, 0.001, quick=True).placed(lambda cost=costs: partial(float, next(cost)))
+    taken = Effort(10, 0.001, quick=True).in_turns({"a": placed})["a"]
+    assert sorted(taken) == [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 10.0, 10.0]
+    assert Spread.of(taken).median == 3.0
 
 
 def test_a_call_counts_messages():
