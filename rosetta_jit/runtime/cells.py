@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 Array = np.ndarray[Any, Any]
 
@@ -41,32 +38,47 @@ def dtype_of(scalar: str) -> np.dtype[Any]:
     return np.dtype(_FORMATS[scalar])
 
 
+class Memory(dict[int, memoryview]):
+    """The bytes of each lane: in the first memory of all, until it moves to one of its own."""
+
+    __slots__ = ("first", "offsets", "sizes")
+
+    def __init__(self, first: memoryview, offsets: tuple[int, ...], sizes: tuple[int, ...]) -> None:
+        self.first = first
+        self.offsets = offsets
+        self.sizes = sizes
+
+    def __missing__(self, lane: int) -> memoryview:
+        start = self.offsets[lane]
+        found = self[lane] = self.first[start : start + self.sizes[lane]]
+        return found
+
+
 class Cells(dict[int, Any]):
     """The lanes as cells of each scalar, made when first asked for: reading one costs a third of what numpy takes."""
 
-    __slots__ = ("buffers",)
+    __slots__ = ("memory",)
 
-    def __init__(self, buffers: list[NDArray[np.uint8]]) -> None:
-        self.buffers = buffers
+    def __init__(self, memory: Memory) -> None:
+        self.memory = memory
 
     def __missing__(self, key: int) -> Any:
-        lane: Any = memoryview(cast("Any", self.buffers[key >> 4]))
-        cells: Any = lane.cast(_FORMATS[SCALARS[key & 15]])
-        self[key] = cells
+        lane: Any = self.memory[key >> 4]
+        cells = self[key] = lane.cast(_FORMATS[SCALARS[key & 15]])
         return cells
 
 
 class Arrays(dict[int, Array]):
     """The lanes of numbers as arrays of their type, all rows, made when first asked for."""
 
-    __slots__ = ("array_type", "buffers", "dtypes")
+    __slots__ = ("array_type", "dtypes", "memory")
 
-    def __init__(self, buffers: list[NDArray[np.uint8]], dtypes: tuple[np.dtype[Any], ...], array_type: type[Array]) -> None:
-        self.buffers = buffers
+    def __init__(self, memory: Memory, dtypes: tuple[np.dtype[Any], ...], array_type: type[Array]) -> None:
+        self.memory = memory
         self.dtypes = dtypes
         self.array_type = array_type
 
     def __missing__(self, lane: int) -> Array:
-        array: Array = self.buffers[lane].view(self.dtypes[lane]).view(self.array_type)
+        array: Array = np.frombuffer(self.memory[lane], self.dtypes[lane]).view(self.array_type)
         self[lane] = array
         return array

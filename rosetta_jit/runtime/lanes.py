@@ -13,14 +13,16 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, CLEAN, HIDDEN, HIDDEN_COUNT, LANE_WORDS, UNSETTLED, USED, VALID, lane_word
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, CLEAN, HIDDEN, HIDDEN_COUNT, UNSETTLED, USED, VALID, lane_word
 from rosetta_jit.model.births import FirstCase, FixedArray
-from rosetta_jit.runtime.cells import Array, Arrays, Cells
+from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
 from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
 from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from rosetta_jit.model.births import Birth
@@ -39,15 +41,17 @@ class Lanes:
 
     Attributes
     ----------
-    state : ndarray of int64
-        What kernels are given; its words are those of `rosetta_jit.kernel.state`. It never moves.
     address : int
-        Where the state lies.
+        Where the state lies, which kernels are given. It never moves.
     words : memoryview
-        The same words, quicker to read one at a time.
-    buffers : list of ndarray of uint8
+        The words of the state; they are those of `rosetta_jit.kernel.state`.
+    state : ndarray of int64
+        The same words.
+    memory : Memory
         The bytes of each lane, the scratch lane last.
-    cells : Cells
+    buffers : list of ndarray of uint8
+        The same bytes.
+    cells, arrays : Cells, Arrays
         The same bytes as scalars.
     hidden : Hidden or None
         What kernels have besides, from when one needed it.
@@ -64,11 +68,12 @@ class Lanes:
     __slots__ = (
         "__weakref__",
         "address",
-        "arena",
+        "array_type",
         "arrays",
         "buffers",
         "cells",
         "hidden",
+        "memory",
         "moves",
         "plan",
         "rows",
@@ -77,29 +82,42 @@ class Lanes:
         "wasted",
         "words",
     )
+    arrays: Arrays
+    buffers: list[NDArray[np.uint8]]
+    cells: Cells
+    state: NDArray[np.int64]
 
     def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
-        self.plan = plan
         arena = np.zeros(plan.size_bytes + ALIGNMENT, np.uint8)
         address = address_of(arena)
         shift = -address % ALIGNMENT
-        self.arena = arena[shift : shift + plan.size_bytes]
-        self.address = address + shift
-        self.state: NDArray[np.int64] = self.arena[: plan.template.nbytes].view(np.int64)
-        self.state[:] = plan.template
-        if plan.image is not None:
-            self.arena[plan.template.nbytes :][: plan.image.size] = plan.image
-        self.words = memoryview(cast("Any", self.state))
+        address += shift
+        first = memoryview(cast("Any", arena))[shift : shift + plan.size_bytes]
+        first[: len(plan.begin)] = plan.begin
+        words = first[: plan.state_bytes].cast("q")
         for word, offset in zip(plan.addresses, plan.offsets, strict=True):
-            self.words[word] = self.address + offset
-        self.buffers = [self.arena[start : start + size] for start, size in zip(plan.offsets, plan.sizes, strict=True)]
-        self.cells = Cells(self.buffers)
-        self.arrays = Arrays(self.buffers, plan.dtypes, array_type)
+            words[word] = address + offset
+        self.plan = plan
+        self.array_type = array_type
+        self.address = address
+        self.words = words
+        self.memory = Memory(first, plan.offsets, plan.sizes)
         self.hidden: Hidden | None = None
         self.source: list[Any] = [None]
         self.moves = 0
         self.rows = plan.rows
         self.wasted = 0
+
+    if not TYPE_CHECKING:  # for which the slots are always there
+
+        def __getattr__(self, name):
+            """What not every holder is asked for is made when it first is: who has no such slot yet comes here."""
+            made = _MADE.get(name)
+            if made is None:
+                raise AttributeError(f"lanes have no {name!r}")
+            value = made(self)
+            setattr(self, name, value)
+            return value
 
     @classmethod
     def of(cls, layout: Layout, rows: int = 1) -> Lanes:
@@ -136,6 +154,7 @@ class Lanes:
 
     def _place(self, lane: int, buffer: NDArray[np.uint8], capacity: int) -> None:
         self.buffers[lane] = buffer
+        self.memory[lane] = memoryview(cast("Any", buffer))
         self.words[lane_word(lane, ADDRESS)] = address_of(buffer)
         self.words[lane_word(lane, CAPACITY)] = capacity
         self._forget(lane)
@@ -224,15 +243,23 @@ class Lanes:
         return InvalidHolder("the last decode into this holder failed; decode again or clear it before you read it")
 
 
+_MADE: dict[str, Callable[[Lanes], object]] = {
+    "state": lambda lanes: np.frombuffer(lanes.words, np.int64),
+    "buffers": lambda lanes: [np.frombuffer(lanes.memory[lane], np.uint8) for lane in range(len(lanes.plan.strides))],
+    "cells": lambda lanes: Cells(lanes.memory),
+    "arrays": lambda lanes: Arrays(lanes.memory, lanes.plan.dtypes, lanes.array_type),
+}
+
+
 def born(plan: Plan) -> Plan:
     """The plan of one message, which is born from the start."""
     if not plan.births:
         return plan
     prototype = Lanes(plan)
     prototype.bear(plan.births, 0, 1)
-    template, image = plan.template.copy(), prototype.arena[plan.template.nbytes :]
-    template[lane_word(0, USED) :: LANE_WORDS] = prototype.state[lane_word(0, USED) :: LANE_WORDS]
-    return replace(plan, template=template, image=image[: int(np.flatnonzero(image)[-1]) + 1].copy())
+    for word in plan.addresses:
+        prototype.words[word] = 0
+    return replace(plan, begin=bytes(prototype.memory.first).rstrip(b"\0"))
 
 
 def roomier(plan_: Plan, lanes: Lanes) -> Plan:

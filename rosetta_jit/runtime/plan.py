@@ -16,8 +16,6 @@ from rosetta_jit.runtime.memory import aligned
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from rosetta_jit.model.births import Birth
     from rosetta_jit.model.layout import Layout
 
@@ -32,8 +30,8 @@ SCRATCH_STRIDE = 8
 class Plan:
     """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
 
-    ``template`` is the state without its addresses, ``addresses`` are the words where each lane's stands. ``image`` is what lies behind
-    the state when the messages are born with ``births``, as far as it is not zero.
+    ``begin`` is how it begins, up to the last byte that is not zero: the state, of ``state_bytes``, without its addresses, and what the
+    messages are born with. ``addresses`` are the words of the state where each lane's stands.
     """
 
     layout: Layout
@@ -43,10 +41,10 @@ class Plan:
     sizes: tuple[int, ...]
     dtypes: tuple[np.dtype[Any], ...]
     size_bytes: int
-    template: NDArray[np.int64]
+    state_bytes: int
+    begin: bytes
     addresses: tuple[int, ...]
     births: tuple[Birth, ...] = ()
-    image: NDArray[np.uint8] | None = None
 
 
 def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Sequence[int] = ()) -> Plan:
@@ -57,10 +55,9 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Se
     needed: dict[int, int] = {}
     _count(births, 1, needed)
     strides = (*(lane.stride for lane in layout.lanes), SCRATCH_STRIDE)
-    words = state_words(len(strides))
-    template = np.zeros(words, np.int64)
-    template[VALID] = CLEAN
-    behind = aligned(8 * words)
+    state = np.zeros(state_words(len(strides)), np.int64)
+    state[VALID] = CLEAN
+    behind = aligned(state.nbytes)
     offsets: list[int] = []
     sizes: list[int] = []
     for lane, stride in enumerate(strides):
@@ -68,11 +65,11 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Se
         capacity = max(capacity, room[lane] if room else 0)
         offsets.append(behind)
         sizes.append(aligned(capacity * stride, 8))
-        template[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
+        state[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
         behind = aligned(behind + sizes[-1])
     addresses = tuple(lane_word(lane, ADDRESS) for lane in range(len(strides)))
     dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else BYTES for lane in layout.lanes), BYTES)
-    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, template, addresses, births)
+    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), addresses, births)
 
 
 def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:

@@ -51,6 +51,6 @@ def test_nothing_else_is_new_in_them(decode):
 def test_room_for_much_is_made_when_it_is_needed(decode):
     decode(message(100))
     decode(message(100_000))
-    assert decode.new().lanes_.arena.nbytes < 4096
+    assert decode.new().lanes_.plan.size_bytes < 4096
     decode.new()  # as before
     assert decode.into(message(3), decode.new()).D.tolist() == [0, 1, 2]

@@ -218,7 +218,7 @@ def put(node: Leaf, lanes: Lanes, row: int, prepared: Any) -> None:
 
 def settle(record: Record, lanes: Lanes) -> None:
     """Make the lanes fit to be encoded: nothing borrowed, and no rows that nothing refers to."""
-    fresh = Lanes(lanes.plan, lanes.arrays.array_type)
+    fresh = Lanes(lanes.plan, lanes.array_type)
     fresh.reset(lanes.rows)
     for row in range(lanes.rows):
         write_record(record, fresh, row, read_record(record, lanes, row, Form.RAW))
