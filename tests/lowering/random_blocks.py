@@ -25,6 +25,8 @@ class Relations(Scalars):
     more: tuple[Callable[[Relations, str], Part], ...] = ()
     """Forms of other modules, for all wires."""
     more_arrays: tuple[Callable[[Relations, str], Part], ...] = ()
+    blocks: int = 0
+    """How many `when`s of three ways there are."""
 
     @property
     def is_counted(self) -> bool:

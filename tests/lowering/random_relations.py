@@ -55,14 +55,18 @@ class Part:
     """Fields with their units, as `Src.a: km`."""
     pack: str = ""
     """Rules to pack."""
+    is_same: bool = False
+    """Whether `same names` maps its fields."""
     is_sure: bool = False
     """Whether no other values of the wire are asked for: what they are refused as is not said here."""
+    is_bounded: bool = False
+    """Whether neither side is asked for other values: some are refused for what is beyond 64 bits in between."""
 
     def some_wire(self, rng: random.Random) -> Values:
-        return chosen(rng, self.wire, self.wires, is_sure=self.is_sure)
+        return chosen(rng, self.wire, self.wires, is_sure=self.is_sure or self.is_bounded)
 
     def some_holder(self, rng: random.Random) -> Values:
-        return chosen(rng, self.holder, self.holders)
+        return chosen(rng, self.holder, self.holders, is_sure=self.is_bounded)
 
 
 def chosen(
@@ -256,6 +260,8 @@ def body(parts: list[Part]) -> str:
     """What a mapping says beside its types."""
     declared = "".join(f"parameter {name}: {type_}\n" for part in parts for name, (type_, _) in part.parameters.items())
     rules, pack = ("".join(getattr(part, which) for part in parts) for which in ("text", "pack"))
+    if any(part.is_same for part in parts):
+        rules += "same names\n"
     return f"{declared}rules:\n{rules}" + (f"pack-rules:\n{pack}" if pack else "")
 
 
