@@ -26,7 +26,7 @@ class Relations(Scalars):
     """Forms of other modules, for all wires."""
     more_arrays: tuple[Callable[[Relations, str], Part], ...] = ()
     blocks: int = 0
-    """How many `when`s of three ways there are."""
+    """How many `when`s of three ways there are, and images: more of them take long to compile."""
 
     @property
     def is_counted(self) -> bool:

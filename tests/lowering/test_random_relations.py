@@ -14,6 +14,7 @@ from tests.lowering.random_blocks import Relations
 from tests.lowering.random_digits import digits, divided, moment, taken_apart
 from tests.lowering.random_nested import date, listed, parameter, unit, via, widened
 from tests.lowering.random_octets import octets
+from tests.lowering.random_orders import chosen_element, elementwise_digits, flagged, members, ordered, padded, sliced
 from tests.lowering.random_refusals import of_elements, rejected, same, same_arrays, within_blocks
 from tests.lowering.random_relations import Part, below_all, body
 from tests.lowering.random_searches import maps, searched, separated
@@ -26,13 +27,14 @@ from tests.lowering.test_random_wires import Side, counted, without_cases
 MESSAGES = 15
 FORMS = (parameter, date, unit, digits, taken_apart, divided, moment, rejected, within_blocks, same)
 ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays)
+ORDERS = (ordered, padded, flagged, sliced, members, chosen_element, elementwise_digits)
 
 
 def relations(rng: random.Random, names: tuple[str, str]) -> tuple[Side, Side, list[Part]]:
     """The types of both sides, and the relations between them."""
     wire, holder = (WIRES[name] for name in names)
     dst = Message("Dst", {})
-    made = Relations(rng, wire, holder, Side(holder, dst).constant, more=FORMS, more_arrays=ARRAY_FORMS)
+    made = Relations(rng, wire, holder, Side(holder, dst).constant, more=FORMS, more_arrays=ARRAY_FORMS + ORDERS)
     if "yarp" not in "".join(names):  # whose inner structs have no names
         made.more += (via,)
     parts = [made.part() for _ in range(rng.randrange(1, 7))]
