@@ -49,7 +49,7 @@ def is_odd(n):
 
 
 def larger(a, b):
-    return a if a > b else b
+    return max(a, b)
 
 
 def nearer(x, y, is_first):
