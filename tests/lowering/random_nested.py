@@ -88,7 +88,7 @@ def unpacked_in_order(parts: list[Part], values: Values) -> Values:
     kinds: list[str] = []
     for part in parts:
         try:
-            found |= part.unpack({each: value for each, value in values.items() if each in part.wire})
+            found |= part.unpack(part.own(values))
         except Refused as refused:
             kinds.append(refused.kind)
     if kinds:

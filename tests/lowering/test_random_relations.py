@@ -21,12 +21,14 @@ from tests.lowering.random_searches import maps, searched, separated
 from tests.lowering.random_types import Kind, Message
 from tests.lowering.random_values import plain
 from tests.lowering.random_wires import WIRES, package
+from tests.lowering.random_wrapped import held, repeated, united
 from tests.lowering.test_laws import is_near
 from tests.lowering.test_random_wires import Side, counted, without_cases
 
 MESSAGES = 15
 FORMS = (parameter, date, unit, digits, taken_apart, divided, moment, rejected, within_blocks, same)
 ARRAY_FORMS = (listed, widened, octets, searched, maps, separated, of_elements, same_arrays)
+WRAPPED = (held, repeated, united)
 ORDERS = (ordered, padded, flagged, sliced, members, chosen_element, elementwise_digits)
 
 
@@ -34,7 +36,7 @@ def relations(rng: random.Random, names: tuple[str, str]) -> tuple[Side, Side, l
     """The types of both sides, and the relations between them."""
     wire, holder = (WIRES[name] for name in names)
     dst = Message("Dst", {})
-    made = Relations(rng, wire, holder, Side(holder, dst).constant, more=FORMS, more_arrays=ARRAY_FORMS + ORDERS)
+    made = Relations(rng, wire, holder, Side(holder, dst).constant, more=FORMS + WRAPPED, more_arrays=ARRAY_FORMS + ORDERS)
     if "yarp" not in "".join(names):  # whose inner structs have no names
         made.more += (via,)
     parts = [made.part() for _ in range(rng.randrange(1, 7))]
@@ -73,7 +75,7 @@ def unpacked(parts: list[Part], values: dict[str, Any]) -> dict[str, Any] | set[
     for part in parts:
         try:
             with np.errstate(all="ignore"):
-                found |= part.unpack({name: value for name, value in values.items() if name in part.wire})
+                found |= part.unpack(part.own(values))
         except Refused as error:
             refused |= set(error.kind.split("/"))
     return refused or found
