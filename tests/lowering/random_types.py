@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from tests.lowering.random_values import some_value
+from tests.lowering.random_fields import some_value
 
 if TYPE_CHECKING:
     import random

@@ -9,8 +9,8 @@ import pytest
 
 from tests.lowering.meaning import LEAVES
 from tests.lowering.random_arrays import some_arrays
+from tests.lowering.random_fields import some_fields
 from tests.lowering.random_functions import DECLARED, FUNCTIONS, Calling
-from tests.lowering.random_values import some_fields
 from tests.lowering.test_random_mappings import OUT, expected, runner, seen, with_values
 
 MESSAGES = 20

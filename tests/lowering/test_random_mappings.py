@@ -10,7 +10,8 @@ import pytest
 import rosetta_jit as rj
 from tests.lowering.meaning import LEAVES, Refused
 from tests.lowering.random_arrays import Arrays, some_arrays
-from tests.lowering.random_values import Maker, plain, some_fields
+from tests.lowering.random_fields import plain, some_fields
+from tests.lowering.random_values import Maker
 
 RULES = 8
 MESSAGES = 25

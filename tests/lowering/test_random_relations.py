@@ -12,6 +12,7 @@ import rosetta_jit as rj
 from tests.lowering.meaning import Refused
 from tests.lowering.random_blocks import Relations
 from tests.lowering.random_digits import digits, divided, moment, taken_apart
+from tests.lowering.random_fields import plain
 from tests.lowering.random_nested import date, listed, parameter, unit, via, widened
 from tests.lowering.random_octets import octets
 from tests.lowering.random_orders import chosen_element, elementwise_digits, flagged, members, ordered, padded, sliced
@@ -19,7 +20,6 @@ from tests.lowering.random_refusals import of_elements, rejected, same, same_arr
 from tests.lowering.random_relations import Part, below_all, body
 from tests.lowering.random_searches import maps, searched, separated
 from tests.lowering.random_types import Kind, Message
-from tests.lowering.random_values import plain
 from tests.lowering.random_wires import WIRES, package
 from tests.lowering.random_wrapped import held, repeated, united
 from tests.lowering.test_laws import is_near
