@@ -102,7 +102,7 @@ def repeated(relations: Relations, name: str) -> Part:
 def united(relations: Relations, name: str) -> Part:
     """A case of a union there as the same case of one here."""
     relations.blocks += 1
-    if not (relations.wire.has_unions and relations.holder.has_unions) or relations.blocks > 2 or relations.depth:
+    if not (relations.wire.has_unions and relations.holder.has_unions) or relations.blocks > 2:
         return held(relations, name)
     a, b = f"{name}a", f"{name}b"
     begin = relations.rng.choice(["a", "é/"])

@@ -10,7 +10,7 @@ import pytest
 
 import rosetta_jit as rj
 
-IMAGES = 12
+IMAGES = 6
 ENCODINGS = {
     "mono8": ("GRAYSCALE", 1, 1),
     "mono16": ("GRAYSCALE", 1, 2),
