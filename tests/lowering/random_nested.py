@@ -28,7 +28,9 @@ UNITS = {("km", "m"): 1000.0, ("m", "mm"): 1000.0, ("minute", "s"): 60.0, ("hour
 def via(relations: Relations, name: str) -> Part:
     """A message, one that may be absent, or an array of messages, by the rules of another mapping."""
     rng = relations.rng
+    relations.depth += 1
     parts = [relations.part() for _ in range(rng.randrange(1, 4))]
+    relations.depth -= 1
     src = Message(f"Src{name.upper()}", below_all(part.wire for part in parts))
     dst = Message(f"Dst{name.upper()}", below_all(part.holder for part in parts))
     rules = f'.{name} <-> .{name} via "{name}.mapping"\n'

@@ -128,9 +128,9 @@ def padded(relations: Relations, name: str) -> Part:
 
 
 def flagged(relations: Relations, name: str) -> Part:
-    """An array and the constant that says in which order it is."""
+    """An array and the constant that says in which order it is; not of each element of another array."""
     rng = relations.rng
-    if not relations.holder.constant:
+    if not relations.holder.constant or relations.depth:
         return ordered(relations, name)
     flag = f"{name}m"
     text, function = order(rng, f".{name}")

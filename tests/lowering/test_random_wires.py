@@ -133,7 +133,7 @@ def without_cases(value: Any) -> Any:
     """Without the discriminators of unions."""
     if isinstance(value, dict):
         return {name: without_cases(each) for name, each in value.items() if name != "_d"}
-    return value
+    return [without_cases(each) for each in value] if isinstance(value, list) else value
 
 
 def wanted(rules: Rules, fields: dict[str, Any]) -> Any:
