@@ -253,7 +253,10 @@ def _shortened(scope: Scope, value: Linear) -> Linear:
     begin, end = linear(scope.locals["begin"][1]), linear(scope.locals["end"][1])
     origin = begin if paths.from_begin(value) else Linear(0)
     rest = minus(value, origin)
-    atom = facts.fresh(facts.lower(rest), facts.upper(rest))
+    low = facts.lower(rest)
+    if low < 0 and facts.proves(rest):  # what its parts say together, which bounds of each do not
+        low = 0
+    atom = facts.fresh(low, facts.upper(rest))
     facts.assume(equal(atom, rest))
     paths.learn_distance(scope, minus(minus(end, origin), atom), facts.lower(minus(end, value)))
     return plus(origin, atom)

@@ -87,7 +87,7 @@ def _part(expr: Expr, value: Expr) -> Parted:
             return _both(first, _quotient(value, SECOND, span), second, _rest(value, SECOND, span))
         case Call(function, (argument, *_)) if function in CONVERSIONS:
             return _part(argument, value if function != "uint64" else Call("int64", (value,), expr.span))  # parts are computed in int64
-        case Binary("+"):
+        case Binary("+" | "-"):
             return _digits(expr, value)
         case _:
             raise NoInverseError(expr, "it does not say which part of the value each of its fields is")
@@ -127,6 +127,9 @@ def _summands(expr: Expr) -> Iterator[Expr]:
         case Binary("+", left, right):
             yield from _summands(left)
             yield from _summands(right)
+        case Binary("-", left, right) if isinstance(known := folded(right), Literal) and type(known.value) is int:
+            yield from _summands(left)
+            yield replace(known, value=-known.value)
         case _:
             yield expr
 

@@ -107,8 +107,10 @@ class Knowledge:
         """What is known of a field as part of an array that is equal to one of the holder."""
         path = path_of(place)
         for length in range(len(path.steps) - (not isinstance(place, Len)), 0, -1):
-            whole = self.values.get(key_of(replace(path, steps=path.steps[:length]), loops)[0])
+            key, names = key_of(replace(path, steps=path.steps[:length]), loops)
+            whole = self.values.get(key)
             if isinstance(whole, Path) and all(isinstance(step, Index | Each) for step in path.steps[length:]):
+                whole = _with_variables(whole, names)
                 rest = with_indices(replace(path, steps=path.steps[length:]), lambda index: self.replaced(index, loops))
                 found = Path(whole.side, (*whole.steps, *rest.steps), path.span)
                 return Len(found, place.span) if isinstance(place, Len) else found
@@ -141,6 +143,12 @@ def key_of(place: Field, loops: Loops) -> tuple[Key, dict[str, Name]]:
     plain = with_indices(path, lambda index: renamed(index, names))
     ranges = tuple((loop.start, loop.stop) for loop in used.values())
     return (Len(plain) if isinstance(place, Len) else plain, ranges), names
+
+
+def _with_variables(path: Path, names: dict[str, Name]) -> Path:
+    """A path with loop variables in place of their numbers."""
+    variables = {number.name: Name(name) for name, number in names.items()}
+    return with_indices(path, lambda index: renamed(index, variables))
 
 
 def _names(expr: Expr) -> list[str]:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.lowering.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
-from rosetta_jit.model.types import Optional, Union
+from rosetta_jit.model.types import Optional, Struct, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.lowering.typed import Rule, Step
+    from rosetta_jit.model.types import Field
     from rosetta_jit.source import Span
 
 MAX_WAYS = 64
@@ -92,11 +93,21 @@ def _may_lack(steps: tuple[Step, ...]) -> int:
     return 0
 
 
+def _union_of(struct: Struct) -> Field | None:
+    """The union that a struct is, with what tells its case beside it: to leave the struct out is to leave out the cases."""
+    for field in struct.fields:
+        if isinstance(field.type, Union) and {each.name for each in struct.fields} <= {field.name, field.type.discriminator}:
+            return field
+    return None
+
+
 def _set_by(way: tuple[Rule, ...]) -> list[tuple[bool, tuple[Step, ...]]]:
     """The places that rules without `when` set."""
     found: list[tuple[bool, tuple[Step, ...]]] = []
     for rule in way:
         match rule:
+            case Default(place) if isinstance(place.type, Struct) and (union := _union_of(place.type)) is not None:
+                found.append((False, (*place.steps, FieldStep(union))))
             case Assign(place) | SetLength(place) | Default(place):
                 found.append((isinstance(rule, SetLength), place.steps))
             case For(body=body):

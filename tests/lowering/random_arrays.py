@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tests.lowering.meaning import Refused
-from tests.lowering.random_values import Maker, some_value
+from tests.lowering.random_fields import some_value
+from tests.lowering.random_values import Maker
 
 if TYPE_CHECKING:
     import random

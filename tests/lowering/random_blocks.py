@@ -25,6 +25,10 @@ class Relations(Scalars):
     more: tuple[Callable[[Relations, str], Part], ...] = ()
     """Forms of other modules, for all wires."""
     more_arrays: tuple[Callable[[Relations, str], Part], ...] = ()
+    depth: int = 0
+    """How many messages within each other are made."""
+    blocks: int = 0
+    """How many `when`s of three ways there are, and images: more of them take long to compile."""
 
     @property
     def is_counted(self) -> bool:

@@ -28,7 +28,9 @@ UNITS = {("km", "m"): 1000.0, ("m", "mm"): 1000.0, ("minute", "s"): 60.0, ("hour
 def via(relations: Relations, name: str) -> Part:
     """A message, one that may be absent, or an array of messages, by the rules of another mapping."""
     rng = relations.rng
+    relations.depth += 1
     parts = [relations.part() for _ in range(rng.randrange(1, 4))]
+    relations.depth -= 1
     src = Message(f"Src{name.upper()}", below_all(part.wire for part in parts))
     dst = Message(f"Dst{name.upper()}", below_all(part.holder for part in parts))
     rules = f'.{name} <-> .{name} via "{name}.mapping"\n'
@@ -88,7 +90,7 @@ def unpacked_in_order(parts: list[Part], values: Values) -> Values:
     kinds: list[str] = []
     for part in parts:
         try:
-            found |= part.unpack({each: value for each, value in values.items() if each in part.wire})
+            found |= part.unpack(part.own(values))
         except Refused as refused:
             kinds.append(refused.kind)
     if kinds:

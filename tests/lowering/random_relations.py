@@ -25,7 +25,7 @@ from tests.lowering.meaning import (
     wrapped,
     written,
 )
-from tests.lowering.random_types import CONSTANTS, Enum, Kind, Message, Scalar, some
+from tests.lowering.random_types import CONSTANTS, Choice, Enum, Kind, Message, Scalar, some
 from tests.lowering.random_values import quoted
 
 if TYPE_CHECKING:
@@ -55,14 +55,26 @@ class Part:
     """Fields with their units, as `Src.a: km`."""
     pack: str = ""
     """Rules to pack."""
+    is_same: bool = False
+    """Whether `same names` maps its fields."""
     is_sure: bool = False
     """Whether no other values of the wire are asked for: what they are refused as is not said here."""
+    is_bounded: bool = False
+    """Whether neither side is asked for other values: some are refused for what is beyond 64 bits in between."""
+
+    def own(self, values: Values) -> Values:
+        """Those of the wire's values that it reads: the cases of a union without a name stand among the fields."""
+        names = set(self.wire)
+        for kind in self.wire.values():
+            if isinstance(kind, Choice) and not kind.is_named:
+                names |= set(kind.cases)
+        return {name: value for name, value in values.items() if name in names}
 
     def some_wire(self, rng: random.Random) -> Values:
-        return chosen(rng, self.wire, self.wires, is_sure=self.is_sure)
+        return chosen(rng, self.wire, self.wires, is_sure=self.is_sure or self.is_bounded)
 
     def some_holder(self, rng: random.Random) -> Values:
-        return chosen(rng, self.holder, self.holders)
+        return chosen(rng, self.holder, self.holders, is_sure=self.is_bounded)
 
 
 def chosen(
@@ -256,6 +268,8 @@ def body(parts: list[Part]) -> str:
     """What a mapping says beside its types."""
     declared = "".join(f"parameter {name}: {type_}\n" for part in parts for name, (type_, _) in part.parameters.items())
     rules, pack = ("".join(getattr(part, which) for part in parts) for which in ("text", "pack"))
+    if any(part.is_same for part in parts):
+        rules += "same names\n"
     return f"{declared}rules:\n{rules}" + (f"pack-rules:\n{pack}" if pack else "")
 
 

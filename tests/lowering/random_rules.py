@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 import numpy as np
 
 from tests.lowering.meaning import INTEGERS, Fields, Refused, Value, fits
-from tests.lowering.random_types import CONSTANTS, Array, Choice, Enum, Kind, Maybe, Message, Scalar, below, default, joint
+from tests.lowering.random_types import CONSTANTS, Array, Choice, Enum, Kind, Map, Maybe, Message, Scalar, below, default, joint
 from tests.lowering.random_values import Made, Maker, conversion
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Filler:
                 return self.maybe(name, each, at)
             case Choice():
                 return self.choice(name, kind, at)
-            case Array():
+            case Array() | Map():
                 raise AssertionError(kind)
             case _:
                 assert_never(kind)

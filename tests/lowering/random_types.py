@@ -1,6 +1,6 @@
 """Random types of messages, as a tree that each framework's IDL can declare, and random values of them.
 
-Kind = Scalar | Array | Enum | Message | Maybe | Choice
+Kind = Scalar | Array | Enum | Message | Maybe | Choice | Map
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from tests.lowering.random_values import some_value
+from tests.lowering.random_fields import some_value
 
 if TYPE_CHECKING:
     import random
@@ -62,7 +62,15 @@ class Choice:
     is_named: bool
 
 
-Kind = Scalar | Array | Enum | Message | Maybe | Choice
+@dataclass(frozen=True)
+class Map:
+    """Values beside keys, of scalar types."""
+
+    key: str
+    value: str
+
+
+Kind = Scalar | Array | Enum | Message | Maybe | Choice | Map
 
 OCTETS = Array(Scalar("uint8"))
 """What all frameworks take for bytes."""
@@ -120,6 +128,8 @@ def some(rng: random.Random, kind: Kind, count: int = 0) -> Value:
         case Choice(_, cases, _):
             name = rng.choice(list(cases))
             return {name: some(rng, cases[name])} if rng.random() < 0.85 else {}
+        case Map(key, value):
+            return {some_value(rng, key): some_value(rng, value) for _ in range(count)}
         case _:
             assert_never(kind)
 
@@ -148,7 +158,7 @@ def leaves(kind: Kind, path: str = "") -> Iterator[tuple[str, str]]:
             yield from ((joint(path, name), each.type) for name, each in cases.items())
         case Maybe(inner):
             yield from leaves(inner, path)
-        case Array() | Enum():
+        case Array() | Enum() | Map():
             pass
         case _:
             assert_never(kind)
@@ -165,7 +175,7 @@ def presences(kind: Kind, path: str = "") -> Iterator[str]:
         case Maybe(inner):
             yield path
             yield from presences(inner, path)
-        case Scalar() | Array() | Enum():
+        case Scalar() | Array() | Enum() | Map():
             pass
         case _:
             assert_never(kind)
@@ -186,7 +196,7 @@ def seen(kind: Kind, value: Value, path: str = "") -> Fields:
     match kind:
         case Scalar(type_):
             return {path: default(type_) if value is None else value}
-        case Array() | Enum():
+        case Array() | Enum() | Map():
             return {path: value}
         case Maybe(inner):
             return {f"has {path}": value is not None, **seen(inner, value, path)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, assert_never
 
-from tests.lowering.random_types import CONSTANTS, OCTETS, Array, Choice, Enum, Kind, Maybe, Message, Scalar, Types
+from tests.lowering.random_types import CONSTANTS, OCTETS, Array, Choice, Enum, Kind, Map, Maybe, Message, Scalar, Types
 
 if TYPE_CHECKING:
     import random
@@ -46,6 +46,8 @@ class Wire:
     has_unions: bool = False
     has_named_unions: bool = True
     has_fixed: bool = True
+    map_keys: tuple[str, ...] = ()
+    """The types of the keys that maps may have."""
     constant: str = ""
     """How a constant of an enum is named, from its name; empty where there are none."""
 
@@ -77,7 +79,7 @@ def inner(message: Message) -> Iterator[Message | Choice | Enum]:
                 yield from inner(element)
             case Choice() | Enum():
                 yield kind
-            case Scalar() | Array() | Maybe():
+            case Scalar() | Array() | Maybe() | Map():
                 pass
             case _:
                 assert_never(kind)
@@ -97,7 +99,7 @@ def ros_type(kind: Kind, scalars: Mapping[str, str]) -> str:
             return name
         case Maybe(each):
             return f"@optional {ros_type(each, scalars)}"
-        case Choice() | Enum():
+        case Choice() | Enum() | Map():
             raise AssertionError(kind)
         case _:
             assert_never(kind)
@@ -130,6 +132,8 @@ def idl_field(kind: Kind, name: str, scalars: Mapping[str, str]) -> str:
             return f"{type_} {name};"
         case Maybe(each):
             return f"@optional {idl_field(each, name, scalars)}"
+        case Map():
+            raise AssertionError(kind)
         case _:
             assert_never(kind)
 
@@ -176,6 +180,8 @@ def proto_field(kind: Kind, name: str, number: int, scalars: Mapping[str, str], 
         case Choice(_, cases, _):
             shown = " ".join(proto_field(each, at, number + extra, scalars, "") for extra, (at, each) in enumerate(cases.items()))
             return f"oneof {name}_of {{ {shown} }}"
+        case Map(key, value):
+            return f"map<{scalars[key]}, {scalars[value]}> {name} = {number};"
         case _:
             assert_never(kind)
 
@@ -208,7 +214,7 @@ def lcm_field(kind: Kind, name: str, scalars: Mapping[str, str]) -> str:
             return f"{base} {name}[{size}];" if size is not None else f"int32_t n_{name}; {base} {name}[n_{name}];"
         case Message(type_, _):
             return f"{type_} {name};"
-        case Maybe() | Choice() | Enum():
+        case Maybe() | Choice() | Enum() | Map():
             raise AssertionError(kind)
         case _:
             assert_never(kind)
@@ -233,6 +239,8 @@ def bottle_type(kind: Kind, scalars: Mapping[str, str]) -> str:
             return f"(:list {bottle_type(element, scalars)}{'' if size is None else f' (:length {size})'})"
         case Message(_, fields):
             return f"(:bottle {bottle_fields(fields, scalars)})"
+        case Map(_, value):
+            return f"(:dict {scalars[value]})"
         case Maybe() | Choice() | Enum():
             raise AssertionError(kind)
         case _:
@@ -266,6 +274,7 @@ PROTOBUF: dict[str, Any] = {
     "has_unions": True,
     "has_named_unions": False,
     "has_fixed": False,
+    "map_keys": ("string", "int32", "int64"),
 }
 BIG = {"byte_order": "big"}
 LITTLE = {"byte_order": "little"}
@@ -286,8 +295,8 @@ WIRES: dict[str, Wire] = {
         lcm,
         {"encoding": "lcm"},
     ),
-    "yarp3": Wire({**BOTTLE, "bool": ":bool", "string": ":string"}, "{name}", bottle, {"encoding": "yarp3"}),
-    "yarp4": Wire({**BOTTLE, "bool": ":bool", "string": ":string"}, "{name}", bottle, {"encoding": "yarp4"}),
+    "yarp3": Wire({**BOTTLE, "bool": ":bool", "string": ":string"}, "{name}", bottle, {"encoding": "yarp3"}, map_keys=("string",)),
+    "yarp4": Wire({**BOTTLE, "bool": ":bool", "string": ":string"}, "{name}", bottle, {"encoding": "yarp4"}, map_keys=("string",)),
     "proto2": Wire(declare=proto("proto2"), **PROTOBUF),
     "proto3": Wire(declare=proto("proto3"), **PROTOBUF),
 }

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import rosetta_jit as rj
 from tests.lowering.pairs import BACKENDS, pair
 
 
@@ -130,3 +131,33 @@ def test_arrays_whose_elements_become_wider(rules, narrow, wide, values, beyond,
     assert made.decode.mapping.laws.holders.kind == "exact"
     error = made.refused(v=[*values, beyond])
     assert (error.kind, error.path) == ("range", f".v[{len(values)}]")
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+def test_an_element_that_a_field_of_each_message_tells(backend):
+    files = {
+        "lab/msg/P.msg": "int32 i\nfloat64[] l\n",
+        "lab/msg/Q.msg": "int32 i\nfloat64[] l\nfloat64 a\n",
+        "lab/msg/Src.msg": "P[] p\n",
+        "lab/msg/Dst.msg": "Q[] p\n",
+        "m.mapping": """import "lab/msg/Src.msg"
+import "lab/msg/Dst.msg"
+data-holder: lab/msg/Dst
+wire-schema: lab/msg/Src
+rules:
+  len(.p) <-> len(.p)
+  for k from 0 to len(.p)
+    .p[k].i <-> .p[k].i
+    .p[k].l <-> .p[k].l
+    .p[k].a <-> .p[k].l[.p[k].i]
+  end
+""",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, backend=backend)
+    encode = rj.Encoder("m.mapping", schema=files, backend=backend)
+    values = {"p": [{"i": 1, "l": [0.5, 1.5], "a": 1.5}, {"i": 0, "l": [-2.0], "a": -2.0}]}
+    assert decode(encode(encode.holder_type.from_dict(values))).to_dict() == values
+    values["p"][1]["a"] = 1.5
+    with pytest.raises(rj.EncodeError) as error:
+        encode(encode.holder_type.from_dict(values))
+    assert error.value.kind == "rejected"

@@ -237,6 +237,22 @@ rules:
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
+def test_several_images_of_one_message(backend):
+    numbers = range(5)
+    fields = "".join(f"uint16 w{i}\nuint16 h{i}\n" for i in numbers) + "".join(f"uint8[] p{i}\n" for i in numbers)
+    rules = "".join(f".w{i} <-> .w{i}\n.h{i} <-> .h{i}\n.p{i} <-> rows(.p{i}, .h{i}, .w{i} * 3, align(.w{i} * 3, 4))\n" for i in numbers)
+    head = 'import "lab/msg/In.msg"\nimport "lab/msg/Out.msg"\ndata-holder: lab/msg/Out\nwire-schema: lab/msg/In\nrules:\n'
+    files = {"lab/msg/In.msg": fields, "lab/msg/Out.msg": fields, "m.mapping": head + rules}
+    decode = rj.Decoder("m.mapping", schema=files, backend=backend)
+    encode = rj.Encoder("m.mapping", schema=files, backend=backend)
+    values = {name: value for i in numbers for name, value in ((f"w{i}", i), (f"h{i}", 2), (f"p{i}", bytes(range(6 * i))))}
+    read = rj.Decoder.of("lab/msg/In", schema=files, imports=["lab/msg/In.msg"], backend="interpreter")
+    sent = encode(encode.holder_type.from_dict(values))
+    assert bytes(read(sent).p1) == bytes([0, 1, 2, 0, 3, 4, 5, 0])
+    assert decode(sent).to_dict() == values
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
 def test_slices_whose_ends_and_step_are_fields_of_a_list(backend):
     """The elements of a bottle's list lie apart as each message says, so that an index that is a product is one more factor."""
     lists = pair('("i" :int64) ("j" :int64) ("k" :int64) ("a" (:list :double))', "repeated double a = 1;", SLICED, backend)

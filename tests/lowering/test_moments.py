@@ -98,6 +98,15 @@ def test_several_digits(backend, value):
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("value", [".h * 60 + .m - 5", "(.h * 60 - 10) + (.m + 5)"])
+def test_digits_less_a_constant(value, backend):
+    pair = Pair([f".n <-> {value}"], dict.fromkeys("hm", "int"), {"n": "int64"}, backend)
+    for total in (0, 59, 60, -1, -61, 86399):
+        pair.both(dict(zip("hm", divmod(total, 60), strict=True)), {"n": total - 5})
+    refused("rejected", pair.unpack, h=0, m=60)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
 def test_one_field_out_of_two(backend):
     rules = [".s <-> floor_divide(.n, 1000000)", ".b <-> int32(modulo(.n, 1000000) * 1000)"]
     pair = Pair(rules, {"n": "int64"}, {"s": "int64", "b": "int32"}, backend)

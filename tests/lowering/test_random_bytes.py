@@ -10,9 +10,9 @@ import pytest
 
 import rosetta_jit as rj
 from tests.lowering.random_bytes import altered, mixed
+from tests.lowering.random_fields import plain
 from tests.lowering.random_rules import Filler
 from tests.lowering.random_types import Scalar, seen, some
-from tests.lowering.random_values import plain
 from tests.lowering.random_wires import WIRES
 from tests.lowering.test_random_wires import aim, counted, maker, mapping, source, wanted, without_cases
 

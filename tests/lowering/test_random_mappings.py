@@ -10,7 +10,8 @@ import pytest
 import rosetta_jit as rj
 from tests.lowering.meaning import LEAVES, Refused
 from tests.lowering.random_arrays import Arrays, some_arrays
-from tests.lowering.random_values import Maker, plain, some_fields
+from tests.lowering.random_fields import plain, some_fields
+from tests.lowering.random_values import Maker
 
 RULES = 8
 MESSAGES = 25
@@ -22,14 +23,14 @@ FILES = {"t/In.msg": IN, "t/Pt.msg": "float64 x\nint32 n\nstring s\n"}
 OPTIONS = {"ros1": {"encoding": "ros1"}, "proto": {"encoding": "protobuf"}}
 
 
-def runner(files, direction, backend, out="ros1"):
+def runner(files, direction, backend, out="ros1", functions=None):
     """``run(fields)``: what rules make of the fields of `t/In`, as a dict."""
     common = {"schema": files, "imports": list(files)[:-1], "backend": "interpreter"}
     if direction == "decode":
         write = rj.Encoder.of("t/In", encoding="ros1", **common)
-        decode = rj.Decoder("m.mapping", schema=files, encoding="ros1", backend=backend)
+        decode = rj.Decoder("m.mapping", schema=files, encoding="ros1", backend=backend, functions=functions or {})
         return lambda fields: decode(write(write.holder_type.from_dict(fields))).to_dict()
-    encode = rj.Encoder("m.mapping", schema=files, backend=backend, **OPTIONS[out])
+    encode = rj.Encoder("m.mapping", schema=files, backend=backend, functions=functions or {}, **OPTIONS[out])
     read = rj.Decoder.of("t/Out", **common, **OPTIONS[out])
     return lambda fields: read(encode(encode.holder_type.from_dict(fields))).to_dict()
 

@@ -11,9 +11,10 @@ import pytest
 
 import rosetta_jit as rj
 from tests.lowering.meaning import LEAVES, Refused
+from tests.lowering.random_fields import plain
 from tests.lowering.random_rules import Filler, Rules
 from tests.lowering.random_types import CONSTANTS, Array, Enum, Kind, Message, Scalar, leaves, presences, seen, some
-from tests.lowering.random_values import Made, Maker, plain
+from tests.lowering.random_values import Made, Maker
 from tests.lowering.random_wires import WIRES, Wire
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ def without_cases(value: Any) -> Any:
     """Without the discriminators of unions."""
     if isinstance(value, dict):
         return {name: without_cases(each) for name, each in value.items() if name != "_d"}
-    return value
+    return [without_cases(each) for each in value] if isinstance(value, list) else value
 
 
 def wanted(rules: Rules, fields: dict[str, Any]) -> Any:

@@ -224,3 +224,56 @@ def test_elements_of_which_each_has_its_own_case(backend):
     """Discriminators and cases of other elements contradict nothing."""
     rules = "len(.us) = 2\n.us[0]._d = 1\n.us[1].n = .x\n.us[0].a = 3\n.us[1]._d = 5\nignore .y"
     assert made(rules, "unpack", backend, "m::Many", x=7, y=5) == {"us": [{"_d": 1, "a": 3}, {"_d": 5, "n": 7.0}]}
+
+
+@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+def test_no_case_in_some_elements(backend):
+    idl = """module {0} {{
+  @final union Told switch (long) {{ case 1: long long a; case 2: string b; }};
+  @final struct Item {{ long n; Told u; }};
+  @final struct {0}All {{ sequence<Item> items; }};
+}};"""
+    text = """import "w.idl"
+import "h.idl"
+data-holder: h::hAll
+wire-schema: w::wAll
+rules:
+  len(.items) <-> len(.items)
+  for i from 0 to len(.items)
+    .items[i].n <-> .items[i].n
+    when has(.items[i].u.a)
+      .items[i].u.a <-> -.items[i].u.a
+    else when has(.items[i].u.b)
+      .items[i].u.b <-> "b" + .items[i].u.b
+    else
+      ignore .items[i].u
+      default .items[i].u
+    end end
+  end
+"""
+    files = {"w.idl": idl.format("w"), "h.idl": idl.format("h"), "m.mapping": text}
+    options = {"schema": files, "encoding": "cdr", "backend": backend}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    write = rj.Encoder.of("w::wAll", **options, imports=["w.idl"])
+    cases = [{"a": 5}, {}, {"b": "x"}, {"a": -1}]
+    wanted = [{"_d": 1, "a": -5}, {"_d": 0}, {"_d": 2, "b": "bx"}, {"_d": 1, "a": 1}]
+    for turn in range(4):
+        message = write(write.holder_type.from_dict({"items": [{"n": n, "u": cases[(n + turn) % 4]} for n in range(4)]}))
+        found = decode(message)
+        assert found.to_dict() == {"items": [{"n": n, "u": wanted[(n + turn) % 4]} for n in range(4)]}
+        assert encode(found) == message
+
+
+def test_no_case_in_another_element_is_refused():
+    rules = """  len(.us) = 4
+  for i from 0 to 4
+    when .x > i
+      .us[i].a = 1
+    else
+      default .us[3 - i]
+    end
+  end
+"""
+    with pytest.raises(rj.MappingError) as error:
+        rj.Decoder("m.mapping", schema=files(rules, union="m::Many"), encoding="cdr", backend="interpreter")
+    assert "uneven-rounds" in {problem.code for problem in error.value.diagnostics}
