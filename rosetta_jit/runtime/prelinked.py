@@ -118,7 +118,7 @@ def _make_executable(address: int, size: int) -> None:
     if _system().mprotect(address, size, mmap.PROT_READ | mmap.PROT_EXEC):
         why = os.strerror(ctypes.get_errno())
         _system().munmap(address, size)
-        raise ForeignCodeError(f"this system lets no memory be executed: {why}")
+        raise ForeignCodeError(f'this system lets no memory be executed ({why}); backend="python" needs none')
 
 
 @cache

@@ -6,14 +6,16 @@ import ctypes
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from llvmlite import binding
 
+from rosetta_jit import runtime
 from rosetta_jit.backends.link import SYMBOLS, compile_program, object_file, target_machine
 from rosetta_jit.backends.prelink import prelinked
 from rosetta_jit.runtime import linker, native
-from rosetta_jit.runtime.allowed import ALLOWED
+from rosetta_jit.runtime.allowed import ALLOWED, ForeignCodeError
 from rosetta_jit.runtime.prelinked import from_bytes, place, to_bytes
 from tests.backends import kernels
 from tests.backends.holders import KERNEL, rows
@@ -110,6 +112,16 @@ def permissions(address):
         if begin <= address < end:
             return allowed
     return None
+
+
+def test_a_system_that_executes_no_memory_is_told(monkeypatch):
+    image = prelinked(compiled(COUNTER))
+    given_up, real = [], runtime.prelinked._system()
+    refusing = SimpleNamespace(mmap=real.mmap, mprotect=lambda *_: -1, munmap=lambda *extent: given_up.append(real.munmap(*extent)))
+    monkeypatch.setattr(runtime.prelinked, "_system", lambda: refusing)
+    with pytest.raises(ForeignCodeError, match='backend="python"'):
+        place(image, ("next",))
+    assert given_up == [0]
 
 
 def test_functions_of_the_process_are_called():
