@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 ALIGNMENT = 64
 """Of each lane: a cache line, and the widest vector register."""
 
+PAGE, MANY = 1 << 12, 1 << 14
+"""Large messages mostly lie 16 to 64 bytes behind the begin of a page, and what is copied from them a header further. To copy it to 1 to 15
+bytes behind the same place of a page takes ten times as long (docs/performance.md, "Where bytes lie"): its begin is far from there."""
+
 MOST_BYTES = 1 << 62
 """More than any address space has."""
 
@@ -28,7 +32,7 @@ def address_of(memory: NDArray[Any]) -> int:
 
 
 def aligned_bytes(size: int) -> NDArray[np.uint8]:
-    """Bytes that begin at a multiple of `ALIGNMENT`.
+    """Bytes that begin at a multiple of `ALIGNMENT`, or of a page, if they are many.
 
     Raises
     ------
@@ -37,6 +41,7 @@ def aligned_bytes(size: int) -> NDArray[np.uint8]:
     """
     if size > MOST_BYTES:  # numpy says this in other words
         raise MemoryError(f"no memory has {size} bytes")
-    memory = np.empty(size + ALIGNMENT, np.uint8)
-    shift = -address_of(memory) % ALIGNMENT
+    alignment = PAGE if size >= MANY else ALIGNMENT
+    memory = np.empty(size + alignment, np.uint8)
+    shift = -address_of(memory) % alignment
     return memory[shift : shift + size]

@@ -15,7 +15,7 @@ from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
 from rosetta_jit.runtime.holder import Holder
 
 VECTORS = Path(__file__).resolve().parents[2] / "vectors" / "yarp"
-NATIVE = {"mixed_every_tag", "nested_depth50", "dict_two", "icub_arm_state_16", "img_rgb_4x3_padded", "legacy_mixed", "string_invalid_utf8"}
+NATIVE = {"mixed_every_tag", "dict_two", "icub_arm_state_16", "img_rgb_4x3_padded", "legacy_mixed", "string_invalid_utf8"}
 """Compiled by LLVM as well; the others run the same kernels in Python, which costs no second each."""
 
 
