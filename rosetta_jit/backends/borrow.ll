@@ -38,7 +38,7 @@ decode:
   %start = phi ptr [ %data, %bytes ], [ %view.data, %viewed ]
   %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
   call void @tell(ptr %context, ptr %state)
-  %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
+  %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0) #0
   %good = icmp sge i64 %result, 0
   %valid = zext i1 %good to i64
   store i64 %valid, ptr %state

@@ -1,6 +1,7 @@
 ; decode(message) -> the program's own holder; decode(message, holder) -> that holder. A message is any bytes-like object.
 ;
-; A bytes object alone is decoded here: little is kept across the kernel's call, so that few registers are saved for the caller.
+; A bytes object alone is decoded here, by a kernel that is part of this function if it is short: then its row is known to be 0, and its first byte
+; to be the message's. Else little is kept across its call, so that few registers are saved for the caller.
 define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
   %count = call i64 @positional(i64 %nargsf, ptr %names)
   %alone = icmp eq i64 %count, 1
@@ -18,20 +19,21 @@ bytes:
   %size.at = getelementptr i8, ptr %message, i64 16
   %size = load i64, ptr %size.at
   call void @tell(ptr %context, ptr %state)
-  %result = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0)
+  %result = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0) #0
   %good = icmp sge i64 %result, 0
-  %valid = zext i1 %good to i64
-  %same.state = load ptr, ptr %context
-  store i64 %valid, ptr %same.state
   br i1 %good, label %return, label %failed, !prof !0
 return:
+  %good.state = load ptr, ptr %context
+  store i64 1, ptr %good.state
   call void @made(ptr %context)
   %holder.at = getelementptr ptr, ptr %context, i64 1
   %holder = load ptr, ptr %holder.at
   call void @keep(ptr %holder)
   ret ptr %holder
 failed:
-  call void @note(i64 %result, ptr %same.state)
+  %bad.state = load ptr, ptr %context
+  store i64 0, ptr %bad.state
+  call void @note(i64 %result, ptr %bad.state)
   %answer = tail call ptr @slow(ptr %context, ptr %args, i64 1, ptr null)
   ret ptr %answer
 other:

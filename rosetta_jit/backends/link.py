@@ -16,7 +16,7 @@ from llvmlite import binding, ir
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
 from rosetta_jit.backends.prelink import prelinked
-from rosetta_jit.kernel.shape import are_long_and_straight, calls_to_host, is_large, is_told, our_functions
+from rosetta_jit.kernel.shape import are_long_and_straight, calls_to_host, is_large, is_short_and_straight, is_told, our_functions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,8 +106,7 @@ def optimised(
         module.link_in(compile_function(function))
     if our_functions(kernels):
         module.link_in(binding.parse_assembly(table_text(kernels)))
-    templates = (*TEMPLATES[entry], "told.ll" if is_told(kernels) else "untold.ll")
-    module.link_in(binding.parse_assembly("\n".join(map(_template, templates))))
+    module.link_in(binding.parse_assembly(_entries(kernels, entry)))
     _make_private(module, (*SYMBOLS[entry], TABLE))
     options = binding.create_pipeline_tuning_options(speed_level=1 if are_long_and_straight(kernels) else 3)
     options.loop_vectorization, options.slp_vectorization = True, True
@@ -130,6 +129,13 @@ def _typed(kernel: Kernel) -> binding.ModuleRef:
     module = binding.parse_assembly(text)
     module.link_in(binding.parse_assembly(_template("numba.ll").replace("@typed", f'@"{name}"')))
     return module
+
+
+def _entries(kernels: Sequence[Kernel], entry: EntryName) -> str:
+    """The entry's functions. `#0` are the attributes of the call that is to be quick."""
+    templates = (*TEMPLATES[entry], "told.ll" if is_told(kernels) else "untold.ll")
+    inline = "alwaysinline" if is_short_and_straight(kernels[0]) else ""
+    return "\n".join((*map(_template, templates), f"attributes #0 = {{ nounwind {inline} }}"))
 
 
 def _make_private(module: binding.ModuleRef, exported: Sequence[str]) -> None:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Routine, Stmt
 
 SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
+ARGUMENTS = ("buffer", "begin", "end", "state", "row")
 
 MANY = 64
 """Calls of a routine from which on it stays a function: LLVM takes more than linear time on what it inlines."""
@@ -60,11 +61,8 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
         function = routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
         if calls[routine.name] >= _many(routine):
             function.attributes.add("noinline")
-    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ("buffer", "begin", "end", "state", "row"))
-    entry = ir.IRBuilder(function.append_basic_block("entry"))
-    first = function.append_basic_block("body")
-    _attempts(entry, first, Parameters(*function.args), kernel, routines)
-    entry.branch(first)
+    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
+    _attempt(function, kernel, kernel.bodies, routines)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
 
 
@@ -95,7 +93,7 @@ def _behind_check(module: ir.Module, kernel: Kernel, inside: ir.Function, name: 
     """The function that makes sure of the hidden lanes first: where there are too few, GROW for the last one."""
     inside.linkage = "internal"
     inside.attributes.add("alwaysinline")
-    function = _function(module, SIGNATURE, name, ("buffer", "begin", "end", "state", "row"))
+    function = _function(module, SIGNATURE, name, ARGUMENTS)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     state = function.args[3]
     count = builder.load(state_word(builder, state, HIDDEN_COUNT), typ=I64, align=8)
@@ -154,29 +152,47 @@ def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value
     builder.ret(whole)
 
 
-def _attempts(
-    entry: ir.IRBuilder, start: ir.Block, parameters: Parameters, kernel: Kernel, routines: Mapping[str, ir.Function | Routine]
-) -> None:
-    """Body after body; each failure but the last starts the next one."""
-    builder = ir.IRBuilder(start)
-    loaded: dict[tuple[int, int], ir.Value] = {}
-    recorded: Sequence[ir.Value] = ()
-    width = min(MAX_INDICES, max((_index_count(body) for body in kernel.bodies), default=0))
-    for body in kernel.bodies:
-        done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + width)
-        decodes = kernel.direction == "decode"
-        frame = Frame(entry.module, entry, builder, parameters, kernel.strides, kernel.lanes, loaded, done, failed, decodes, routines)
-        frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
-        llvm_checks.body(frame, body)
-        if not builder.block.is_terminated:
-            builder.unreachable()  # verified: every path that gets here has ended in a Return before
-        _finish(frame, counted_lanes(kernel, body))
-        if not frame.failed.is_reached:
-            _drop(frame.failed)
-            return
-        builder.position_at_end(frame.failed.block)
-        recorded = _record(builder, recorded, frame.failed.phis)
-    _fail(builder, parameters.state, recorded)
+def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]) -> None:
+    """The first of the bodies, whose failures lead to the next one. What has failed so far stands in the state.
+
+    Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
+    """
+    entry, first = ir.IRBuilder(function.append_basic_block("entry")), function.append_basic_block("body")
+    done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
+    parameters, lanes, decodes = Parameters(*function.args), (kernel.strides, kernel.lanes), kernel.direction == "decode"
+    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
+    llvm_checks.body(frame, bodies[0])
+    if not frame.builder.block.is_terminated:
+        frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
+    _finish(frame, counted_lanes(kernel, bodies[0]))
+    entry.branch(first)
+    if not failed.is_reached:
+        _drop(failed)
+        return
+    builder = ir.IRBuilder(failed.block)
+    site = _record(builder, parameters.state, failed.phis, is_first=len(bodies) == len(kernel.bodies))
+    if len(bodies) == 1:
+        builder.ret(builder.sub(constant(-1), site))
+    else:
+        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines), function.args))
+
+
+def _next_attempt(
+    function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]
+) -> ir.Function:
+    """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
+    following = _function(function.module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
+    following.linkage = "internal"
+    following.attributes.add("noinline")
+    following.calling_convention = "preserve_mostcc"
+    _attempt(following, kernel, bodies, routines)
+    return following
+
+
+def _width(kernel: Kernel) -> int:
+    """The indices that the kernel's failures report."""
+    return min(MAX_INDICES, max((_index_count(body) for body in kernel.bodies), default=0))
 
 
 def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
@@ -200,25 +216,22 @@ def _finish(frame: Frame, lanes: Sequence[int]) -> None:
     builder = ir.IRBuilder(frame.done.block)
     for lane in lanes:
         word = state_word(builder, frame.parameters.state, lane_word(lane, USED))
-        builder.store(builder.load(frame.used_slot(lane), typ=I64), word, align=8)
+        builder.store(frame.used_in_the_end(builder, lane), word, align=8)
     builder.ret(frame.done.phis[0])
 
 
-def _record(builder: ir.IRBuilder, recorded: Sequence[ir.Value], failure: Sequence[ir.Value]) -> Sequence[ir.Value]:
-    """The failure of the attempt that got farther: site, offset, indices; the earlier one of equals."""
-    if not recorded:
-        return failure
-    farther = builder.icmp_signed(">", failure[1], recorded[1])
-    return [builder.select(farther, new, old) for new, old in zip(failure, recorded, strict=True)]
-
-
-def _fail(builder: ir.IRBuilder, state: ir.Value, recorded: Sequence[ir.Value]) -> None:
-    site, offset, *indices = recorded
-    builder.store(offset, state_word(builder, state, ERROR_OFFSET), align=8)
-    builder.store(site, state_word(builder, state, ERROR_SITE), align=8)
-    for number, value in enumerate(indices):
-        builder.store(value, state_word(builder, state, ERROR_INDICES + number), align=8)
-    builder.ret(builder.sub(constant(-1), site))
+def _record(builder: ir.IRBuilder, state: ir.Value, failure: Sequence[ir.Value], *, is_first: bool) -> ir.Value:
+    """The failure of the attempt that got farther, in the state: site, offset, indices; the earlier one of equals. Gives its site."""
+    words = [
+        state_word(builder, state, each) for each in (ERROR_SITE, ERROR_OFFSET, *range(ERROR_INDICES, ERROR_INDICES + len(failure) - 2))
+    ]
+    if not is_first:
+        earlier = [builder.load(word, typ=I64, align=8) for word in words]
+        farther = builder.icmp_signed(">", failure[1], earlier[1])
+        failure = [builder.select(farther, new, old) for new, old in zip(failure, earlier, strict=True)]
+    for word, value in zip(words, failure, strict=True):
+        builder.store(value, word, align=8)
+    return failure[0]
 
 
 def _index_count(body: Block) -> int:

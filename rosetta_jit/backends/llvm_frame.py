@@ -151,17 +151,25 @@ class Frame:
         return value if what == "now" else self.builder.add(value, self.parameters.row)
 
     def used_slot(self, lane: int) -> ir.Value:
-        """The stack slot of the lane's used length; each body starts with what the state says, and decoding into row 0 with nothing."""
+        """The stack slot of the lane's used length."""
         if lane not in self.used:
-            start = constant(0) if self.is_hidden(lane) else self._load(self.entry, lane, USED, I64, f"used{lane}")
-            if self.decodes and lane and not self.is_hidden(lane):
-                first = self.entry.icmp_signed("==", self.parameters.row, constant(0))
-                start = self.entry.select(first, constant(0), start)
+            start = constant(0) if self.is_hidden(lane) else self._used_before(self.entry, lane)
             self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
             self.entry.store(start, self.used[lane])
             if self.is_crowded:
                 self.entry.asm(ESCAPED, "", "r", [self.used[lane]], side_effect=True)
         return self.used[lane]
+
+    def used_in_the_end(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
+        """The used length of a lane of the holder, loaded where the builder is, for those that the body had nothing to do with."""
+        return builder.load(self.used[lane], typ=I64) if lane in self.used else self._used_before(builder, lane)
+
+    def _used_before(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
+        """Each body starts with the used length that the state says, and decoding into row 0 with nothing."""
+        start = self._load(builder, lane, USED, I64, f"used{lane}")
+        if not (self.decodes and lane):
+            return start
+        return builder.select(builder.icmp_signed("==", self.parameters.row, constant(0)), constant(0), start)
 
     def is_hidden(self, lane: int) -> bool:
         """Whether the lane is not the holder's."""

@@ -105,6 +105,12 @@ def are_long_and_straight(kernels: Iterable[Kernel]) -> bool:
     return not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
 
 
+def is_short_and_straight(kernel: Kernel) -> bool:
+    """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
+    every = [each for each, _ in statements(kernel.bodies[0])]
+    return len(every) < LONG and not any(isinstance(each, For | While) for each in every)
+
+
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
     """The expressions that stand in a statement itself."""
     match stmt:

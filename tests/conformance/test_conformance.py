@@ -72,7 +72,7 @@ def test_the_runner_itself(tmp_path, backend):
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{testee}"\n')
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
     environment = {**os.environ, "CONFORMANCE_BACKEND": backend}
-    done = subprocess.run([RUNNER, program], env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run([RUNNER, program], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False)
     summaries = re.findall(r"CONFORMANCE SUITE \w+: (\d+) successes, \d+ skipped, \d+ expected failures, (\d+) unexpected", done.stderr)
     assert summaries[0] == (str(CASES), "0")
 

@@ -66,6 +66,7 @@ class Function(Value):
     args: tuple[Argument, ...]
     attributes: AttributeSet
     linkage: str
+    calling_convention: str
     def __init__(self, module: Module, ftype: FunctionType, name: str) -> None: ...
     def append_basic_block(self, name: str = "") -> Block: ...
 
