@@ -21,15 +21,18 @@ MESSAGES = {"24 specialised doubles": (24, specialised(24)), "16 tagged doubles"
 
 
 def main(folder: Path) -> dict[str, dict[str, float]]:
-    """By message, by way to call: the median of the rounds."""
+    """By message and what is called: the median of the rounds."""
     return {what: _ratios(joints_mapping(count, folder), message) for what, (count, message) in MESSAGES.items()}
 
 
 def _ratios(mapping: Path, message: bytes) -> dict[str, float]:
     decode, encode = rj.Decoder(mapping, encoding="yarp3"), rj.Encoder(mapping, encoding="yarp3")
-    functions = {"decode": decode, "decode.builtin": decode.builtin, LEN: len}
-    timed = {who: EFFORT.call(function, message) for who, function in functions.items()}
-    timed["encode"] = EFFORT.call(encode, decode.into(message, decode.new()))
+    timed = {
+        "builtin": EFFORT.call(decode.builtin, message),
+        "decode": EFFORT.call(decode, message),
+        "encode": EFFORT.call(encode, decode.into(message, decode.new())),
+        LEN: EFFORT.call(len, message),
+    }
     taken = EFFORT.in_turns(timed)
     return {who: ratio(rounds, taken[LEN]).median for who, rounds in taken.items()}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import partial
 
 import numpy as np
@@ -9,9 +10,11 @@ import pytest
 
 import rosetta_jit as rj
 from bench.contest import Contender
+from bench.figures import Spread
 from bench.messages import batch, joints_mapping, repeated, specialised, tagged
 from bench.peers import bottle_by_hand
 from bench.peers.yarp_native import Peers
+from bench.processes import run
 
 CHAPTER = "Native bottle parsing"
 MESSAGES, SERIES = 1_000_000, 20
@@ -24,6 +27,15 @@ OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED = (
     "C++ by hand, memcpy",
     "C++ by hand, tagged",
 )
+ONE_CALL = (
+    ("one call, 24 specialised doubles, `builtin`", "24 specialised doubles", "builtin", 1.3),
+    ("one call, 24 specialised doubles", "24 specialised doubles", "decode", 2),
+    ("one call, 16 tagged doubles, `builtin`", "16 tagged doubles", "builtin", None),
+    ("one call, 16 tagged doubles", "16 tagged doubles", "decode", 3),
+    ("`encode`, one call, 24 doubles", "24 specialised doubles", "encode", 3),
+)
+"""Rows: what, which message, what is called, and the target."""
+
 HOLDER = "JointAngles in float32 radians, used again"
 
 
@@ -115,6 +127,15 @@ def many(decoder, rows, into):
     return lambda: decoder.many(buffer, offsets, into=into)
 
 
+def test_one_call(tmp_path, effort, record):
+    """In processes of their own: each has luck of its own with where code and data lie."""
+    run("-m", "bench.one_call", str(tmp_path), ROSETTA_JIT_CACHE_DIR=str(tmp_path))  # compiles
+    count = 5 if effort.quick else 15
+    found = [json.loads(run("-m", "bench.one_call", str(tmp_path), ROSETTA_JIT_CACHE_DIR=str(tmp_path))) for _ in range(count)]
+    for what, message, called, at_most in ONE_CALL:
+        record(what, Spread.of([each[message][called] for each in found]), at_most, "x len()", f"of {count} processes")
+
+
 def test_24_specialised_doubles(decoders, effort, compare, record):
     decoder, message, peers, count = decoders[24], specialised(24), Peers(), series(effort)
     angles, degrees = np.zeros(24, np.float32), np.zeros(24)
@@ -131,10 +152,6 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
         ],
         rounds=SERIES,
     )
-    record(
-        "one call, 24 specialised doubles, `builtin`", outcome.ratio(BUILTIN, LEN), 1.3, "x len()", f"{outcome.took(BUILTIN).median:.0f} ns"
-    )
-    record("one call, 24 specialised doubles", outcome.ratio(OURS, LEN), 2, "x len()", f"{outcome.took(OURS).median:.0f} ns")
     against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder", 1 / 30)
     loop, copy = (outcome.took(who).median for who in (LOOP, COPY))
     detail = f"loop {loop:.1f} ns, header check and memcpy {copy:.1f} ns"
@@ -161,8 +178,6 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
         ],
         rounds=SERIES,
     )
-    record("one call, 16 tagged doubles, `builtin`", outcome.ratio(BUILTIN, LEN), None, "x len()", f"{outcome.took(BUILTIN).median:.0f} ns")
-    record("one call, 16 tagged doubles", outcome.ratio(OURS, LEN), 3, "x len()", f"{outcome.took(OURS).median:.0f} ns")
     against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder, tagged", None)
     loop = outcome.took(TAGGED).median
     record("the same against a C++ loop by hand, tagged", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")
@@ -173,7 +188,7 @@ def against_dynamic(record, outcome, peers, what, at_most):
     record(what, outcome.ratio(OURS, who), at_most, "of it", f"{who}: {outcome.took(who).median:.0f} ns", against=who)
 
 
-def test_encode(decoders, effort, compare, record):
+def test_encode(decoders, effort, compare):
     message, holder = specialised(24), decoders[24](specialised(24))
     encode, buffer = rj.Encoder(decoders[24]._request.mapping, encoding="yarp3"), bytearray(len(message))
     pack, values = bottle_by_hand.packed(message)
@@ -181,7 +196,7 @@ def test_encode(decoders, effort, compare, record):
     for written in (encode(holder), buffer):
         same(np.frombuffer(written, np.float64, offset=8), degrees_of(message))
     assert pack(*values) == message
-    outcome = compare(
+    compare(
         CHAPTER,
         "24 specialised doubles, encoded",
         [
@@ -191,7 +206,6 @@ def test_encode(decoders, effort, compare, record):
             Contender("struct", "peer", "bytes, anew; nothing is converted", effort.call(pack, *values)),
         ],
     )
-    record("`encode`, one call, 24 doubles", outcome.ratio(OURS, LEN), 3, "x len()", f"{outcome.took(OURS).median:.0f} ns")
 
 
 def test_a_million_in_one_call(decoders, effort, compare, record):
