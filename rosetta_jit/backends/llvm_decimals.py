@@ -58,7 +58,8 @@ def _defined(module: ir.Module, name: str, signature: ir.FunctionType, define: C
 def _shortest(function: ir.Function, *, single: bool) -> None:
     """Write the number with one digit more each round, until it reads back."""
     module, type_ = function.module, "f32" if single else "f64"
-    entry, loop, done, nothing = (function.append_basic_block(name) for name in ("entry", "loop", "done", "nothing"))
+    names = ("entry", "loop", "done", "other", "above", "more", "nothing")
+    entry, loop, done, other, above, more, nothing = (function.append_basic_block(name) for name in names)
     builder = ir.IRBuilder(entry)
     room = builder.alloca(I8, constant(ROOM))
     value = builder.call(intrinsic(module, "llvm.fabs.f64", F64, [F64]), [function.args[0]])
@@ -70,21 +71,38 @@ def _shortest(function: ir.Function, *, single: bool) -> None:
 
     builder.position_at_end(loop)
     count = builder.phi(I32)
+    decimals = builder.sub(count, ir.Constant(I32, 1))
+    builder.call(_snprintf(module), [room, constant(ROOM), _text(module, "%.*e"), decimals, value])
+    found = builder.call(_reading(module), [room])
+    digits, power = builder.extract_value(found, 0), builder.sub(builder.extract_value(found, 1), builder.sext(decimals, I64))
+    last = builder.icmp_signed("==", count, ir.Constant(I32, LAST[type_]))  # whatever rounding the process has asked for
+    builder.cbranch(builder.or_(last, _reads_back(module, builder, room, value, single=single)), done, other)
+    builder.position_at_end(other)
+    fraction = builder.and_(builder.bitcast(value, I64), constant(2**52 - 1))
+    builder.cbranch(builder.icmp_signed("==", fraction, constant(0)), above, more)
+    builder.position_at_end(above)
+    next_ = builder.add(digits, constant(1))
+    builder.call(_snprintf(module), [room, constant(ROOM), _text(module, "%llde%lld"), next_, power])
+    builder.cbranch(_reads_back(module, builder, room, value, single=single), done, more)
+    builder.position_at_end(more)
     count.add_incoming(first, entry)
-    builder.call(_snprintf(module), [room, constant(ROOM), _text(module, "%.*e"), builder.sub(count, ir.Constant(I32, 1)), value])
-    again = _strtod(module, builder, room)
-    if single:
-        again = builder.fpext(builder.fptrunc(again, F32), F64)
-    enough = builder.or_(builder.fcmp_ordered("==", again, value), builder.icmp_signed("==", count, ir.Constant(I32, LAST[type_])))
-    count.add_incoming(builder.add(count, ir.Constant(I32, 1)), loop)
-    builder.cbranch(enough, done, loop)
+    count.add_incoming(builder.add(count, ir.Constant(I32, 1)), more)
+    builder.branch(loop)
 
     builder.position_at_end(done)
-    found = builder.call(_reading(module), [room])
-    exponent = builder.sub(builder.extract_value(found, 1), builder.sext(builder.sub(count, ir.Constant(I32, 1)), I64))
-    builder.ret(builder.insert_value(found, exponent, 1))
+    best = builder.phi(I64)
+    best.add_incoming(digits, loop)
+    best.add_incoming(next_, above)
+    builder.ret(builder.insert_value(builder.insert_value(ir.Constant(BOTH, [0, 0]), best, 0), power, 1))
     builder.position_at_end(nothing)
     builder.ret(ir.Constant(BOTH, [0, 0]))
+
+
+def _reads_back(module: ir.Module, builder: ir.IRBuilder, text: ir.Value, value: ir.Value, *, single: bool) -> ir.Value:
+    again = _strtod(module, builder, text)
+    if single:
+        again = builder.fpext(builder.fptrunc(again, F32), F64)
+    return builder.fcmp_ordered("==", again, value)
 
 
 def _fixed(function: ir.Function) -> None:
@@ -202,7 +220,7 @@ def _snprintf(module: ir.Module) -> ir.Function:
 
 def _text(module: ir.Module, text: str) -> ir.Value:
     """A private constant, with a NUL."""
-    name = f"rosetta_format_{text[-1]}"
+    name = "rosetta_format_" + "".join(each if each.isalnum() else "_" for each in text)
     if name in module.globals:
         return module.globals[name]
     data = bytearray(text.encode() + b"\0")

@@ -33,14 +33,19 @@ def nearest(text: bytes, exponent: int) -> np.float64:
 
 
 def shortest(type_: str, value: float) -> tuple[int, int]:
-    """Digits and scale: the fewest digits that, rounded correctly, read back as the value; 0 for what is not finite."""
+    """Digits and scale: the fewest digits that read back as the value, of such the nearest ones; 0 for what is not finite.
+
+    Above a power of two, numbers that read back as it reach twice as far as below, so that the nearest ones may not be among them.
+    """
     size = abs(float(value))
     if not math.isfinite(size) or size == 0:
         return 0, 0
     for count in range(FIRST[type_] if size >= LEAST_NORMAL[type_] else 1, LAST[type_] + 1):
         mantissa, _, exponent = f"{size:.{count - 1}e}".partition("e")
-        if _as(type_, float(f"{mantissa}e{exponent}")) == size or count == LAST[type_]:
-            return int(mantissa.replace(".", "")), int(exponent) - (count - 1)
+        rounded, power = int(mantissa.replace(".", "")), int(exponent) - (count - 1)
+        for found in (rounded, rounded + 1) if math.frexp(size)[0] == 0.5 else (rounded,):
+            if _as(type_, float(f"{found}e{power}")) == size:
+                return found, power
     raise AssertionError(value)
 
 

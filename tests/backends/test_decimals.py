@@ -17,7 +17,8 @@ from tests.backends import kernels
 from tests.backends.engines import ENGINES, outcome
 from tests.backends.holders import rows
 
-EDGES = [0.0, -0.0, 0.1, 1.0, 123.456, 5e-324, 2.2250738585072014e-308, 2.0**-44, 1e22, 1e23, 9007199254740993.0, 1.7976931348623157e308]
+EDGES = [0.0, -0.0, 0.1, 1.0, 123.456, 5e-324, 2.2250738585072014e-308, 1e22, 1e23, 9007199254740993.0, 1.7976931348623157e308]
+EDGES += [2.0**exponent for exponent in (-97, -44, -24, 89, 305)]
 
 
 def random_floats(type_, count):
@@ -51,14 +52,15 @@ def test_written_numbers(backend, type_):
         assert fixed == decimals.digits(type_, held, 3)
 
 
-def test_as_python_writes_them():
-    """The one difference: at some powers of two Python's digits read back, but are not those of the number rounded."""
-    for value in filter(math.isfinite, [*EDGES, *random_floats("f64", 3000)]):
-        digits, scale = decimals.shortest("f64", value)
-        assert float(f"{digits}e{scale}") == abs(value)
-        if Fraction(value).numerator.bit_count() != 1:
-            shown = "".join(each for each in repr(abs(value)).partition("e")[0] if each.isdigit()).strip("0")
-            assert str(digits).strip("0") == shown
+@pytest.mark.parametrize("type_", ["f64", "f32"])
+def test_as_python_and_numpy_write_them(type_):
+    """Above powers of two, the nearest digits may not be among those that read back."""
+    single, exponents = type_ == "f32", range(-149, 128) if type_ == "f32" else range(-1074, 1024)
+    for value in filter(math.isfinite, [*random_floats(type_, 3000), *(2.0**each for each in exponents), *([] if single else EDGES)]):
+        digits, scale = decimals.shortest(type_, value)
+        assert float(f"{digits}e{scale}") == abs(value) or single
+        shown = str(abs(np.float32(value))) if single else repr(abs(value))
+        assert str(digits).strip("0") == "".join(each for each in shown.partition("e")[0] if each.isdigit()).strip("0")
 
 
 READ = [
