@@ -32,6 +32,13 @@ class Rows:
             return (result, self.state[ERROR_OFFSET + 2 : GROW_ROWS + 1].tolist())
         return (result, self.state[ERROR_OFFSET : ERROR_OFFSET + 2].tolist(), self.state[ERROR_INDICES : ERROR_INDICES + indices].tolist())
 
+    def copy(self) -> Rows:
+        """The same in other memory."""
+        state, lanes = self.state.copy(), tuple(lane.copy() for lane in self.lanes)
+        for number, lane in enumerate(lanes):
+            state[lane_word(number, ADDRESS)] = lane.ctypes.data
+        return Rows(state, lanes)
+
 
 def rows(kernel: Kernel, capacity: int = 40) -> Rows:
     strides = kernel.strides

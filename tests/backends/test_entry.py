@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from rosetta_jit.backends.link import SYMBOLS, compile_program
-from rosetta_jit.kernel.state import RESULT, VALID
+from rosetta_jit.kernel.state import LANES, RESULT, VALID
 from rosetta_jit.runtime import native
 from rosetta_jit.runtime.callable import Context, bind_call, bind_state, callable_class, holder_base, is_native
 from tests.backends import kernels
+from tests.backends.engines import outcome
 from tests.backends.holders import rows
-from tests.backends.messages import GOOD
+from tests.backends.messages import GOOD, hostile
 
 pytestmark = pytest.mark.skipif(not is_native(), reason="entries know CPython 3.11 to 3.14 alone")
 MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
@@ -63,6 +64,22 @@ def test_decodes_anything_with_a_buffer(kind, with_numba):
     assert decode(kind(FIXED)) is decode.holder
     assert decode.rows.state[VALID] == 1
     assert decode.rows.lanes[0].view(np.float32)[:10].tolist() == EXPECTED.tolist()
+
+
+@pytest.mark.parametrize("kernel", kernels.DECODERS, ids=lambda kernel: kernel.name)
+@pytest.mark.parametrize("with_numba", [False, True])
+def test_a_call_does_what_the_interpreter_does(kernel, with_numba):
+    """Also where the kernel is part of the call, and where a later form of the message is tried."""
+    decode = program([kernel], "decode", with_numba=with_numba)
+    for message in hostile(kernel.name):
+        given = decode.rows.copy()
+        given.state[:LANES] = 0
+        expected = outcome("interpreter", kernel, message, given)
+        decode.slow_calls.clear()
+        is_good = decode(message) is decode.holder
+        assert decode.rows.state[VALID] == is_good
+        result = expected[0] if is_good else decode.slow_calls[0][2]
+        assert decode.rows.seen(result, 4) == expected, message
 
 
 def test_references_balance():

@@ -64,3 +64,20 @@ def test_long_kernels_without_loops_have_vectors_too():
     for other in (kernels.specialised(), kernels.text()):
         assert not are_long_and_straight([long, other])
     assert re.search(r"fmul <\d+ x double>", llvm_text([long], "decode", with_numba=False))
+
+
+def test_short_kernels_are_part_of_the_call():
+    def is_called(kernel):
+        code = assembly([kernel], "decode", with_numba=False)
+        entry = code[code.index("\ncall:") : code.index("\nany_call:")]
+        return re.search(r"\bkernel\b(?!\.)", entry) is not None
+
+    assert not is_called(kernels.fixed(10))
+    assert not is_called(kernels.attempts())
+    assert is_called(kernels.fixed(300))
+
+
+def test_a_later_form_of_a_message_is_another_function():
+    """Three forms: each but the first is reached from the one before."""
+    text = llvm_text([kernels.attempts()], "decode", with_numba=False)
+    assert re.findall(r"define internal preserve_mostcc [^@]*@(kernel[.next]*)\(", text) == ["kernel.next", "kernel.next.next"]
