@@ -123,11 +123,12 @@ def _sorted(before: TopologicalSorter[Node]) -> Iterator[int]:
     before.prepare()
     ready: list[int] = []
     while before.is_active():
-        for node in before.get_ready():
-            if isinstance(node, int):
-                heappush(ready, node)
-            else:
-                before.done(node)
+        while nodes := before.get_ready():
+            for node in nodes:
+                if isinstance(node, int):
+                    heappush(ready, node)
+                else:
+                    before.done(node)
         if ready:
             number = heappop(ready)
             yield number

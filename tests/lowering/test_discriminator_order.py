@@ -105,6 +105,15 @@ def test_an_order_is_found(rules):
     assert [(each["_d"], each["n"]) for each in found["us"]] in ([(5, 5.0), (5, 5.0)], [(5, 5.0), (5, 4.0)])
 
 
+@pytest.mark.parametrize("label", ["1", "int32(.y + 1)"])
+def test_a_case_waits_for_its_discriminator_alone(label):
+    """Of the rules behind both that fail, too, none comes before it."""
+    rules = f"len(.us) = 2\n.us[0].a = uint8(.x * 1000)\n.us[0]._d = {label}\n.us[1]._d = int32(10 / .y)"
+    with pytest.raises(rj.MessageError) as error:
+        made(rules, "unpack", "interpreter", "m::Many", x=5, y=0)
+    assert error.value.path == ".us[0].a"
+
+
 @pytest.mark.parametrize("rules", OUT_OF_ORDER)
 def test_no_order_is_told(rules):
     with pytest.raises(rj.MappingError) as error:
