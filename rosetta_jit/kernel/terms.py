@@ -49,6 +49,15 @@ def add(left: Expr, right: Expr | int) -> Expr:
             return Binary("add", left, index(right)) if right else left
 
 
+def split(expr: Expr) -> tuple[Expr, int]:
+    """An int64 expression without the constant that `add` has put behind it, and that constant."""
+    match expr:
+        case Binary("add", base, Const("i64", value)):
+            return base, int(value)
+        case _:
+            return expr, 0
+
+
 def mul(left: Expr, right: Expr | int) -> Expr:
     """``left * right`` in i64, with constants folded."""
     if isinstance(right, int):

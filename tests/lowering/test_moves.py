@@ -117,6 +117,55 @@ def test_a_constant_of_equal_bytes_is_a_fill(value, byte):
     same_outcomes(before, after, [bytes([5, 1])])
 
 
+def points(*fields, step=16, stride=16):
+    """A kernel whose elements are structs: of each field the type, and where it lies in the message and in the lane."""
+    item = Let("item", at(step))
+    moved = [SetField(Place(1, I, to), Load(type_, add(i64("item"), origin))) for type_, origin, to in fields]
+    room = expect(Compare("le", N, Capacity(1)), 5)
+    body = (ROW_EXISTS, *COUNT, room, need(FIRST, mul(N, step)), For("i", N, (item, *moved)), Return(BEGIN))
+    return kernel(body, strides=(64, stride))
+
+
+X, Y, Z = ("f64", 0, 0), ("i32", 8, 8), ("f32", 12, 12)
+
+
+@pytest.mark.parametrize("fields", [(X, Y, Z), (Z, X, Y), (Y, Z, X)])
+def test_structs_that_both_sides_have_alike_are_one_copy(fields):
+    before = points(*fields)
+    after = passes.run(before)
+    assert not found(after, For)
+    (copy,) = found(after, Copy)
+    assert (copy.target, copy.size) == (Place(1, index(0)), mul(N, 16))
+    same_outcomes(before, after, [bytes([3, *range(1, 60)]), bytes([0, 1]), bytes([1, *[255] * 16])])
+
+
+@pytest.mark.parametrize(
+    ("fields", "step", "stride"),
+    [
+        ((X, Y), 16, 16),
+        ((X, Y, Z), 17, 16),
+        ((X, Y, Z), 16, 24),
+        ((("f64", 8, 0), ("i32", 4, 8), ("f32", 0, 12)), 16, 16),
+        ((("i32", 0, 4), ("i32", 4, 0)), 8, 8),
+        ((X, X, Y), 16, 16),
+    ],
+    ids=["a field is left out", "gaps in the message", "gaps in the lane", "another order", "exchanged", "twice"],
+)
+def test_other_structs_are_no_copy(fields, step, stride):
+    before = points(*fields, step=step, stride=stride)
+    assert bulk(before) == before
+
+
+def test_structs_are_written_as_one_copy():
+    stores = [Store(add(i64("item"), to), Get(type_, Place(1, I, to))) for type_, to, _ in (Y, X, Z)]
+    loop = For("i", N, (Let("item", at(16)), *stores))
+    room = expect(Compare("le", N, Capacity(1)), 5)
+    before = kernel((ROW_EXISTS, *COUNT, room, need(FIRST, mul(N, 16)), loop, Return(BEGIN)), strides=(64, 16))
+    after = bulk(before)
+    verify(after)
+    assert [copy.source for copy in found(after, Copy)] == [Place(1, index(0))]
+
+
 def test_rows_without_padding_are_one_copy():
     w, h, step = i64("w"), i64("h"), i64("step")
     sizes = [Let(name, Convert("i64", Load("u8", add(BEGIN, k)))) for k, name in enumerate(["w", "h", "step"])]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
@@ -29,8 +30,8 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.rewrite import reads_memory, with_blocks, with_bodies
-from rosetta_jit.kernel.terms import index, mul, type_of
-from rosetta_jit.lowering.passes.affine import rounds_of
+from rosetta_jit.kernel.terms import index, mul, split, type_of
+from rosetta_jit.lowering.passes.affine import Affine, rounds_of
 from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 
 if TYPE_CHECKING:
@@ -130,14 +131,58 @@ def _only_move(body: Block, rounds: Rounds) -> Move | None:
         case [If(Compare("gt", _, Const(_, 0)), (Copy() | Fill() as move,), ())]:
             # Where there is nothing to move, none of the rounds moves anything.
             return move
-        case [Copy() | Fill() as move]:
-            return move
-        case [SetField(place, value)]:
+        case [only]:
+            return _move(only, rounds)
+        case _:
+            copies = [move for stmt in effects if isinstance(move := _move(stmt, rounds), Copy)]
+            return _end_to_end(copies, rounds) if copies and len(copies) == len(effects) else None
+
+
+def _move(stmt: Stmt, rounds: Rounds) -> Move | None:
+    match stmt:
+        case Copy() | Fill():
+            return stmt
+        case SetField(place, value):
             return _assigned(place, value, "<", rounds)
-        case [Store(at, value, order)]:
+        case Store(at, value, order):
             return _assigned(Wire(at), value, order, rounds)
         case _:
             return None
+
+
+def _end_to_end(copies: list[Copy], rounds: Rounds) -> Copy | None:
+    """Copies as one, if each begins where another one ends, on both sides: the fields of a struct that both sides have alike."""
+    placed: list[tuple[int, int, Copy]] = []
+    for each in copies:
+        there, here = _distance(copies[0].target, each.target, rounds), _distance(copies[0].source, each.source, rounds)
+        if there is None or there != here or not isinstance(each.size, Const):
+            return None
+        placed.append((there, there + int(each.size.value), each))
+    placed.sort(key=lambda each: each[0])
+    if any(end != begin for (_, end, _), (begin, _, _) in pairwise(placed)):
+        return None
+    return replace(placed[0][2], size=index(placed[-1][1] - placed[0][0]))
+
+
+def _distance(one: Address, other: Address, rounds: Rounds) -> int | None:
+    """How many bytes further an address is than another one, if that is known."""
+    match one, other:
+        case Wire(at), Wire(to):
+            (here, near), (there, far) = _origin(at, rounds), _origin(to, rounds)
+        case Place(lane, row, near), Place(same, to, far) if lane == same:
+            here, there = rounds.affine(row), rounds.affine(to)
+        case _:
+            return None
+    return far - near if here is not None and here == there else None
+
+
+def _origin(at: Expr, rounds: Rounds) -> tuple[Affine | None, int]:
+    """A position without the constant that is added to it, and that."""
+    found = rounds.affine(at)
+    if found is None:
+        return None, 0
+    base, number = split(found.base)
+    return Affine(base, found.step), number
 
 
 def _assigned(target: Address, value: Expr, order: Order, rounds: Rounds) -> Move | None:

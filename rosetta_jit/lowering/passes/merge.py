@@ -11,11 +11,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.ir import Binary, Block, Const, Expect, Failure, Part, Require, Site
+from rosetta_jit.kernel.ir import Block, Const, Expect, Failure, Part, Require, Site
 from rosetta_jit.kernel.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, may_return, reads_memory, with_blocks
 from rosetta_jit.kernel.shape import blocks_of
-from rosetta_jit.kernel.terms import index
+from rosetta_jit.kernel.terms import index, split
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
@@ -49,7 +49,7 @@ def _block(block: Block, sites: list[Site], *, is_attempt: bool = False) -> Bloc
     for stmt in block:
         match stmt:
             case Require(at, Const(_, size), failure) if not reads_memory(at):
-                base, offset = _split(at)
+                base, offset = split(at)
                 site = sites[failure.site]
                 key = base, failure.indices, site.kind
                 if key in groups and _joins(groups[key], offset, int(size), site):
@@ -74,14 +74,6 @@ def _close(groups: dict[_Key, _Group], stmt: Stmt) -> None:
     changed = changed_names((stmt,))
     for key in [key for key in groups if any(not changed.isdisjoint(locals_in(expr)) for expr in (key[0], *key[1]))]:
         del groups[key]
-
-
-def _split(at: Expr) -> tuple[Expr, int]:
-    match at:
-        case Binary("add", base, Const("i64", value)):
-            return base, int(value)
-        case _:
-            return at, 0
 
 
 def _joins(group: _Group, offset: int, size: int, site: Site) -> bool:
