@@ -253,11 +253,36 @@ def test_one_read_needs_no_name():
 
 def test_a_variable_is_settled_behind_its_last_assignment():
     v = i64("v")
-    body = (Var("v", index(0)), If(compare("eq", ROW, 0), (Assign("v", index(2)),)), Let("a", v), Let("b", add(v, 1)), Let("c", add(v, 1)))
+    body = (Var("v", index(0)), If(compare("eq", ROW, 0), (Assign("v", index(2)),)), Let("a", v), Let("b", mul(v, 3)), Let("c", mul(v, 3)))
     uses = (SetField(Place(0, ROW), i64("a")), SetField(Place(0, ROW, 8), i64("b")), SetField(Place(0, ROW, 16), i64("c")))
     after = simplify(kernel((ROW_EXISTS, *body, *uses, Return(BEGIN))))
     assert [stmt.name for stmt in found(after, Let)] == ["b"]
     assert [stmt.value for stmt in found(after, SetField)] == [v, i64("b"), i64("b")]
+
+
+def test_a_number_that_was_checked_is_known():
+    """Behind its check, and behind the block where it was, no more."""
+    checked = expect(compare("eq", N, 9))
+    inner = If(compare("gt", ROW, 0), (checked, SetField(Place(0, ROW), add(N, 1))))
+    body = (ROW_EXISTS, *COUNT, SetField(Place(0, ROW, 8), mul(N, 8)), inner, SetField(Place(0, ROW, 16), add(N, 2)))
+    before = kernel((*body, checked, SetField(Place(0, ROW, 24), mul(N, 8)), Return(add(FIRST, N))))
+    after = simplify(before)
+    verify(after)
+    assert [stmt.value for stmt in found(after, SetField)] == [mul(N, 8), index(10), add(N, 2), index(72)]
+    (end,) = found(after, Return)
+    assert end.position == add(BEGIN, 10)
+    same_outcomes(before, after, [bytes([9]), bytes([8])])
+
+
+def test_positions_are_sums_with_one_constant():
+    """So that the checks of fields behind an array of known length become one."""
+    lets = (Let("a", Binary("add", FIRST, N)), Let("b", add(i64("a"), 8)), Let("c", add(i64("b"), 8)))
+    fields = tuple(SetField(Place(0, ROW, 8 * k), Load("f64", i64(name))) for k, name in enumerate("abc"))
+    needs = tuple(need(i64(name), 8) for name in "abc")
+    before = kernel((ROW_EXISTS, *COUNT, *lets, *needs, *fields, Return(add(i64("c"), 8))))
+    after = passes.run(before)
+    assert [(stmt.at, stmt.size) for stmt in found(after, Require)] == [(BEGIN, index(1)), (i64("a"), index(24))]
+    same_outcomes(before, after, [bytes(30), bytes([2, *range(40)])])
 
 
 def test_a_variable_is_not_settled_from_round_to_round():

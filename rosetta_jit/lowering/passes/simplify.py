@@ -8,10 +8,12 @@ from itertools import repeat
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import (
     Assign,
     Block,
     Call,
+    Compare,
     Const,
     Expect,
     For,
@@ -30,7 +32,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.rewrite import ends, locals_in, names_read, with_blocks, with_bodies, with_expressions, with_operands
 from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
-from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, type_of
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, index, split, type_of
 from rosetta_jit.lowering.passes.fold import FALSE, TRUE, folded
 
 if TYPE_CHECKING:
@@ -79,7 +81,8 @@ def _block(block: Block, names: _Names) -> Block:
 
 def _expression(expr: Expr, names: _Names) -> Expr:
     if isinstance(expr, Local):
-        return names.values.get(expr.name, expr)
+        value = names.values.get(expr.name, expr)
+        return names.computed.get(value, value)
     if isinstance(expr, Const):
         return expr
     simple = folded(with_operands(expr, lambda operand: _expression(operand, names)))
@@ -99,6 +102,10 @@ def _statement(stmt: Stmt, names: _Names) -> Block:
             return (stmt,)
         case Expect(condition, _) if condition == TRUE:
             return ()
+        case Expect(Compare("eq", Local(type_, name) as local, Const() as value), _) if type_ not in FLOATS and name in names.fixed:
+            names.computed[local] = value
+            names.news.append(local)
+            return (stmt,)
         case If(Const(_, value), then, otherwise):
             return _block(then if value else otherwise, names)
         case Switch(Const(_, value), cases, default):
@@ -119,7 +126,8 @@ def _statement(stmt: Stmt, names: _Names) -> Block:
 
 
 def _let(name: str, value: Expr, names: _Names) -> Block:
-    if isinstance(value, Const) or (isinstance(value, Local) and value.name in names.fixed):
+    base, _ = split(value)
+    if isinstance(value, Const) or (isinstance(base, Local) and base.name in names.fixed):
         names.values[name] = value
         return ()
     names.fixed.add(name)
