@@ -48,7 +48,7 @@ class Clock:
 def main(mapping: str, backend: Backend) -> dict[str, float]:
     clock = Clock()
     with clock.stage("import"):
-        from rosetta_jit.backends.link import SYMBOLS
+        from rosetta_jit.kernel.entries import SYMBOLS
         from rosetta_jit.lowering import passes
         from rosetta_jit.pipeline import Build
         from rosetta_jit.request import Request

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.garbage import imported, seldom_collected
+from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.request import GivenFunction, Request, plain_parameters
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.allowed import ForeignCodeError
@@ -27,13 +28,6 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline import Build, Stage
     from rosetta_jit.request import Backend, ByteOrder, Direction
     from rosetta_jit.runtime.holder import Holder
-
-SYMBOLS = {
-    "decode": ("kernel", "call", "many"),
-    "borrow": ("kernel", "call", "many"),
-    "encode": ("kernel", "size", "call", "many", "sizes"),
-}
-"""What the object code of each entry defines."""
 
 _PYTHON = ("python", "interpreter")
 """Backends that compile nothing."""

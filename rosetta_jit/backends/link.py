@@ -9,35 +9,28 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder), 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from llvmlite import binding, ir
 
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
 from rosetta_jit.backends.prelink import prelinked
+from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import are_long_and_straight, calls_to_host, is_large, is_short_and_straight, is_told, our_functions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rosetta_jit.kernel.entries import EntryName
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel
-
-EntryName = Literal["decode", "borrow", "encode"]
 
 TEMPLATES: dict[EntryName, tuple[str, ...]] = {
     "decode": ("objects.ll", "decode.ll", "many.ll"),
     "borrow": ("objects.ll", "borrow.ll", "many.ll"),
     "encode": ("objects.ll", "encode.ll", "many.ll"),
 }
-SYMBOLS: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("kernel", "call", "many"),
-    "borrow": ("kernel", "call", "many"),
-    "encode": ("kernel", "size", "call", "many", "sizes"),
-}
-"""What an object defines for others; everything else in it is private."""
-
 FUNCTIONS = ("kernel", "size")
 """The names of a program's kernels: what decodes or encodes, and, to encode, what measures."""
 

@@ -6,9 +6,10 @@ import ctypes
 from functools import cache
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.link import SYMBOLS, compile_program
+from rosetta_jit.backends.link import compile_program
 from rosetta_jit.backends.python import compile_python
 from rosetta_jit.kernel import interpret
+from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.runtime import native
 from tests.backends.holders import KERNEL
 

@@ -10,7 +10,8 @@ import sys
 import numpy as np
 import pytest
 
-from rosetta_jit.backends.link import SYMBOLS, compile_program
+from rosetta_jit.backends.link import compile_program
+from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.state import LANES, RESULT, VALID
 from rosetta_jit.runtime import native
 from rosetta_jit.runtime.callable import Context, bind_call, bind_state, callable_class, holder_base, is_native

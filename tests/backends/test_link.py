@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from rosetta_jit.backends.link import SYMBOLS, assembly, compile_program, llvm_text, object_file
+from rosetta_jit.backends.link import assembly, compile_program, llvm_text, object_file
+from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.shape import are_long_and_straight
 from rosetta_jit.kernel.terms import BEGIN, ROW, add

@@ -1,0 +1,14 @@
+"""What a program's object code defines: its kernels, and the entries from CPython that stand around them (`backends/*.ll`)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+EntryName = Literal["decode", "borrow", "encode"]
+
+SYMBOLS: dict[EntryName, tuple[str, ...]] = {
+    "decode": ("kernel", "call", "many"),
+    "borrow": ("kernel", "call", "many"),
+    "encode": ("kernel", "size", "call", "many", "sizes"),
+}
+"""By entry, what the object code defines for others; everything else in it is private."""
