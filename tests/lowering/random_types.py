@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
+from tests.lowering.meaning import Refused
 from tests.lowering.random_fields import some_value
 
 if TYPE_CHECKING:
     import random
     from collections.abc import Iterator, Mapping
 
-    from tests.lowering.meaning import Fields, Value
+    from tests.lowering.meaning import Value
 
 CONSTANTS = ("AUTO", "IDLE", "MOVE")
 """The names of an enum, by their numbers."""
@@ -191,27 +192,44 @@ def joint(path: str, name: str) -> str:
     return f"{path}.{name}" if path else name
 
 
-def seen(kind: Kind, value: Value, path: str = "") -> Fields:
-    """What expressions read of a value, by path: what is absent gives its default; "has a.b" tells whether it is there."""
+class Seen(dict[str, Any]):
+    """What expressions read of a value, by path; "has a.b" tells whether something is there."""
+
+    def __getitem__(self, path: str) -> Value:
+        value = super().__getitem__(path)
+        if value is LACKING:
+            raise Refused("missing")
+        return value
+
+
+LACKING = object()
+"""Stands for what a message requires and does not have."""
+
+
+def seen(kind: Kind, value: Value, path: str = "", *, requires: bool = False) -> Seen:
+    """What is absent gives its default, or is refused if it is a scalar of a message that requires it."""
     match kind:
         case Scalar(type_):
-            return {path: default(type_) if value is None else value}
+            return Seen({path: (LACKING if requires else default(type_)) if value is None else value})
         case Array() | Enum() | Map():
-            return {path: value}
+            return Seen({path: value})
         case Maybe(inner):
-            return {f"has {path}": value is not None, **seen(inner, value, path)}
+            found = seen(inner, value, path, requires=requires and isinstance(inner, Message))
+            found[f"has {path}"] = value is not None
+            return found
         case Message(_, fields):
-            found: Fields = {}
+            found = Seen()
             for name, each in fields.items():
                 part = value or {}
                 is_open = isinstance(each, Choice) and not each.is_named
-                found |= seen(each, part if is_open else part.get(name), below(path, name, each))
+                found |= seen(each, part if is_open else part.get(name), below(path, name, each), requires=requires)
             return found
         case Choice(_, cases, _):
-            found = {}
+            found = Seen()
             for name, each in cases.items():
                 at = joint(path, name)
-                found |= {f"has {at}": name in (value or {}), **seen(each, (value or {}).get(name), at)}
+                found[f"has {at}"] = name in (value or {})
+                found |= seen(each, (value or {}).get(name), at, requires=requires and isinstance(each, Message))
             return found
         case _:
             assert_never(kind)

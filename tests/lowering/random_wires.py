@@ -46,6 +46,8 @@ class Wire:
     has_unions: bool = False
     has_named_unions: bool = True
     has_fixed: bool = True
+    requires: bool = False
+    """Whether what is not optional must be there."""
     map_keys: tuple[str, ...] = ()
     """The types of the keys that maps may have."""
     constant: str = ""
@@ -297,6 +299,6 @@ WIRES: dict[str, Wire] = {
     ),
     "yarp3": Wire({**BOTTLE, "bool": ":bool", "string": ":string"}, "{name}", bottle, {"encoding": "yarp3"}, map_keys=("string",)),
     "yarp4": Wire({**BOTTLE, "bool": ":bool", "string": ":string"}, "{name}", bottle, {"encoding": "yarp4"}, map_keys=("string",)),
-    "proto2": Wire(declare=proto("proto2"), **PROTOBUF),
+    "proto2": Wire(declare=proto("proto2"), requires=True, **PROTOBUF),
     "proto3": Wire(declare=proto("proto3"), **PROTOBUF),
 }

@@ -50,7 +50,7 @@ def check_altered(seed: int, names: tuple[str, str], backends: list[str]) -> Non
         for _ in range(MESSAGES):
             (values, data), (_, other) = message(), message()
             with np.errstate(all="ignore"):
-                expected = wanted(rules, seen(src.message, values))
+                expected = wanted(rules, seen(src.message, values, requires=src.wire.requires))
             data = mixed(rng, data, other, numbers)
             for decode in decoders:
                 found = outcome(decode, data)

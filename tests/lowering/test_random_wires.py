@@ -152,7 +152,7 @@ def check_wires(seed: int, names: tuple[str, str], direction: str, backends: lis
     runs = {backend: runner(files, src, dst, direction, backend) for backend in backends}
     for _ in range(MESSAGES):
         values = some(rng, src.message, rng.choice([0, 1, 3, 4, 6]))
-        expected = wanted(rules, seen(src.message, values))
+        expected = wanted(rules, seen(src.message, values, requires=src.wire.requires))
         for backend, run in runs.items():
             found = outcome(run, counted(src, values))
             assert found == expected, (seed, names, direction, backend, files, values)
