@@ -32,8 +32,8 @@ check: $(VENV)/.test ## lint and check types alone
 	$(BIN)/ruff format --check
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
 
-campaign: $(VENV)/.test ## the long runs of the test programme (hours)
-	$(BIN)/python -m pytest -m campaign $(ARGS)
+campaign: $(VENV)/.test ## the long runs of the test programme, and the others with new random examples (hours)
+	$(BIN)/python -m pytest --hypothesis-profile=default $(ARGS)
 
 conformance: $(VENV)/.test ## protobuf's own conformance suite; CONFORMANCE_TEST_RUNNER and CONFORMANCE_PROTOS name its program and schemas
 	$(BIN)/python -m pytest tests/conformance $(ARGS)

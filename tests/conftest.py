@@ -1,8 +1,12 @@
-"""No test reads or fills the user's own cache."""
+"""No test reads or fills the user's own cache, and each run tries the same examples, unless `--hypothesis-profile=default` asks for others."""
 
 from __future__ import annotations
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("reproducible", derandomize=True)
+settings.load_profile("reproducible")
 
 
 @pytest.fixture(scope="session", autouse=True)
