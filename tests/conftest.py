@@ -1,4 +1,4 @@
-"""No test reads or fills the user's own cache, and each run tries the same examples, unless `--hypothesis-profile=default` asks for others."""
+"""No test reads or fills the user's own cache. Each run tries the same random examples; `--hypothesis-profile=default` asks for others."""
 
 from __future__ import annotations
 
