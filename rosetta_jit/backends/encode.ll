@@ -64,7 +64,7 @@ opened:
   %inside = icmp sle i64 %offset, %room.size
   br i1 %inside, label %fill, label %close, !prof !0
 fill:
-  %filled.end = call i64 @kernel(ptr %room, i64 %offset, i64 %room.size, ptr %state, i64 0)
+  %filled.end = call i64 @kernel(ptr %room, i64 %offset, i64 %room.size, ptr %state, i64 0) #0
   br label %close
 close:
   %end = phi i64 [ %filled.end, %fill ], [ 0, %opened ]
