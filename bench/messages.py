@@ -31,6 +31,11 @@ def repeated(message: bytes, count: int) -> tuple[np.ndarray, np.ndarray]:
     return np.tile(np.frombuffer(message, np.uint8), count), np.arange(count + 1, dtype=np.int64) * len(message)
 
 
+def anew(message: bytes) -> bytes:
+    """The same bytes in another place."""
+    return bytes(bytearray(message))
+
+
 def image(width: int = WIDTH, height: int = HEIGHT) -> bytes:
     """A YARP 3 image as YARP 3.12 writes it, rows padded to the quantum of 8."""
     row = -(-width * 3 // 8) * 8

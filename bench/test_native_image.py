@@ -10,7 +10,7 @@ import pytest
 
 import rosetta_jit as rj
 from bench.contest import Contender
-from bench.messages import HEIGHT, MAPPINGS, WIDTH, image
+from bench.messages import HEIGHT, MAPPINGS, WIDTH, anew, image
 from bench.peers.native import rounds_of
 from bench.peers.yarp_native import Peers
 
@@ -50,13 +50,19 @@ def test_image_against_memmove(job, effort, compare, record):
     by_numpy = numpy_decoder(job)
     by_cpp, pixels = native(peers, job, message)
     assert bytes(decode(message).data) == by_numpy(message).tobytes() == pixels.tobytes()
-    source, target = np.frombuffer(message, np.uint8, offset=HEADER), np.empty(len(message) - HEADER, np.uint8)
+
+    def decoded():
+        return effort.call(rj.Decoder(MAPPINGS / f"{job.mapping}.mapping", encoding="yarp3"), anew(message))
+
+    def moved():
+        return effort.call(np.copyto, np.empty(len(message) - HEADER, np.uint8), np.frombuffer(anew(message), np.uint8, offset=HEADER))
+
     outcome = compare(
         CHAPTER,
         f"{job.what}, {job.width}x{HEIGHT}",
         [
-            Contender(OURS, "ours", "an RST image, used again", effort.call(decode, message)),
-            Contender(MOVE, "limit", "the pixels, elsewhere", effort.call(np.copyto, target, source)),
+            Contender(OURS, "ours", "an RST image, used again", effort.placed(decoded)),
+            Contender(MOVE, "limit", "the pixels, elsewhere", effort.placed(moved)),
             Contender(
                 peers.dynamic_decoder,
                 "peer",

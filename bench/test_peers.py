@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bench.contest import Contender
+from bench.messages import anew
 from bench.peers import python_peers
 from bench.peers.native import native_peers, rounds_of
 from bench.peers.yarp_native import Peers
@@ -75,11 +76,6 @@ def test_encode(name, effort, compare, record):
     if name in SUBJECTS:
         took = words.time(outcome.took(INTO).median)
         record(f"{name}, encode", outcome.ratio(INTO, "its decode"), 1.5, "x its decode", took)
-
-
-def anew(message):
-    """The same bytes in another place."""
-    return bytes(bytearray(message))
 
 
 def into_a_buffer(effort, subject):

@@ -9,6 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 from bench.contest import Contender
+from bench.messages import anew
 from bench.ros_wire import Ros1
 
 CHAPTER = "Images in another order"
@@ -77,16 +78,18 @@ WRITTEN = (
 @pytest.mark.parametrize("job", READ, ids=lambda job: job.what)
 def test_unpacking_against_memmove(job, size, tmp_path, effort, compare, record):
     (tmp_path / "swap.mapping").write_text(SWAP)
-    decode = rj.Decoder(job.mapping or tmp_path / "swap.mapping", encoding="ros1")
     message, pixels = camera(job, *size)
-    assert bytes(decode(message).data) == by_numpy(job, pixels).tobytes()
-    source, target = pixels.copy(), np.empty_like(pixels)
+
+    def decoder():
+        return rj.Decoder(job.mapping or tmp_path / "swap.mapping", encoding="ros1")
+
+    assert bytes(decoder()(message).data) == by_numpy(job, pixels).tobytes()
     outcome = compare(
         CHAPTER,
         f"{job.what}, {size[0]}x{size[1]}",
         [
-            Contender(OURS, "ours", "an RST image, used again", effort.call(decode, message)),
-            Contender(MOVE, "limit", "as many bytes, elsewhere", effort.call(np.copyto, target, source)),
+            Contender(OURS, "ours", "an RST image, used again", effort.placed(lambda: effort.call(decoder(), anew(message)))),
+            Contender(MOVE, "limit", "as many bytes, elsewhere", effort.placed(lambda: moved(effort, pixels))),
             Contender("numpy, unchecked", "peer", "an array, anew", effort.call(lambda: by_numpy(job, pixels).copy())),
         ],
     )
@@ -99,18 +102,29 @@ def test_packing_against_memmove(job, size, effort, compare, record):
     encode = rj.Encoder(job.mapping, encoding=job.wire)
     width, height = size[0] - job.width_less, size[1]
     source = np.random.default_rng(0).integers(0, 256, width * height * 3, np.uint8)
-    image = encode.holder_type.from_dict({"width": width, "height": height, "channels": 3, "data": source.tobytes(), **job.image})
-    message, target = bytearray(len(encode(image))), np.empty_like(source)
-    assert encode.into(image, message) == len(message)
+
+    fields = {"width": width, "height": height, "channels": 3, "data": source.tobytes(), **job.image}
+    image = encode.holder_type.from_dict(fields)
+    size_bytes = len(encode(image))
+    assert encode.into(image, bytearray(size_bytes)) == size_bytes
+
+    def written():
+        return effort.call(encode.into, encode.holder_type.from_dict(fields), bytearray(size_bytes))
+
     outcome = compare(
         CHAPTER,
         f"{job.what}, {width}x{height}",
         [
-            Contender(OURS, "ours", "a message, in a buffer that is there", effort.call(encode.into, image, message)),
-            Contender(MOVE, "limit", "as many bytes, elsewhere", effort.call(np.copyto, target, source)),
+            Contender(OURS, "ours", "a message, in a buffer that is there", effort.placed(written)),
+            Contender(MOVE, "limit", "as many bytes, elsewhere", effort.placed(lambda: moved(effort, source))),
         ],
     )
     record(f"{job.what}, {width}x{height}", outcome.ratio(OURS, MOVE), AT_MOST, "x memmove", took(outcome))
+
+
+def moved(effort, pixels):
+    """So many bytes, moved from one place to another."""
+    return effort.call(np.copyto, np.empty_like(pixels), pixels.copy())
 
 
 def took(outcome):
