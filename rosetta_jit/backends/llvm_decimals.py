@@ -65,9 +65,8 @@ def _shortest(function: ir.Function, *, single: bool) -> None:
     value = builder.call(intrinsic(module, "llvm.fabs.f64", F64, [F64]), [function.args[0]])
     normal = builder.fcmp_ordered(">=", value, ir.Constant(F64, LEAST_NORMAL[type_]))
     first = builder.select(normal, ir.Constant(I32, FIRST[type_]), ir.Constant(I32, 1))
-    spelled = builder.fcmp_ordered(">", value, ir.Constant(F64, 0.0))
-    finite = builder.fcmp_ordered("<", value, ir.Constant(F64, float("inf")))
-    builder.cbranch(builder.and_(spelled, finite), loop, nothing)
+    zero, infinity = ir.Constant(F64, 0.0), ir.Constant(F64, float("inf"))
+    builder.cbranch(builder.and_(builder.fcmp_ordered(">", value, zero), builder.fcmp_ordered("<", value, infinity)), loop, nothing)
 
     builder.position_at_end(loop)
     count = builder.phi(I32)

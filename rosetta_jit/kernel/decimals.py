@@ -44,7 +44,7 @@ def shortest(type_: str, value: float) -> tuple[int, int]:
         mantissa, _, exponent = f"{size:.{count - 1}e}".partition("e")
         rounded, power = int(mantissa.replace(".", "")), int(exponent) - (count - 1)
         for found in (rounded, rounded + 1) if math.frexp(size)[0] == 0.5 else (rounded,):
-            if _as(type_, float(f"{found}e{power}")) == size:
+            if _as(type_, float(f"{found}e{power}")) == size or count == LAST[type_]:
                 return found, power
     raise AssertionError(value)
 
