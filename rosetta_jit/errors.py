@@ -9,6 +9,7 @@ RosettaError
         EncodeError         a holder whose values the wire cannot carry
     ValuesError         plain values that a holder's type cannot take; with field path
     InvalidHolder       a holder that was read although the last decode into it failed
+    InUse               a holder or batch that another thread uses at the same time
 
 Errors of the caller (an object of the wrong type, a read-only output) are Python's own TypeError and BufferError.
 """
@@ -133,3 +134,7 @@ def _placed(text: str, path: str, *more: str) -> str:
 
 class InvalidHolder(RosettaError):  # noqa: N818  the holder is what is wrong
     """A holder was read although the last decode into it failed."""
+
+
+class InUse(RosettaError):  # noqa: N818  the holder is what is wrong
+    """A holder or batch was used while another thread was changing, filling or encoding it."""

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import json
 from dataclasses import field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
+from rosetta_jit.cached import cached_property
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.bind import needless
 from rosetta_jit.checked import CheckedMapping

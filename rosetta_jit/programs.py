@@ -6,9 +6,10 @@ import json
 import os
 from contextlib import suppress
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
+from rosetta_jit.cached import cached_property
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.garbage import imported, seldom_collected
 from rosetta_jit.kernel.entries import SYMBOLS
@@ -17,9 +18,11 @@ from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.allowed import ForeignCodeError
 from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name, request_name
-from rosetta_jit.runtime.callable import callable_class
+from rosetta_jit.runtime.callable import callable_class, public_class
+from rosetta_jit.runtime.decoder import DecoderBase
+from rosetta_jit.runtime.encoder import EncoderBase
 from rosetta_jit.runtime.holder import holder_class_of
-from rosetta_jit.runtime.program import DecoderBase, EncoderBase, Loaded
+from rosetta_jit.runtime.program import Loaded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -59,6 +62,10 @@ class _Made:
     def stage(self, stage: Stage) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
         return _build(self._request).stage(stage)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies and pickles are made anew from the request, by the cache of their process: they share code, but no holder."""
+        return _of_request, (public_class(self), self._request)
 
 
 class Options(TypedDict, total=False):

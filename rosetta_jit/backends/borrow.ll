@@ -6,7 +6,9 @@ define ptr @call(ptr %self, ptr %args, i64 %nargsf, ptr %names) {
   %context = call ptr @context(ptr %self)
   %state = load ptr, ptr %context
   %count = call i64 @positional(i64 %nargsf, ptr %names)
-  %usual = icmp eq i64 %count, 1
+  %alone = icmp eq i64 %count, 1
+  %mine = call i1 @is_mine(ptr %context)
+  %usual = and i1 %alone, %mine
   br i1 %usual, label %message, label %slow, !prof !0
 message:
   %message.object = load ptr, ptr %args
@@ -37,19 +39,32 @@ decode:
   %source = phi ptr [ %message.object, %bytes ], [ %memory, %viewed ]
   %start = phi ptr [ %data, %bytes ], [ %view.data, %viewed ]
   %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
+  ; looked at here: to open a buffer may run any code
+  %epoch = call i64 @epoch(ptr %state)
+  %free = icmp sge i64 %epoch, 0
+  br i1 %free, label %run, label %finish, !prof !0
+run:
+  call void @enter(ptr %state, i64 %epoch, i64 1)
   call void @tell(ptr %context, ptr %state)
   %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0) #0
+  call void @leave(ptr %state, i64 %epoch, i64 1)
   %good = icmp sge i64 %result, 0
   %valid = zext i1 %good to i64
   store i64 %valid, ptr %state
+  br i1 %good, label %finish, label %failed, !prof !0
+failed:
+  call void @untell(ptr %context, ptr %state)
+  call void @note(i64 %result, ptr %state)
+  br label %finish
+finish:
+  %done = phi i1 [ false, %decode ], [ true, %run ], [ false, %failed ]
   br i1 %is_bytes, label %judge, label %release, !prof !1
 release:
   call void @PyBuffer_Release(ptr %view)
   br label %judge
 judge:
-  br i1 %good, label %return, label %failed, !prof !0
+  br i1 %done, label %return, label %abandon, !prof !0
 return:
-  call void @made(ptr %context)
   %cell.at = getelementptr ptr, ptr %context, i64 3
   %cell = load ptr, ptr %cell.at
   %holder.at = getelementptr ptr, ptr %context, i64 1
@@ -57,8 +72,7 @@ return:
   call void @keep(ptr %holder)
   %set = call i32 @PyList_SetItem(ptr %cell, i64 0, ptr %source)
   ret ptr %holder
-failed:
-  call void @note(i64 %result, ptr %state)
+abandon:
   call void @Py_DecRef(ptr %source)
   br label %slow
 slow:

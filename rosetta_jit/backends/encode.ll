@@ -12,33 +12,41 @@ holder:
   %holder.object = load ptr, ptr %args
   %state = call ptr @state_of(ptr %context, ptr %holder.object)
   %mine = icmp ne ptr %state, null
-  br i1 %mine, label %check, label %slow, !prof !0
-check:
-  %validity = load i64, ptr %state
-  %valid = icmp eq i64 %validity, 1
-  br i1 %valid, label %choose, label %slow, !prof !0
+  br i1 %mine, label %choose, label %slow, !prof !0
 choose:
-  ; also where the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
+  br i1 %alone, label %check, label %into, !prof !1
+check:
+  %epoch = call i64 @epoch(ptr %state)
+  %usable = call i1 @is_usable(ptr %state, i64 %epoch)
+  br i1 %usable, label %measure, label %slow, !prof !0
+measure:
+  call void @enter(ptr %state, i64 %epoch, i64 0)
   call void @tell(ptr %context, ptr %state)
   %size = call i64 @prepare(ptr %state, i64 0)
   %measured = icmp sge i64 %size, 0
-  br i1 %measured, label %measure, label %failed, !prof !0
-measure:
-  br i1 %alone, label %allocate, label %into, !prof !1
+  br i1 %measured, label %allocate, label %stop, !prof !0
 allocate:
   %bytes = call ptr @PyBytes_FromStringAndSize(ptr null, i64 %size)
   %allocated = icmp ne ptr %bytes, null
-  br i1 %allocated, label %write, label %raise, !prof !0
+  br i1 %allocated, label %write, label %unallocated, !prof !0
+unallocated:
+  call void @leave(ptr %state, i64 %epoch, i64 0)
+  call void @untell(ptr %context, ptr %state)
+  ret ptr null
 write:
   %data = getelementptr i8, ptr %bytes, i64 32
   %written = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0) #0
   %exact = icmp eq i64 %written, %size
   br i1 %exact, label %return, label %drop, !prof !0
 return:
-  call void @made(ptr %context)
+  call void @leave(ptr %state, i64 %epoch, i64 0)
   ret ptr %bytes
 drop:
   call void @Py_DecRef(ptr %bytes)
+  br label %stop
+stop:
+  %failure = phi i64 [ %size, %measure ], [ %written, %drop ]
+  call void @leave(ptr %state, i64 %epoch, i64 0)
   br label %failed
 
 into:
@@ -62,24 +70,39 @@ opened:
   %room.size.at = getelementptr i8, ptr %view, i64 16
   %room.size = load i64, ptr %room.size.at
   %inside = icmp sle i64 %offset, %room.size
-  br i1 %inside, label %fill, label %close, !prof !0
+  ; looked at here: to open a buffer may run any code
+  %into.epoch = call i64 @epoch(ptr %state)
+  %into.usable = call i1 @is_usable(ptr %state, i64 %into.epoch)
+  %fits = and i1 %inside, %into.usable
+  br i1 %fits, label %prepare, label %close, !prof !0
+prepare:
+  ; though the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
+  call void @enter(ptr %state, i64 %into.epoch, i64 0)
+  call void @tell(ptr %context, ptr %state)
+  %into.size = call i64 @prepare(ptr %state, i64 0)
+  %prepared = icmp sge i64 %into.size, 0
+  br i1 %prepared, label %fill, label %leave, !prof !0
 fill:
   %filled.end = call i64 @kernel(ptr %room, i64 %offset, i64 %room.size, ptr %state, i64 0) #0
+  br label %leave
+leave:
+  %left = phi i64 [ %into.size, %prepare ], [ %filled.end, %fill ]
+  call void @leave(ptr %state, i64 %into.epoch, i64 0)
   br label %close
 close:
-  %end = phi i64 [ %filled.end, %fill ], [ 0, %opened ]
+  %end = phi i64 [ 0, %opened ], [ %left, %leave ]
   call void @close(ptr %target.object, ptr %view)
-  br i1 %inside, label %judge, label %slow, !prof !0
+  br i1 %fits, label %judge, label %slow, !prof !0
 judge:
   %filled = icmp sge i64 %end, 0
   br i1 %filled, label %position, label %failed, !prof !0
 position:
-  call void @made(ptr %context)
   %end.object = call ptr @PyLong_FromSsize_t(i64 %end)
   ret ptr %end.object
 
 failed:
-  %result = phi i64 [ %size, %choose ], [ %written, %drop ], [ %end, %judge ]
+  %result = phi i64 [ %failure, %stop ], [ %end, %judge ]
+  call void @untell(ptr %context, ptr %state)
   call void @note(i64 %result, ptr %state)
   br label %slow
 slow:
@@ -87,6 +110,15 @@ slow:
   ret ptr %answer
 raise:
   ret ptr null
+}
+
+; Whether a holder can be read as it is: valid, in order, and not in use.
+define internal i1 @is_usable(ptr %state, i64 %epoch) alwaysinline {
+  %validity = load i64, ptr %state
+  %valid = icmp eq i64 %validity, 1
+  %free = icmp sge i64 %epoch, 0
+  %usable = and i1 %valid, %free
+  ret i1 %usable
 }
 
 ; The size of a message, or the size kernel's failure.

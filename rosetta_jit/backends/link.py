@@ -8,6 +8,8 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder), 
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -126,9 +128,16 @@ def _typed(kernel: Kernel) -> binding.ModuleRef:
 
 def _entries(kernels: Sequence[Kernel], entry: EntryName) -> str:
     """The entry's functions. `#0` are the attributes of the call that is to be quick."""
-    templates = (*TEMPLATES[entry], "told.ll" if is_told(kernels) else "untold.ll")
+    told = "told.ll" if is_told(kernels) else "untold.ll"
+    hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
+    templates = (*TEMPLATES[entry], told, hosted, _thread_template())
     inline = "alwaysinline" if is_short_and_straight(kernels[0]) else ""
     return "\n".join((*map(_template, templates), f"attributes #0 = {{ nounwind {inline} }}"))
+
+
+def _thread_template() -> str:
+    """What says which thread calls: what the system's own function would do, where that is known."""
+    return "thread_linux_x86_64.ll" if sys.platform == "linux" and os.uname().machine == "x86_64" else "thread.ll"
 
 
 def _make_private(module: binding.ModuleRef, exported: Sequence[str]) -> None:

@@ -17,11 +17,12 @@ from rosetta_jit.backends import llvm_checks, llvm_stmt
 from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm_expr import expression
 from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
-from rosetta_jit.kernel.ir import GROW, Block, Call, Expect, For, HostCall, Kernel, Require, While
+from rosetta_jit.kernel.ir import Block, Call, Expect, For, HostCall, Kernel, Require, While
 from rosetta_jit.kernel.state import (
     ERROR_INDICES,
     ERROR_OFFSET,
     ERROR_SITE,
+    GROW,
     GROW_LANE,
     GROW_ROWS,
     HIDDEN_COUNT,

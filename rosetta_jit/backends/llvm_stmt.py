@@ -26,7 +26,6 @@ from rosetta_jit.backends.llvm_frame import COLD, I64, LLVM_TYPES, Variable, con
 from rosetta_jit.backends.llvm_host import host_called
 from rosetta_jit.backends.llvm_rounds import print_switch, rounds_of
 from rosetta_jit.kernel.ir import (
-    GROW,
     Advance,
     Assign,
     Binary,
@@ -53,7 +52,7 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
 )
-from rosetta_jit.kernel.state import GROW_LANE, GROW_ROWS
+from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 
 if TYPE_CHECKING:

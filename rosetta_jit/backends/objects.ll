@@ -2,6 +2,8 @@
 ;
 ; The context is an array of pointers: 0 state, 1 holder, 2 slow path, 3 source cell, 4 the holder's type (`runtime.callable.Context`),
 ; and 5 the number of messages made. What the host tells of a message is in `told.ll`, or `untold.ll` where no kernel asks.
+; Who changes lanes in a way that another thread can interrupt makes word 1 of their state negative (`kernel.state.EPOCH`): then entries leave
+; them to the slow path, which refuses. An entry itself has the interpreter lock; where its kernel may let it go is said in `hosted.ll`.
 ; The slow path is a Python callable for whatever is not the common case. It gets the same arguments, finds the kernel's result in word 9 of
 ; the state (`kernel.state.RESULT`) if the kernel has failed, and raises, or makes room and runs the kernel again.
 ;
@@ -29,6 +31,22 @@ define internal ptr @context(ptr %self) alwaysinline {
   %at = getelementptr i8, ptr %self, i64 72
   %context = load ptr, ptr %at
   ret ptr %context
+}
+
+; Whether the program's own holder belongs to the calling thread.
+define internal i1 @is_mine(ptr %context) alwaysinline {
+  %owner.at = getelementptr i64, ptr %context, i64 6
+  %owner = load i64, ptr %owner.at
+  %caller = call i64 @thread()
+  %mine = icmp eq i64 %owner, %caller
+  ret i1 %mine
+}
+
+; How often the lanes of a state have changed, negative if they are in use.
+define internal i64 @epoch(ptr %state) alwaysinline {
+  %at = getelementptr i64, ptr %state, i64 1
+  %epoch = load i64, ptr %at
+  ret i64 %epoch
 }
 
 ; How many positional arguments a call has, -1 if there are named ones. The top bit of nargsf says that args[-1] is free (PEP 590).

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.kernel.ir import GROW
-from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, MAX_INDICES
+from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW, GROW_LANE, GROW_ROWS, MAX_INDICES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

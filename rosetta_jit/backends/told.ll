@@ -1,4 +1,4 @@
-; Before a message: the time and the message's number go into the state (`kernel.state.NOW`, `NUMBER`). Whoever runs many messages in one call
+; Before a message: the time and the message's number, which no other gets, go into the state (`kernel.state.NOW`, `NUMBER`). Whoever runs many messages in one call
 ; does this for all of them (`runtime.program`).
 
 declare i32 @clock_gettime(i32, ptr)
@@ -18,14 +18,20 @@ define internal void @tell(ptr %context, ptr %state) alwaysinline {
   %made = load i64, ptr %made.at
   %number.at = getelementptr i64, ptr %state, i64 13
   store i64 %made, ptr %number.at
+  %more = add i64 %made, 1
+  store i64 %more, ptr %made.at
   ret void
 }
 
-; Behind a message that was made: the next one has the next number.
-define internal void @made(ptr %context) alwaysinline {
+; Behind a message that could not be made: the next one gets its number, unless another thread has taken one since.
+define internal void @untell(ptr %context, ptr %state) alwaysinline {
   %made.at = getelementptr i64, ptr %context, i64 5
   %made = load i64, ptr %made.at
-  %more = add i64 %made, 1
-  store i64 %more, ptr %made.at
+  %number.at = getelementptr i64, ptr %state, i64 13
+  %number = load i64, ptr %number.at
+  %more = add i64 %number, 1
+  %last = icmp eq i64 %made, %more
+  %next = select i1 %last, i64 %number, i64 %made
+  store i64 %next, ptr %made.at
   ret void
 }

@@ -3,6 +3,6 @@ define internal void @tell(ptr %context, ptr %state) alwaysinline {
   ret void
 }
 
-define internal void @made(ptr %context) alwaysinline {
+define internal void @untell(ptr %context, ptr %state) alwaysinline {
   ret void
 }

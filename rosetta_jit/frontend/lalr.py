@@ -10,9 +10,9 @@ by `?` stand for their only part.
 from __future__ import annotations
 
 import re
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
+from rosetta_jit.cached import cached_property
 from rosetta_jit.dataclass import dataclass
 
 if TYPE_CHECKING:

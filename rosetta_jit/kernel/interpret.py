@@ -12,7 +12,6 @@ from rosetta_jit.kernel import arithmetic, decimals
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
 from rosetta_jit.kernel.ir import (
-    GROW,
     WIDTH,
     Advance,
     Assign,
@@ -54,7 +53,19 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.shape import extents_of
-from rosetta_jit.kernel.state import CAPACITY, ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW_LANE, GROW_ROWS, NOW, NUMBER, USED, lane_word
+from rosetta_jit.kernel.state import (
+    CAPACITY,
+    ERROR_INDICES,
+    ERROR_OFFSET,
+    ERROR_SITE,
+    GROW,
+    GROW_LANE,
+    GROW_ROWS,
+    NOW,
+    NUMBER,
+    USED,
+    lane_word,
+)
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 
 if TYPE_CHECKING:

@@ -97,9 +97,6 @@ WIDTH: dict[str, int] = {
 }
 """Bytes of a scalar, on the wire and in a lane."""
 
-GROW = -1
-"""What a kernel returns when a lane is too small."""
-
 # --- expressions -------------------------------------------------------------------------------------------------------
 
 

@@ -27,6 +27,7 @@ ALLOWED = frozenset(
         "PyMemoryView_FromObject",
         "PyObject_GetBuffer",
         "PyObject_Vectorcall",
+        "PyThread_get_thread_ident",
         "Py_DecRef",
         "Py_IncRef",
         "clock_gettime",

@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.runtime.columns import Ragged, column, presence_mask
+from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.family import family_of
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.values import write_record
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.plan import plan
 
@@ -16,7 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rosetta_jit.runtime.holder import Family, Holder
+    from rosetta_jit.runtime.holder import Family, Holder, Manners
     from rosetta_jit.runtime.holder.record import Entry, Node
 
 
@@ -42,7 +45,8 @@ class Batch:
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
         """So many empty messages of a type."""
         batch = cls.room(holder_class, count)
-        batch.lanes.bear(batch.lanes.plan.births, 0, count)
+        with batch.lanes:
+            batch.lanes.bear(batch.lanes.plan.births, 0, count)
         return batch
 
     @classmethod
@@ -53,7 +57,8 @@ class Batch:
 
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""
-        self.lanes.reset(count)
+        with self.lanes:
+            self.lanes.reset(count)
 
     def __len__(self) -> int:
         return self.lanes.rows
@@ -68,7 +73,12 @@ class Batch:
     def __iter__(self) -> Iterator[Any]:
         return (self.family_.row(self.lanes, row) for row in range(len(self)))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _revived, (self.family_.text, self.family_.manners, [raw(message) for message in self])
+
     def __getattr__(self, name: str) -> Any:
+        if name in self.__slots__:
+            raise AttributeError(f"this batch was never made: it has no {name!r}")
         if name in self.family_.tree.root.entries:
             return self.column(name)
         raise AttributeError(name)
@@ -102,11 +112,17 @@ class Batch:
         InvalidHolder
             If the last decode into the batch failed.
         """
+        return self.lanes.consistent(self._column, name)
+
+    def _column(self, name: str) -> Any:
         self._check()
         return column(self.family_.tree.root, self.lanes, len(self), name.split("."))
 
     def mask(self, name: str) -> NDArray[np.bool_]:
         """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it."""
+        return self.lanes.consistent(self._mask, name)
+
+    def _mask(self, name: str) -> NDArray[np.bool_]:
         self._check()
         record: Record = self.family_.tree.root
         present = presence_mask(None, self.lanes, len(self))
@@ -146,6 +162,15 @@ class Batch:
     def _check(self) -> None:
         if not self.lanes.words[VALID]:
             raise self.lanes.invalid()
+
+
+def _revived(text: str, manners: Manners, messages: list[dict[str, Any]]) -> Batch:
+    """Unpickle, or copy."""
+    batch = Batch.new(family_of(text, manners).holder, len(messages))
+    with batch.lanes as lanes:
+        for row, message in enumerate(messages):
+            write_record(batch.family_.tree.root, lanes, row, message)
+    return batch
 
 
 def for_arrow(node: Node, value: Any) -> Any:

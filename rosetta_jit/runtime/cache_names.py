@@ -20,7 +20,7 @@ from rosetta_jit.sha import sha256
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-ABI = 1
+ABI = 2
 """Raise it when a kernel, the holder's state or the entry changes its meaning without a change of text."""
 
 

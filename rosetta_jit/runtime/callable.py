@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
-MADE = 5
-"""The word of a program's context that counts the messages it has made, if its kernel asks for that."""
+MADE, THREAD = 5, 6
+"""Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0."""
 
 STATE, HOLDER_BYTES = 16, 24
 
@@ -63,7 +63,7 @@ class Context:
 
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
-        return np.array([self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0], np.int64)
+        return np.array([self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0], np.int64)
 
 
 def is_native() -> bool:
@@ -146,7 +146,12 @@ def bind_state(holder: Any, address: int) -> None:
 @cache
 def _without_entry(native: type) -> type:
     """A subclass with an ordinary ``__call__``: CPython takes that before the vectorcall slot."""
-    return type(native.__name__, (native,), {"__call__": _call_slow, "__slots__": (), **_names(native)})
+    return type(native.__name__, (native,), {"__call__": _call_slow, "__slots__": (), "_with_entry": native, **_names(native)})
+
+
+def public_class(target: object) -> type:
+    """The class that a program was made as, which its module knows by its name."""
+    return getattr(type(target), "_with_entry", type(target))
 
 
 def _call_slow(self: Any, *arguments: object, **named: object) -> object:

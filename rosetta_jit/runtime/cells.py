@@ -50,12 +50,14 @@ class Memory(dict[int, memoryview]):
 
     def __missing__(self, lane: int) -> memoryview:
         start = self.offsets[lane]
-        found = self[lane] = self.first[start : start + self.sizes[lane]]
-        return found
+        return self.setdefault(lane, self.first[start : start + self.sizes[lane]])  # unless it has moved since, in another thread
 
 
 class Cells(dict[int, Any]):
-    """The lanes as cells of each scalar, made when first asked for: reading one costs a third of what numpy takes."""
+    """The lanes as cells of each scalar, made when first asked for: reading one costs a third of what numpy takes.
+
+    They show where the lanes lie now. When one moves there are new `Cells`, and new `Arrays`: a thread may be making an entry of these.
+    """
 
     __slots__ = ("memory",)
 

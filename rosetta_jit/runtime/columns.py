@@ -206,4 +206,7 @@ def _elements(lanes: Lanes, lane: int) -> NDArray[Any]:
 
 
 def _spans(lanes: Lanes, span: Cell, rows: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    return cells(lanes, span, "i64", rows), cells(lanes, span, "i64", rows, behind=1)
+    """Where the elements of each row lie: read-only, because accessors and kernels go by it."""
+    starts, counts = cells(lanes, span, "i64", rows), cells(lanes, span, "i64", rows, behind=1)
+    starts.flags.writeable = counts.flags.writeable = False
+    return starts, counts

@@ -2,25 +2,32 @@
 
 The state and the first rows of all lanes lie in one allocation (the arena), so that a small holder costs little and thousands of them stay
 small. A lane that grows moves to memory of its own; whoever still has a view keeps what it shows.
+
+Lanes have one user at a time. Code that changes them, or runs a kernel on them, does so inside ``with lanes:``, which raises `InUse` where
+another thread is inside. Code that only reads takes no lock: `Lanes.consistent` reads again where the lanes have changed meanwhile.
+Compiled entries keep to the same rule by themselves (`backends/*.ll`).
 """
 
 from __future__ import annotations
 
 import operator
+from _thread import allocate_lock
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, assert_never, cast
+from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
 
 import numpy as np
 
-from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, CLEAN, HIDDEN, HIDDEN_COUNT, UNSETTLED, USED, VALID, lane_word
+from rosetta_jit.errors import InUse, InvalidHolder, RosettaError
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, CLEAN, EPOCH, GROW, HIDDEN, HIDDEN_COUNT, RESULT, UNSETTLED, USED, VALID, lane_word
 from rosetta_jit.model.births import FirstCase, FixedArray
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
+from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
 from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:
+    from _thread import LockType
     from collections.abc import Callable
 
     from numpy.typing import NDArray
@@ -28,12 +35,21 @@ if TYPE_CHECKING:
     from rosetta_jit.model.births import Birth
     from rosetta_jit.model.layout import Layout
 
+_What = TypeVar("_What")
+_Value = TypeVar("_Value")
+
 MOST_AT_ONCE = 1 << 16
 """Bytes that a holder may have from the start because others needed them. It costs little to make room for more than that, compared with
 filling it."""
 
 MAX_WASTE = 1 << 16
 """Bytes that a holder may leave unused before it tidies up, at least."""
+
+_ONE_AT_A_TIME = shared_lock()
+"""Held where lanes make what is made when it is first asked for."""
+
+MAX_READINGS = 100
+"""How often something is read again because another thread has changed it meanwhile."""
 
 
 class Lanes:
@@ -55,6 +71,10 @@ class Lanes:
         The same bytes as scalars.
     hidden : Hidden or None
         What kernels have besides, from when one needed it.
+    is_filled : bool
+        Whether no decode is going on.
+    lock : lock
+        Held inside ``with lanes:``.
     source : list
         One element: the message from which spans are borrowed, or None.
     rows : int
@@ -73,6 +93,8 @@ class Lanes:
         "buffers",
         "cells",
         "hidden",
+        "is_filled",
+        "lock",
         "memory",
         "moves",
         "plan",
@@ -85,6 +107,7 @@ class Lanes:
     arrays: Arrays
     buffers: list[NDArray[np.uint8]]
     cells: Cells
+    lock: LockType
     state: NDArray[np.int64]
 
     def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
@@ -103,6 +126,8 @@ class Lanes:
         self.words = words
         self.memory = Memory(first, plan.offsets, plan.sizes)
         self.hidden: Hidden | None = None
+        self.is_filled = True
+        self.lock = allocate_lock()
         self.source: list[Any] = [None]
         self.moves = 0
         self.rows = plan.rows
@@ -115,9 +140,53 @@ class Lanes:
             made = _MADE.get(name)
             if made is None:
                 raise AttributeError(f"lanes have no {name!r}")
-            value = made(self)
-            setattr(self, name, value)
-            return value
+            with _ONE_AT_A_TIME:
+                try:
+                    return object.__getattribute__(self, name)  # another thread was first
+                except AttributeError:
+                    value = made(self)
+                    setattr(self, name, value)
+                    return value
+
+    def __enter__(self) -> Self:
+        """Take the lanes. The lock makes this one step; the epoch tells compiled entries, one of which may itself be interrupted by us."""
+        if not self.lock.acquire(blocking=False):
+            raise in_use()
+        epoch = self.words[EPOCH]
+        if epoch < 0:
+            self.lock.release()
+            raise in_use()
+        self.words[EPOCH] = ~epoch
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Give the lanes back, with the next epoch: the negative of ``~epoch`` is ``epoch + 1``."""
+        self.words[EPOCH] = -self.words[EPOCH]
+        self.is_filled = True
+        self.lock.release()
+
+    def consistent(self, read: Callable[[_What], _Value], what: _What) -> _Value:
+        """What reading gives, all of it at one time: it is done again where the lanes have changed meanwhile.
+
+        Raises
+        ------
+        InUse
+            If they are in use, or change again and again.
+        """
+        words = self.words
+        for _ in range(MAX_READINGS):
+            epoch = words[EPOCH]
+            if epoch < 0:
+                break
+            try:
+                value = read(what)
+            except (RosettaError, ValueError, LookupError):
+                if words[EPOCH] == epoch:
+                    raise
+            else:
+                if words[EPOCH] == epoch:
+                    return value
+        raise in_use()
 
     @classmethod
     def of(cls, layout: Layout, rows: int = 1) -> Lanes:
@@ -153,17 +222,12 @@ class Lanes:
         self.buffers[lane][: old.size] = old
 
     def _place(self, lane: int, buffer: NDArray[np.uint8], capacity: int) -> None:
+        assert self.words[EPOCH] < 0, "a lane moves inside `with lanes:` alone, where no kernel but one's own runs"
         self.buffers[lane] = buffer
         self.memory[lane] = memoryview(cast("Any", buffer))
         self.words[lane_word(lane, ADDRESS)] = address_of(buffer)
         self.words[lane_word(lane, CAPACITY)] = capacity
-        self._forget(lane)
-
-    def _forget(self, lane: int) -> None:
-        """Drop the views of a lane that has moved."""
-        self.arrays.pop(lane, None)
-        for key in [key for key in self.cells if key >> 4 == lane]:
-            del self.cells[key]
+        self.cells, self.arrays = _MADE["cells"](self), _MADE["arrays"](self)
 
     def take(self, lane: int, rows: int) -> int:
         """Take so many rows at the lane's end into use, zeroed; the number of the first."""
@@ -224,6 +288,11 @@ class Lanes:
         self.moves += 1
         self.words[VALID] = CLEAN
 
+    def begin_filling(self) -> None:
+        """Inside ``with lanes:``, before a decode: there is nothing to be read until it has succeeded."""
+        self.words[VALID] = self.words[RESULT] = 0
+        self.is_filled = False
+
     def unsettle(self) -> None:
         """Encoders must not read this as it is."""
         self.words[VALID] = UNSETTLED
@@ -238,12 +307,22 @@ class Lanes:
         """Bytes of the message that the holder borrows from, read-only."""
         return memoryview(self.source[0]).cast("B")[start : start + size].toreadonly()
 
-    def invalid(self) -> InvalidHolder:
-        """The error of reading what a failed decode left behind."""
+    def invalid(self) -> RosettaError:
+        """The error of reading what a decode has not filled: it has failed, or is not done, or about to make room in its slow path."""
+        if not self.is_filled or self.words[RESULT] == GROW:
+            return in_use()
         return InvalidHolder("the last decode into this holder failed; decode again or clear it before you read it")
 
 
-_MADE: dict[str, Callable[[Lanes], object]] = {
+def in_use() -> InUse:
+    """The error of using what somebody else uses."""
+    return InUse(
+        "this holder or batch is in use: another thread is filling, changing or encoding it (or this one was interrupted while it did). "
+        "Give each thread a holder of its own, from `decoder.new()`, or a decoder of its own"
+    )
+
+
+_MADE: dict[str, Callable[[Lanes], Any]] = {
     "state": lambda lanes: np.frombuffer(lanes.words, np.int64),
     "buffers": lambda lanes: [np.frombuffer(lanes.memory[lane], np.uint8) for lane in range(len(lanes.plan.strides))],
     "cells": lambda lanes: Cells(lanes.memory),

@@ -14,7 +14,7 @@ import numpy as np
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, EncodeError
-from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW_LANE, GROW_ROWS, RESULT
+from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW, GROW_LANE, GROW_ROWS, RESULT
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.errors import Kind
     from rosetta_jit.runtime.lanes import Lanes
 
-GROW = -1
 ANY_SIZE = 1 << 60
 """The room that a kernel has that only measures."""
 

@@ -8,7 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, ERROR_INDICES, ERROR_OFFSET, GROW_ROWS, STRIDE, USED, lane_word, state_words
+from rosetta_jit.kernel.state import (
+    ADDRESS,
+    CAPACITY,
+    ERROR_INDICES,
+    ERROR_OFFSET,
+    ERROR_SITE,
+    GROW_LANE,
+    GROW_ROWS,
+    STRIDE,
+    USED,
+    lane_word,
+    state_words,
+)
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
@@ -29,8 +41,8 @@ class Rows:
             used = [int(self.state[lane_word(k, USED)]) for k in range(len(self.lanes))]
             return (result, used, [lane.tobytes() for lane in self.lanes])
         if result == -1:
-            return (result, self.state[ERROR_OFFSET + 2 : GROW_ROWS + 1].tolist())
-        return (result, self.state[ERROR_OFFSET : ERROR_OFFSET + 2].tolist(), self.state[ERROR_INDICES : ERROR_INDICES + indices].tolist())
+            return (result, self.state[GROW_LANE : GROW_ROWS + 1].tolist())
+        return (result, self.state[[ERROR_OFFSET, ERROR_SITE]].tolist(), self.state[ERROR_INDICES : ERROR_INDICES + indices].tolist())
 
     def copy(self) -> Rows:
         """The same in other memory."""

@@ -6,15 +6,16 @@ import ctypes
 import gc
 import struct
 import sys
+from threading import get_ident
 
 import numpy as np
 import pytest
 
 from rosetta_jit.backends.link import compile_program
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.state import LANES, RESULT, VALID
+from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, VALID
 from rosetta_jit.runtime import native
-from rosetta_jit.runtime.callable import Context, bind_call, bind_state, callable_class, holder_base, is_native
+from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, holder_base, is_native
 from tests.backends import kernels
 from tests.backends.engines import outcome
 from tests.backends.holders import rows
@@ -51,6 +52,7 @@ Native = callable_class(Program)
 def program(definition, entry, **options):
     made = Native(definition, entry, **options)
     bind_call(made, made.library["call"], Context(made.rows.state, made.holder, made.slow, made.cell, Holder))
+    made._context[1][THREAD] = get_ident()
     return made
 
 
@@ -106,6 +108,30 @@ def test_odd_calls_go_the_slow_path(arguments, named):
     decode = program([kernels.fixed(10)], "decode")
     assert decode(*arguments, **named) == "slow"
     assert decode.slow_calls == [(arguments, named, 0)]
+
+
+@pytest.mark.parametrize("entry", ["decode", "borrow"])
+@pytest.mark.parametrize("kind", [bytes, bytearray])
+def test_the_own_holder_of_another_thread_goes_the_slow_path(entry, kind):
+    decode = program([kernels.fixed(10)], entry)
+    decode._context[1][THREAD] += 1
+    assert decode(kind(FIXED)) == "slow"
+    other = Holder(rows(kernels.fixed(10)))
+    assert decode(kind(FIXED), other) == "slow" if entry == "borrow" else decode(kind(FIXED), other) is other
+
+
+@pytest.mark.parametrize("entry", ["decode", "borrow"])
+@pytest.mark.parametrize("kind", [bytes, bytearray])
+def test_lanes_in_use_go_the_slow_path_and_stay_as_they_are(entry, kind):
+    decode = program([kernels.fixed(10)], entry)
+    decode(kind(FIXED))
+    assert decode.rows.state[EPOCH] == 1
+    decode.rows.state[EPOCH] = ~1
+    before = decode.rows.state.copy()
+    (source,) = decode.cell
+    assert decode(kind(bytes(len(FIXED)))) == "slow"
+    assert (decode.rows.state == before).all()
+    assert decode.cell[0] is source
 
 
 def test_what_has_no_buffer_is_named():
@@ -170,6 +196,14 @@ def test_encodes(count):
     space = bytearray(500)
     assert encode(encode.holder, space, 7) == 7 + len(expected)
     assert space == bytes(7) + expected + bytes(493 - len(expected))
+
+
+@pytest.mark.parametrize("arguments", [(), (bytearray(100), 0)])
+def test_a_holder_in_use_is_not_encoded(arguments):
+    encode = encoder()
+    assert encode(encode.holder, *arguments) != "slow"
+    encode.rows.state[EPOCH] = ~0
+    assert encode(encode.holder, *arguments) == "slow"
 
 
 def test_only_valid_holders_of_the_type_are_encoded():

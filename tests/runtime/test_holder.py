@@ -337,7 +337,8 @@ def test_lanes_grow_and_keep_what_they_hold():
     before[0] = 5
     lanes.give_back(lane, 1)
     address = lanes.words[lane_word(lane, 0)]
-    lanes.grow(lane, 1000)
+    with lanes:
+        lanes.grow(lane, 1000)
     assert lanes.words[lane_word(lane, 0)] != address
     assert lanes.words[lane_word(lane, CAPACITY)] >= 1000
     assert lanes.words[lane_word(lane, USED)] == 1
@@ -345,9 +346,10 @@ def test_lanes_grow_and_keep_what_they_hold():
     before[0] = 6
     assert lanes.arrays[lane][0] == 5
     assert all(lanes.words[lane_word(each, 0)] % 64 == 0 for each in range(len(lanes.buffers)))
-    lanes.grow(lane, 10_000)
+    with lanes:
+        lanes.grow(lane, 10_000)
     assert lanes.words[lane_word(lane, 0)] % 4096 == 0
-    with pytest.raises(MemoryError):
+    with lanes, pytest.raises(MemoryError):
         lanes.grow(lane, 1 << 55)
     assert lanes.arrays[lane][0] == 5
 

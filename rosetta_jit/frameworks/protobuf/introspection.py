@@ -6,9 +6,9 @@ Numbers and names are those of `google.protobuf.descriptor.FieldDescriptor`. Onl
 from __future__ import annotations
 
 from dataclasses import field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rosetta_jit.cached import cached_property
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, String, Struct, Type, Union

@@ -19,7 +19,7 @@ from rosetta_jit.runtime.holder import Holder, Manners, arena
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.classes import clear
 from rosetta_jit.runtime.holder.merge import fill, merge
-from rosetta_jit.runtime.holder.message import Message, View, place, writable
+from rosetta_jit.runtime.holder.message import Message, View, make_present, place
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -109,19 +109,19 @@ class ProtobufMessage(Holder):
 
     def SetInParent(self) -> None:  # noqa: N802
         """Make this message present in the one around it."""
-        writable(self)
+        make_present(self)
 
     def MergeFrom(self, other: Any) -> None:  # noqa: N802
         """Take over what another message of the type has: singular fields replace, repeated ones are appended, messages merge."""
         values = self._raw_of(other, "MergeFrom")
-        writable(self)
+        make_present(self)
         merge(self, values)
 
     def CopyFrom(self, other: Any) -> None:  # noqa: N802
         """Become equal to another message of the type."""
         if other is not self:
             values = self._raw_of(other, "CopyFrom")
-            writable(self)
+            make_present(self)
             clear(self, None)
             merge(self, values)
 

@@ -42,8 +42,9 @@ class NumberArray(np.ndarray[Any, Any]):
     def _replace(self, elements: Iterable[Any]) -> None:
         message, node = self._field()
         prepared = values.prepare(node, elements)
-        lanes, row = writable(message)
-        values.put(node, lanes, row, prepared)
+        with message.home_:
+            lanes, row = writable(message)
+            values.put(node, lanes, row, prepared)
 
     def append(self, value: Any) -> None:
         self.extend([value])
@@ -83,8 +84,7 @@ class NumberArray(np.ndarray[Any, Any]):
     def _current(self) -> list[Any]:
         """The field's elements, which may be others than when this array was read."""
         message, node = self._field()
-        lanes, row = place(message)
-        return values.read(node, lanes, row, values.Form.RAW).tolist()
+        return message.home_.consistent(_elements, (message, node)).tolist()
 
     def __delitem__(self, index: Any) -> None:
         elements = self._current()
@@ -105,6 +105,11 @@ class NumberArray(np.ndarray[Any, Any]):
     def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
         """Results of arithmetic are arrays like any other."""
         return array[()] if return_scalar else np.asarray(array)
+
+
+def _elements(field: tuple[Message, Numbers]) -> Any:
+    message, node = field
+    return values.read(node, *place(message), values.Form.RAW)
 
 
 def _iterable(elements: Any) -> Iterable[Any]:
@@ -133,8 +138,9 @@ class RepeatedMessages(Sequence):
 
     def add(self, **fields: Any) -> Any:
         """Append an empty message, or one of the fields given; return it."""
-        self._append([{}])
-        added = self[len(self) - 1]
+        with self.message.home_:
+            self._append([{}])
+            added = self._at(-1)
         try:
             added.set_fields_(fields)
         except BaseException:
@@ -177,7 +183,7 @@ class MapField(Dictionary):
     __slots__ = ()
 
     def __getitem__(self, key: Any) -> Any:
-        if self.checked(key) not in self._keys():
+        if self.checked(key) not in self._known():
             super().__setitem__(key, {} if self._holds_messages else self.node.value.default)
         return super().__getitem__(key)
 

@@ -79,13 +79,13 @@ def getter(entry: Entry, family: Family, *, first_row: bool = False) -> Getter:
         case Scalar():
             return _or_default(_scalar(node), entry) if guarded else _scalar(node, first_row=first_row)
         case Text():
-            return _or_default(_text(node), entry) if guarded else _text(node)
+            return _or_default(_text(node), entry) if guarded else _consistent(_text(node))
         case Blob():
-            return _or_default(_blob(node), entry) if guarded else _blob(node)
+            return _or_default(_blob(node), entry) if guarded else _consistent(_blob(node))
         case Numbers():
             return _numbers(entry, node, family, first_row=first_row)
         case Items() if node.shape:
-            return _grid(node)
+            return _consistent(_grid(node))
         case Items():
             return lambda message: family.sequence(message, entry)
         case Pairs():
@@ -94,6 +94,11 @@ def getter(entry: Entry, family: Family, *, first_row: bool = False) -> Getter:
             return _message(entry, node, family)
         case _:
             assert_never(node)
+
+
+def _consistent(read: Getter) -> Getter:
+    """A getter that takes several steps, between which another thread may decode."""
+    return lambda message: message.home_.consistent(read, message)
 
 
 def _or_default(get: Getter, entry: Entry) -> Getter:
@@ -105,7 +110,7 @@ def _or_default(get: Getter, entry: Entry) -> Getter:
         place(message)
         return default
 
-    return get_or_default
+    return _consistent(get_or_default)
 
 
 def _scalar(node: Scalar, *, first_row: bool = False) -> Getter:
@@ -236,9 +241,10 @@ def _leaf_setter(entry: Entry, node: values.Leaf) -> Setter:
 
     def set_(message: Message, value: Any) -> None:
         prepared = values.prepare(node, value)
-        lanes, row = writable(message)
-        arena.mark(lanes, presence, row)
-        values.put(node, lanes, row, prepared)
+        with message.home_:
+            lanes, row = writable(message)
+            arena.mark(lanes, presence, row)
+            values.put(node, lanes, row, prepared)
 
     return set_
 
@@ -248,9 +254,10 @@ def _whole_setter(entry: Entry) -> Setter:
 
     def set_(message: Message, value: Any) -> None:
         plain = raw(value)
-        lanes, row = writable(message)
-        arena.clear(lanes, entry, row)
-        values.write_entry(entry, lanes, row, plain)
+        with message.home_:
+            lanes, row = writable(message)
+            arena.clear(lanes, entry, row)
+            values.write_entry(entry, lanes, row, plain)
 
     return set_
 
@@ -268,8 +275,7 @@ def raw(value: Any, depth: int = 0) -> Any:
         raise EncodeError("nesting", "", f"values contain each other more than {2 * values.MAX_DEPTH} deep")
     match value:
         case Message():
-            lanes, row = place(value)
-            return values.read_record(value.access_.record, lanes, row, values.Form.RAW)
+            return value.home_.consistent(_raw_message, value)
         case Mapping():
             return {key: raw(each, depth + 1) for key, each in cast("Mapping[Any, Any]", value).items()}
         case str() | bytes() | bytearray() | memoryview() | np.ndarray():
@@ -278,3 +284,8 @@ def raw(value: Any, depth: int = 0) -> Any:
             return [raw(each, depth + 1) for each in cast("Iterable[Any]", value)]
         case _:
             return value
+
+
+def _raw_message(message: Message) -> dict[str, Any]:
+    lanes, row = place(message)
+    return values.read_record(message.access_.record, lanes, row, values.Form.RAW)

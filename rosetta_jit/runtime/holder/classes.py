@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
 
 import numpy as np
 
+from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.runtime.callable import bind_state, holder_base
 from rosetta_jit.runtime.holder import arena, grid, values
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.holder.family import Family
+    from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.plan import Plan
+
+_Holder = TypeVar("_Holder", bound="Holder")
 
 
 if TYPE_CHECKING:
@@ -37,7 +41,11 @@ class Holder(Message, Base):
     family_: Family
 
     def __init__(self) -> None:
-        self.lay_out_(self.family_.plan)
+        """An empty message. A holder that is made again is emptied: compiled entries know where its lanes are."""
+        if hasattr(self, "lanes_"):
+            clear(self, None)
+        else:
+            self.lay_out_(self.family_.plan)
 
     def lay_out_(self, plan: Plan) -> None:
         """Give the holder lanes. It must have none yet."""
@@ -65,18 +73,7 @@ class Holder(Message, Base):
         TypeError
             If its value is no array of numbers or bytes.
         """
-        lanes, row = place(self)
-        node = self.access_.record.entries[name].node
-        match node:
-            case Numbers(span, lane):
-                start, count = arena.span_of(lanes, span, row)
-                return lanes.arrays[lane][start : start + count].view(np.ndarray)
-            case Items() if node.shape:
-                return grid.view(node, lanes, row)
-            case Text(span, lane) | Blob(span, lane):
-                return np.frombuffer(arena.content(lanes, span, lane, row), lanes.plan.dtypes[lane])
-            case _:
-                raise TypeError(f"`{name}` is no array of numbers, and no bytes")
+        return self.home_.consistent(lambda entry: _shown(self, entry), self.access_.record.entries[name])
 
     def has(self, name: str) -> bool:
         """Whether a field is present: KeyError where there is none of that name."""
@@ -89,14 +86,11 @@ class Holder(Message, Base):
 
     def which(self, union: str) -> str | None:
         """The name of the case of a union that is present."""
-        lanes, row = place(self)
-        record = self.access_.record
-        return next((case for case in record.unions[union] if arena.present(lanes, record.entries[case].presence, row)), None)
+        return self.home_.consistent(lambda cases: _present_case(self, cases), self.access_.record.unions[union])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain Python values of what is present, named as in the IDL: enums by their names, arrays as lists."""
-        lanes, row = place(self)
-        return values.read_record(self.access_.record, lanes, row, values.Form.PLAIN)
+        return self.home_.consistent(_plain, self)
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any]) -> Self:
@@ -108,8 +102,7 @@ class Holder(Message, Base):
             If a name or a value is not one of the type; its path says which.
         """
         holder = cast("type[Self]", cls.family_.holder)()
-        values.write_record(cls.access_.record, holder.lanes_, 0, raw(plain))
-        return holder
+        return filled(holder, raw(plain))
 
     def materialise(self) -> None:
         """Make the holder fit to be encoded, which it is unless it borrows; give back what it does not use."""
@@ -125,16 +118,14 @@ class Holder(Message, Base):
     def __repr__(self) -> str:
         name = type(self).__name__
         if not self.lanes_.words[VALID]:
-            return f"<{name}: the last decode failed>"
+            return f"<{name}: {'in use' if isinstance(self.lanes_.invalid(), InUse) else 'the last decode failed'}>"
         return f"{name}({', '.join(f'{key}={value!r}' for key, value in Holder.to_dict(self).items())})"
 
     def __copy__(self) -> Self:
         return self.__deepcopy__({})
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        copied = cast("type[Self]", self.family_.holder)()
-        values.write_record(copied.access_.record, copied.lanes_, 0, raw(self))
-        return copied
+        return filled(cast("type[Self]", self.family_.holder)(), raw(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
         from rosetta_jit.runtime.holder.family import revived
@@ -144,22 +135,62 @@ class Holder(Message, Base):
 
 def clear(holder: Holder, name: str | None) -> None:
     """Make a field absent or empty, or all of them; a holder whose decode failed becomes valid so."""
-    if name is None and not isinstance(holder, View):
-        holder.lanes_.reset()
-        return
     record = holder.access_.record
     entries = record.entries.values() if name is None else [record.entries[name]]
-    lanes, row = place(holder)
-    if lanes is holder.home_:
-        for entry in entries:
-            arena.clear(lanes, entry, row)
+    with holder.home_:
+        if name is None and not isinstance(holder, View):
+            holder.lanes_.reset()
+            return
+        lanes, row = place(holder)
+        if lanes is holder.home_:
+            for entry in entries:
+                arena.clear(lanes, entry, row)
+
+
+def filled(holder: _Holder, plain: Any) -> _Holder:
+    """A new holder, when it has got raw values."""
+    with holder.lanes_:
+        values.write_record(holder.access_.record, holder.lanes_, 0, plain)
+    return holder
 
 
 def settle(holder: Holder) -> None:
     """`Holder.materialise`, where a field has taken that name. A view is encoded through a copy, and needs none."""
+    if not isinstance(holder, View):
+        with holder.lanes_:
+            settle_lanes(holder)
+
+
+def settle_lanes(holder: Holder) -> None:
+    """The same inside ``with holder.lanes_:``."""
     lanes, _ = place(holder)
-    if (lanes.words[VALID] != CLEAN or lanes.source[0] is not None) and not isinstance(holder, View):
+    if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
         values.settle(holder.family_.tree.root, lanes)
+
+
+def _plain(holder: Holder) -> dict[str, Any]:
+    lanes, row = place(holder)
+    return values.read_record(holder.access_.record, lanes, row, values.Form.PLAIN)
+
+
+def _present_case(holder: Holder, cases: tuple[str, ...]) -> str | None:
+    lanes, row = place(holder)
+    entries = holder.access_.record.entries
+    return next((case for case in cases if arena.present(lanes, entries[case].presence, row)), None)
+
+
+def _shown(holder: Holder, entry: Entry) -> NDArray[Any]:
+    lanes, row = place(holder)
+    match entry.node:
+        case Numbers(span, lane):
+            start, count = arena.span_of(lanes, span, row)
+            return lanes.arrays[lane][start : start + count].view(np.ndarray)
+        case Items() as node if node.shape:
+            return grid.view(node, lanes, row)
+        case Text(span, lane) | Blob(span, lane):
+            return np.frombuffer(arena.content(lanes, span, lane, row), lanes.plan.dtypes[lane])
+        case _:
+            raise TypeError(f"`{entry.name}` is no array of numbers, and no bytes")
 
 
 def equal(left: Any, right: Any) -> bool:

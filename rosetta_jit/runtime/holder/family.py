@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import json
-from functools import cache, cached_property
-from threading import RLock
+from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from rosetta_jit.cached import cached_property
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
-from rosetta_jit.runtime.holder import values
 from rosetta_jit.runtime.holder.access import Access, getter
-from rosetta_jit.runtime.holder.classes import Holder
+from rosetta_jit.runtime.holder.classes import Holder, filled
 from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, stale_getter, view_setter
 from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
 from rosetta_jit.runtime.lanes import Lanes, born
+from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.plan import plan
+from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -64,7 +65,7 @@ def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class
     return {}
 
 
-_ONE_AT_A_TIME = RLock()
+_ONE_AT_A_TIME = shared_lock()
 """Held where a class is made: two of one type would take each other's holders for foreign."""
 
 PLAIN = Manners(Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members)
@@ -100,8 +101,13 @@ class Family:
         entries = self.tree.root.entries
         shown = _shown(self.tree.root, self.manners.base)
         properties = {name: property(getter(entries[name], self, first_row=True), access.setters[name]) for name in shown}
-        members = {"family_": self, "access_": access, "__slots__": (), "__doc__": f"A holder of `{self.struct.name}`."}
+        members = {"family_": self, "access_": access, "__slots__": (self._mark,), "__doc__": f"A holder of `{self.struct.name}`."}
         return _class(self.struct.name, (self.manners.base,), {**self.manners.members(self), **properties, **members})
+
+    @property
+    def _mark(self) -> str:
+        """The name of a slot that no other type's holders have: Python lets ``__class__`` be exchanged among classes of the same slots."""
+        return f"_of_{sha256(self.text.encode()).hexdigest()[:16]}"
 
     def of_struct(self, struct: str) -> type[Holder]:
         """The holder class of another struct of the schema, with the same manners."""
@@ -131,9 +137,10 @@ class Family:
     @cached_property
     def _empty(self) -> Lanes:
         lanes = Lanes(self.plan, self.array_type)
-        for lane in self.tree.recursive:
-            if not lanes.used(lane):
-                lanes.bear(self.tree.births_of(lane), lanes.take(lane, 1), 1)
+        with lanes:
+            for lane in self.tree.recursive:
+                if not lanes.used(lane):
+                    lanes.bear(self.tree.births_of(lane), lanes.take(lane, 1), 1)
         return lanes
 
     def empty_lanes(self) -> Lanes:
@@ -202,6 +209,4 @@ def _family_of(text: str, manners: Manners) -> Family:
 
 def revived(text: str, manners: Manners, plain: dict[str, Any]) -> Holder:
     """Unpickle."""
-    holder = family_of(text, manners).holder()
-    values.write_record(holder.access_.record, holder.lanes_, 0, plain)
-    return holder
+    return filled(family_of(text, manners).holder(), plain)

@@ -10,7 +10,7 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
-from rosetta_jit.runtime.holder.message import Message, writable
+from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import Dictionary, store_row
 
@@ -27,8 +27,9 @@ def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
         raise EncodeError("nesting", "", f"messages contain each other more than {values.MAX_DEPTH} deep")
     for name, value in fields.items():
         if name == UNKNOWN and message.access_.record.unknown is not None:
-            lanes, row = writable(message)
-            values.append_unknown(message.access_.record.unknown, lanes, row, value)
+            with message.home_:
+                lanes, row = writable(message)
+                values.append_unknown(message.access_.record.unknown, lanes, row, value)
             continue
         entry = message.access_.record.entries[name]
         if entry.presence is not None or not is_zero(value):
@@ -48,8 +49,9 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
         case Scalar() | Text() | Blob():
             message.access_.setters[entry.name](message, value)
         case Numbers() | Items() if node.length is not None:
-            lanes, row = writable(message)
-            values.write_entry(entry, lanes, row, value)
+            with message.home_:
+                lanes, row = writable(message)
+                values.write_entry(entry, lanes, row, value)
         case Numbers():
             append_numbers(message, node, value)
         case Items():
@@ -60,7 +62,7 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
                 shown[key] = each
         case Record() | Child():
             inner = message.access_.getters[entry.name](message)
-            writable(inner)
+            make_present(inner)
             merge(inner, value, depth + 1)
         case _:
             assert_never(node)
@@ -69,20 +71,22 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
 def append_numbers(message: Message, node: Numbers, elements: Iterable[Any]) -> None:
     """Add elements to an array of numbers: all, or none if one is wrong."""
     prepared = coerce.numbers(node.type, elements)
-    lanes, row = writable(message)
-    count = arena.span_of(lanes, node.span, row)[1]
-    coerce.counted(count + prepared.size, node.length, node.maximum)
-    start = arena.resize(lanes, node, row, count + prepared.size) + count
-    lanes.arrays[node.lane][start : start + prepared.size] = prepared
+    with message.home_:
+        lanes, row = writable(message)
+        count = arena.span_of(lanes, node.span, row)[1]
+        coerce.counted(count + prepared.size, node.length, node.maximum)
+        start = arena.resize(lanes, node, row, count + prepared.size) + count
+        lanes.arrays[node.lane][start : start + prepared.size] = prepared
 
 
 def _append(message: Message, node: Items, elements: list[Any]) -> None:
-    lanes, row = writable(message)
-    count = arena.span_of(lanes, node.span, row)[1]
-    coerce.counted(count + len(elements), node.length, node.maximum)
-    start = arena.resize(lanes, node, row, count + len(elements)) + count
-    for index, each in enumerate(elements):
-        store_row(node.element, lanes, start + index, each)
+    with message.home_:
+        lanes, row = writable(message)
+        count = arena.span_of(lanes, node.span, row)[1]
+        coerce.counted(count + len(elements), node.length, node.maximum)
+        start = arena.resize(lanes, node, row, count + len(elements)) + count
+        for index, each in enumerate(elements):
+            store_row(node.element, lanes, start + index, each)
 
 
 def fill(message: Message, fields: Mapping[str, Any]) -> None:
@@ -112,7 +116,7 @@ def _fill_field(message: Message, entry: Entry, value: Any) -> None:
                     f"Parameter to initialize message field must be dict or instance of same class: got {type(value).__name__}."
                 )
             inner = message.access_.getters[entry.name](message)
-            writable(inner)
+            make_present(inner)
             _fill_message(inner, value)
         case Items(_, _, Record()):
             shown: Any = message.access_.getters[entry.name](message)

@@ -111,8 +111,14 @@ def locate(view: View) -> None:
         each.seen_ = each.home_.moves
 
 
+def make_present(message: Message) -> None:
+    """Let a message and all around it be present, as by an assignment to one of its fields."""
+    with message.home_:
+        writable(message)
+
+
 def writable(message: Message) -> tuple[Lanes, int]:
-    """Where a message is to be written: it and all around it are present from now on.
+    """Where a message is to be written, inside ``with message.home_:``; it and all around it are present from now on.
 
     Raises
     ------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, MutableSequence
 from copy import copy
 from typing import TYPE_CHECKING, Any, cast
@@ -53,16 +54,21 @@ class Sequence(MutableSequence[Any]):
         return self._span()[2]
 
     def __getitem__(self, index: Any) -> Any:
+        return self.message.home_.consistent(self._at, index)
+
+    def _at(self, index: Any) -> Any:
         lanes, start, count = self._span()
         if isinstance(index, slice):
             return [self._element(lanes, start, each) for each in range(count)[index]]
         return self._element(lanes, start, _checked(index, count))
 
     def __iter__(self) -> Iterator[Any]:
-        index = 0
-        while index < len(self):
-            yield self[index]
-            index += 1
+        for index in itertools.count():
+            try:
+                element = self[index]
+            except IndexError:
+                return
+            yield element
 
     def _element(self, lanes: Lanes, start: int, index: int) -> Any:
         match self.node.element:
@@ -75,32 +81,37 @@ class Sequence(MutableSequence[Any]):
         if isinstance(index, slice):
             self._replace(_listed(self, cast("slice", index), value))
             return
-        at = _checked(index, len(self))
         plain = raw(value)
-        self._append([plain])
-        count = len(self)
-        self._order([*range(at), count - 1, *range(at + 1, count - 1)])
+        with self.message.home_:
+            count = len(self)
+            at = _checked(index, count)
+            self._append([plain])
+            self._order([*range(at), count, *range(at + 1, count)])
 
     def __delitem__(self, index: Any) -> None:
-        count = len(self)
-        gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
-        self._allow(count - len(gone))
-        self._order([each for each in range(count) if each not in gone])
+        with self.message.home_:
+            count = len(self)
+            gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
+            self._allow(count - len(gone))
+            self._order([each for each in range(count) if each not in gone])
 
     def insert(self, index: int, value: Any) -> None:
-        count = len(self)
-        self._allow(count + 1)
-        at = range(count)[:index].stop if count else 0
-        self._append([raw(value)])
-        self._order([*range(at), count, *range(at, count)])
+        plain = raw(value)
+        with self.message.home_:
+            count = len(self)
+            self._allow(count + 1)
+            at = range(count)[:index].stop if count else 0
+            self._append([plain])
+            self._order([*range(at), count, *range(at, count)])
 
     def append(self, value: Any) -> None:
         self.extend([value])
 
     def extend(self, values: Iterable[Any]) -> None:
         plain = [raw(each) for each in values]
-        self._allow(len(self) + len(plain))
-        self._append(plain)
+        with self.message.home_:
+            self._allow(len(self) + len(plain))
+            self._append(plain)
 
     def pop(self, index: int = -1) -> Any:
         """Remove an element and return it; a message as one of its own."""
@@ -111,22 +122,26 @@ class Sequence(MutableSequence[Any]):
 
     def clear(self) -> None:
         self._allow(0)
-        self._order([])
+        with self.message.home_:
+            self._order([])
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:
         """Sort the elements in place."""
         elements = list(self)
-        self._order(sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse))
+        order = sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse)
+        with self.message.home_:
+            self._order(order)
 
     def reverse(self) -> None:
-        self._order(list(range(len(self)))[::-1])
+        with self.message.home_:
+            self._order(list(range(len(self)))[::-1])
 
     def _allow(self, count: int) -> None:
         """Refuse a number of elements that the type does not have: ValueError."""
         coerce.counted(count, self.node.length, self.node.maximum)
 
     def _append(self, plain: list[Any]) -> None:
-        """Add elements at the end: all of them, or none where one is wrong."""
+        """Inside ``with home_:``, add elements at the end: all of them, or none where one is wrong."""
         node = self.node
         lanes, row = writable(self.message)
         _, count = arena.span_of(lanes, node.span, row)
@@ -141,9 +156,10 @@ class Sequence(MutableSequence[Any]):
     def _replace(self, elements: list[Any]) -> None:
         self._allow(len(elements))
         plain = [raw(each) for each in elements]
-        count = len(self)
-        self._append(plain)
-        self._order(list(range(count, count + len(plain))))
+        with self.message.home_:
+            count = len(self)
+            self._append(plain)
+            self._order(list(range(count, count + len(plain))))
 
     def _order(self, order: list[int]) -> None:
         lanes, row = writable(self.message)
@@ -205,17 +221,21 @@ class Dictionary(MutableMapping[Any, Any]):
             self.seen = (start, count, lanes.moves)
         return self.index
 
+    def _known(self) -> dict[Any, int]:
+        """The same, where another thread may change the map."""
+        return self.message.home_.consistent(lambda dictionary: dictionary._keys(), self)  # noqa: SLF001 - it is this one
+
     def __len__(self) -> int:
-        return len(self._keys())
+        return len(self._known())
 
     def __iter__(self) -> Iterator[Any]:
-        return iter(list(self._keys()))
+        return iter(list(self._known()))
 
     def __contains__(self, key: object) -> bool:
-        return self.checked(key) in self._keys()
+        return self.checked(key) in self._known()
 
     def __getitem__(self, key: Any) -> Any:
-        index = self._keys()[self.checked(key)]
+        index = self._known()[self.checked(key)]
         family = self.message.access_.family
         pair = bind(Pair(), self.message, family.access(self.node.record), self.entry, index)
         return pair.access_.getters["value"](pair)
@@ -234,6 +254,10 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def __setitem__(self, key: Any, value: Any) -> None:
         plain = raw(value)
+        with self.message.home_:
+            self._store(key, plain)
+
+    def _store(self, key: Any, plain: Any) -> None:
         node, index = self.node, self._keys().get(self.checked(key))
         lanes, row = writable(self.message)
         if index is not None:
@@ -253,12 +277,13 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def __delitem__(self, key: Any) -> None:
         wanted = self.checked(key)
-        if wanted not in self._keys():
-            raise KeyError(key)
-        lanes, row = writable(self.message)
-        start, count = arena.span_of(lanes, self.node.span, row)
-        keys = [values.read(self.node.key, lanes, start + each, values.Form.RAW) for each in range(count)]
-        arena.rearrange(lanes, self.node, row, [each for each in range(count) if keys[each] != wanted])
+        with self.message.home_:
+            if wanted not in self._keys():
+                raise KeyError(key)
+            lanes, row = writable(self.message)
+            start, count = arena.span_of(lanes, self.node.span, row)
+            keys = [values.read(self.node.key, lanes, start + each, values.Form.RAW) for each in range(count)]
+            arena.rearrange(lanes, self.node, row, [each for each in range(count) if keys[each] != wanted])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mapping):

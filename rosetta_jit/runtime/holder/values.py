@@ -217,11 +217,12 @@ def put(node: Leaf, lanes: Lanes, row: int, prepared: Any) -> None:
 
 
 def settle(record: Record, lanes: Lanes) -> None:
-    """Make the lanes fit to be encoded: nothing borrowed, and no rows that nothing refers to."""
+    """Make the lanes, which are one's own, fit to be encoded: nothing borrowed, and no rows that nothing refers to."""
     fresh = Lanes(lanes.plan, lanes.array_type)
-    fresh.reset(lanes.rows)
-    for row in range(lanes.rows):
-        write_record(record, fresh, row, read_record(record, lanes, row, Form.RAW))
+    with fresh:
+        fresh.reset(lanes.rows)
+        for row in range(lanes.rows):
+            write_record(record, fresh, row, read_record(record, lanes, row, Form.RAW))
     lanes.adopt(fresh)
 
 

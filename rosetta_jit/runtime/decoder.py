@@ -1,0 +1,180 @@
+"""Decoders: what is not the common case of a call, and many messages in one."""
+
+from __future__ import annotations
+
+from threading import get_ident, local
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosetta_jit.errors import DecodeError
+from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
+from rosetta_jit.runtime import run
+from rosetta_jit.runtime.callable import THREAD
+from rosetta_jit.runtime.lanes import roomier
+from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer as Buffer
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.lanes import Lanes
+
+
+class DecoderBase(Program):
+    """Decodes messages of one wire into holders of one type.
+
+    The decoder's own holder belongs to the thread that decodes first; each other thread has another one, as long as it lives.
+    """
+
+    if TYPE_CHECKING:  # the entry does this
+
+        def __call__(self, message: Buffer, holder: Any = None) -> Any:
+            """Decode into a holder, by default the decoder's own; returns it."""
+            ...
+
+    def _start(self, loaded: Loaded) -> None:
+        self._bind(loaded, self.call_slowly)
+
+    def into(self, message: Buffer, holder: Any) -> Any:
+        """Decode into a holder of one's own; returns it.
+
+        Raises
+        ------
+        DecodeError
+            The message is not what the schema promises; the holder is invalid until it is filled again.
+        TypeError, BufferError
+            The message has no bytes, or the holder is of another type.
+        """
+        return self(message, holder)
+
+    def many(self, buffer: Buffer, offsets: NDArray[np.int64], *, into: Batch | None = None) -> Batch:
+        """Decode many messages that lie in one buffer, without the interpreter lock.
+
+        Parameters
+        ----------
+        buffer
+            Any bytes-like object.
+        offsets : ndarray of int64, shape (n + 1,)
+            Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
+        into
+            A batch to fill again, so that no memory is taken; a new one by default.
+
+        Raises
+        ------
+        DecodeError
+            A message is not what the schema promises; its path begins with the number of the message, ``[17]``.
+        ValueError
+            The offsets are not int64 of one dimension, fall, or leave the buffer.
+        InUse
+            Another thread is filling, changing or encoding the batch.
+        """
+        data, places = run.readable(buffer), _offsets(offsets)
+        batch = self._batch(len(places) - 1) if into is None else into
+        lanes = self._lanes_of(batch)
+        with lanes:
+            self._fill(lanes, data, places)
+            lanes.source[0] = buffer if self._loaded.borrow else None
+        return batch
+
+    def _batch(self, count: int) -> Batch:
+        from rosetta_jit.runtime.batch import Batch
+
+        return Batch.room(self._loaded.holder_type, max(count, 1))
+
+    def _fill(self, lanes: Lanes, data: NDArray[np.uint8], places: NDArray[np.int64]) -> None:
+        """Decode all messages, making room on the way."""
+        count = len(places) - 1
+        _make_rows(lanes, count)
+        self._tell(lanes, count)
+        done = self._many(data, places, 0, lanes)
+        while done < count:
+            result = run.result_of(lanes)
+            if result != run.GROW:
+                raise self._many_error(result, data, places, done, lanes)
+            with run.decoding():
+                run.limit(lanes, data.size)
+                _grow_for_all(lanes, done, count)
+            done = self._many(data, places, done, lanes)
+        lanes.words[VALID] = CLEAN
+
+    def _many(self, data: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, lanes: Lanes) -> int:
+        """Decode from one message on; the first that could not be."""
+        count = len(offsets) - 1
+        if self._loaded.library is not None:
+            many = MANY(self._loaded.library["many"])
+            return many(data.ctypes.data, data.size, offsets.ctypes.data, first, count, lanes.address)
+        return one_by_one(self._loaded.kernel, data, offsets, first, lanes)
+
+    def _many_error(self, result: int, data: NDArray[np.uint8], offsets: NDArray[np.int64], done: int, lanes: Lanes) -> Exception:
+        begin, end = int(offsets[done]), int(offsets[done + 1])
+        if result == 0:
+            return ValueError(f"offsets {begin} and {end} of message {done} fall, or leave the buffer of {data.size} bytes")
+        error = run.decode_error(self._loaded.sites[-1 - result], lanes, begin, end)
+        return DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset)
+
+    def call_slowly(self, *arguments: object, **named: object) -> object:
+        """Whatever the entry does not do: wrong arguments, lanes that are too small, errors, holders that borrow."""
+        if named or len(arguments) not in (1, 2):
+            raise TypeError("a decoder takes a message, and perhaps a holder to fill")
+        message: Any = arguments[0]
+        if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
+            return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
+        holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
+        data = run.readable(message)
+        with holder.lanes_ as lanes, self._told(lanes):
+            lanes.begin_filling()
+            with run.decoding():
+                result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0)
+            if result < 0:
+                raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
+            self._plan = roomier(self._plan, lanes)
+            lanes.source[0] = (message if isinstance(message, bytes) else memoryview(message)) if self._loaded.borrow else None
+            lanes.words[VALID] = CLEAN
+        return holder
+
+    def _becomes_mine(self) -> bool:
+        """Let the decoder's own holder belong to this thread, if it belongs to none: in one step, which dicts have."""
+        thread = get_ident()
+        if vars(self).setdefault("_thread", thread) != thread:
+            return False
+        self._context[1][THREAD] = thread
+        return True
+
+    def _holder_of_thread(self) -> Holder:
+        """What stands for the decoder's own holder in this thread."""
+        holders = vars(self).setdefault("_holders", local())
+        if not hasattr(holders, "own"):
+            holders.own = self.new()
+        return holders.own
+
+
+def _make_rows(lanes: Lanes, count: int) -> None:
+    """So many rows for messages that are going to be decoded."""
+    lanes.begin_filling()
+    missing = count - lanes.words[lane_word(0, CAPACITY)]
+    if missing > 0:
+        lanes.grow(0, missing)
+    for lane in range(1, len(lanes.buffers)):
+        lanes.words[lane_word(lane, USED)] = 0
+    lanes.words[lane_word(0, USED)] = lanes.rows = count
+    lanes.moves += 1
+
+
+def _grow_for_all(lanes: Lanes, done: int, count: int) -> None:
+    """Guess from the messages so far what all will take, so that a lane does not move often."""
+    lane, rows = run.missing(lanes)
+    if lane >= len(lanes.buffers):
+        lanes.grow(lane, rows)
+        return
+    used = lanes.words[lane_word(lane, USED)]
+    lanes.grow(lane, max(rows, (used * count) // (done + 1) + rows - lanes.words[lane_word(lane, CAPACITY)]))
+
+
+def _offsets(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+    places = np.ascontiguousarray(offsets)
+    if places.dtype != np.int64 or places.ndim != 1 or not places.size:
+        raise ValueError("offsets are an int64 array of one dimension, one longer than there are messages")
+    return places

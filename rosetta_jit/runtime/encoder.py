@@ -1,0 +1,159 @@
+"""Encoders: what is not the common case of a call, and many messages in one."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosetta_jit.errors import EncodeError
+from rosetta_jit.kernel.state import VALID
+from rosetta_jit.runtime import run
+from rosetta_jit.runtime.holder.classes import settle_lanes
+from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from _typeshed import ReadableBuffer as Buffer
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.lanes import Lanes
+
+_SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
+"""The compiled `sizes` (`backends/encode.ll`): offsets, first, count, state; the first message that was not measured."""
+
+
+class EncoderBase(Program):
+    """Encodes holders of one type as messages of one wire."""
+
+    if TYPE_CHECKING:  # the entry does this
+
+        def __call__(self, holder: Any, buffer: Buffer | None = None, offset: int = 0) -> Any:
+            """The message as bytes, or, written into a buffer, the offset behind it."""
+            ...
+
+    def _start(self, loaded: Loaded) -> None:
+        self._bind(loaded, self.call_slowly)
+
+    def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int:
+        """Write a message into a buffer; returns the offset behind it.
+
+        Raises
+        ------
+        EncodeError
+            The holder has values that the wire cannot carry.
+        BufferError
+            The buffer is read-only, or has not enough room.
+        """
+        return self(holder, buffer, offset)
+
+    def size(self, holder: Any) -> int:
+        """How many bytes the message takes."""
+        checked = self._checked(holder)
+        with checked.lanes_ as lanes:
+            self._make_usable(checked)
+            self._tell(lanes, 0)
+            return self._measured(lanes)
+
+    def many(self, batch: Batch) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+        """Encode all messages of a batch.
+
+        Returns
+        -------
+        buffer : ndarray of uint8
+            The messages, one behind the other.
+        offsets : ndarray of int64, shape (n + 1,)
+            Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
+        """
+        lanes = self._lanes_of(batch)
+        with lanes:
+            self._tell(lanes, lanes.rows)
+            offsets = np.zeros(lanes.rows + 1, np.int64)
+            self._all(lanes, lambda first: self._sizes(lanes, offsets, first))
+            with run.encoding():
+                buffer = np.empty(int(offsets[-1]), np.uint8)
+            self._all(lanes, lambda first: self._written(lanes, buffer, offsets, first))
+        return buffer, offsets
+
+    def _all(self, lanes: Lanes, step: Callable[[int], int]) -> None:
+        """Go on from where a lane was too small, until all are done."""
+        done = step(0)
+        while done < lanes.rows:
+            result = run.result_of(lanes)
+            if result != run.GROW:
+                sites = self._loaded.sites if -1 - result < len(self._loaded.sites) else self._loaded.size_sites
+                error = run.encode_error(sites[-1 - result], lanes)
+                raise EncodeError(error.kind, f"[{done}]{error.path}", error.detail)
+            with run.encoding():
+                run.grow(lanes)
+            done = step(done)
+
+    def _sizes(self, lanes: Lanes, offsets: NDArray[np.int64], first: int) -> int:
+        if self._loaded.library is not None:
+            sizes = _SIZES(self._loaded.library["sizes"])
+            return sizes(offsets.ctypes.data, first, lanes.rows, lanes.address)
+        assert self._loaded.size is not None
+        for number in range(first, lanes.rows):
+            size = self._loaded.size(None, 0, run.ANY_SIZE, lanes, number)
+            if size < 0:
+                run.note(lanes, size)
+                return number
+            offsets[number + 1] = offsets[number] + size
+        return lanes.rows
+
+    def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int) -> int:
+        if self._loaded.library is not None:
+            many = MANY(self._loaded.library["many"])
+            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, lanes.rows, lanes.address)
+        return one_by_one(self._loaded.kernel, buffer, offsets, first, lanes, self._loaded.size)
+
+    def _make_usable(self, holder: Holder) -> None:
+        """Bring a valid holder, whose lanes are one's own, into the form that kernels read."""
+        if not holder.lanes_.words[VALID]:
+            raise holder.lanes_.invalid()
+        settle_lanes(holder)
+
+    def _measured(self, lanes: Lanes) -> int:
+        assert self._loaded.size is not None
+        with run.encoding():
+            size = run.run_growing(self._loaded.size, None, 0, run.ANY_SIZE, lanes, 0)
+        if size < 0:
+            raise run.encode_error(self._loaded.size_sites[-1 - size], lanes)
+        return size
+
+    def call_slowly(self, *arguments: object, **named: object) -> object:
+        """Whatever the entry does not do: wrong arguments, holders that must be put in order, a scratch lane that is too small, errors."""
+        if len(arguments) == 2:
+            arguments = (*arguments, 0)
+        if named or len(arguments) not in (1, 3):
+            raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
+        holder = self._checked(arguments[0])
+        with holder.lanes_ as lanes, self._told(lanes):
+            self._make_usable(holder)
+            return self._bytes(lanes) if len(arguments) == 1 else self._put(lanes, arguments[1], arguments[2])
+
+    def _bytes(self, lanes: Lanes) -> bytes:
+        size = self._measured(lanes)
+        with run.encoding():
+            written = np.empty(size, np.uint8)
+        self._write(lanes, written, 0, size)
+        return written.tobytes()
+
+    def _put(self, lanes: Lanes, buffer: object, offset: object) -> int:
+        size, target = self._measured(lanes), run.writable(buffer)
+        if not isinstance(offset, int):
+            raise TypeError(f"an offset is an int, not {type(offset).__name__}")
+        if not 0 <= offset <= target.size - size:
+            raise BufferError(f"the message takes {size} bytes, and {max(target.size - offset, 0)} are left behind offset {offset}")
+        return self._write(lanes, target, offset, offset + size)
+
+    def _write(self, lanes: Lanes, target: NDArray[np.uint8], begin: int, end: int) -> int:
+        with run.encoding():
+            result = run.run_growing(self._loaded.kernel, target, begin, end, lanes, 0)
+        if result < 0:
+            raise run.encode_error(self._loaded.sites[-1 - result], lanes)
+        return result
