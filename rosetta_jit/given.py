@@ -16,6 +16,7 @@ from rosetta_jit.runtime.object_file import undefined_symbols
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.ir import Kernel, Scalar
     from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.request import Request
@@ -44,25 +45,31 @@ def _user_function(signature: Signature, given: object) -> UserFunction:
     return UserFunction(signature.name, given, parameters, scalar_type(signature.result))
 
 
-def check_compiled(functions: Iterable[UserFunction], declared: Mapping[str, Signature]) -> None:
-    """Refuse functions that do not compile to what is declared of them, or that need more of the process than kernels may have."""
-    problems = tuple(problem for function in functions for problem in _problems(function, declared[function.name]))
+def check_compiled(functions: Iterable[UserFunction], declared: Mapping[str, Signature]) -> tuple[str, ...]:
+    """Refuse functions that do not compile to what is declared of them, or that need more of the process than kernels may have.
+
+    The answer names those that do and whose code has addresses of this process: no other process may run it.
+    """
+    found = [_compiled(function, declared[function.name]) for function in functions]
+    problems = tuple(each for each in found if not isinstance(each, str))
     if problems:
         raise MappingError(problems)
+    return tuple(str(each) for each in found if each)
 
 
-def _problems(function: UserFunction, declared: Signature) -> Iterable[words.Diagnostic]:
+def _compiled(function: UserFunction, declared: Signature) -> Diagnostic | str:
+    """What is wrong with a function, or its name if its code has addresses of this process, or nothing."""
     if find_spec("numba") is None:
-        return (words.no_compiler(declared.span),)
-    from rosetta_jit.backends.functions import FunctionTypeError, compile_function
+        return words.no_compiler(declared.span)
+    from rosetta_jit.backends.functions import FunctionTypeError, compile_function, has_addresses
     from rosetta_jit.backends.link import target_machine
 
     try:
         module = compile_function(function)
     except FunctionTypeError as error:
-        return (words.does_not_compile(declared.span, function.name, str(error)),)
+        return words.does_not_compile(declared.span, function.name, str(error))
     foreign = sorted(undefined_symbols(target_machine().emit_object(module)) - ALLOWED)
     if foreign:
         why = f"it needs {', '.join(foreign[:3])}, which kernels cannot call"
-        return (words.does_not_compile(declared.span, function.name, why),)
-    return ()
+        return words.does_not_compile(declared.span, function.name, why)
+    return function.name if has_addresses(module) else ""

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.typed import Rule
-    from rosetta_jit.request import Backend, Request
+    from rosetta_jit.request import Backend, GivenFunction, Request
     from rosetta_jit.wire.codec import Encoding
 
 Stage = Literal["model", "codec", "kernel", "python", "llvm", "asm"]
@@ -161,11 +161,16 @@ class Build:
         return called_functions(self.request, self.types.functions, self.kernels)
 
     @cached_property
+    def called(self) -> tuple[GivenFunction, ...]:
+        """The same as they were given."""
+        names = {function.name for function in self.functions}
+        return tuple(given for given in self.request.functions if given.name in names)
+
+    @cached_property
     def text(self) -> str:
-        """All that the code and its `header` depend on besides this process."""
+        """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
         kernels = [to_text(kernel) for kernel in self.kernels]
-        called = {function.name for function in self.functions}
-        digests = [f"{given.name} {given.digest}" for given in self.request.functions if given.name in called]
+        digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
         return "\n".join([self.backend, self.entry, self.manners, holder, *kernels, *digests])
 
@@ -187,12 +192,16 @@ class Build:
             "host": our_functions(self.kernels),
         }
 
+    def check_functions(self) -> tuple[str, ...]:
+        """The names of the user's functions whose code has addresses of this process. MappingError where one is not what is declared."""
+        imported("rosetta_jit.backends.link")
+        return check_compiled(self.functions, self.types.functions)
+
     def image(self) -> bytes:
         """The object code."""
         imported("rosetta_jit.backends.link")
         from rosetta_jit.backends.link import compile_program
 
-        check_compiled(self.functions, self.types.functions)
         return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
 
     def stage(self, stage: str) -> str:

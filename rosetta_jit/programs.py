@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
+from rosetta_jit import certainty
 from rosetta_jit.cached import cached_property
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.garbage import imported, seldom_collected
@@ -199,9 +200,9 @@ def _request(direction: Direction, options: Options, *, mapping: str | None = No
 def _given(functions: Mapping[str, Callable[..., Any]]) -> tuple[GivenFunction, ...]:
     if not functions:
         return ()
-    from rosetta_jit.runtime.function_digest import digest_of
+    from rosetta_jit.runtime.functions.identity import identify
 
-    return tuple(GivenFunction(name, digest_of(each), each) for name, each in sorted(functions.items()))
+    return tuple(GivenFunction(name, each, identify(each, name)) for name, each in sorted(functions.items()))
 
 
 def _type_request(direction: Direction, type_: str | type, options: Options) -> Request:
@@ -241,29 +242,39 @@ def _build(request: Request) -> Build:
 
 
 def _loaded(request: Request) -> Loaded:
-    """The program that answers a request, compiled at most once a machine."""
+    """The program that answers a request, compiled at most once a machine if all is identified that it depends on."""
     if request.backend in _PYTHON:
         return _interpreted(_build(request))
     cache = Cache.default()
-    asked = request_name(request.key())
-    name = cache.get_manifest(asked)
+    name = cache.get_manifest(request_name(request.key())) if request.is_identified() else None
     if name is not None:
         with suppress(KeyError):
             return _shared(name, cache)
     with seldom_collected():
-        return _compiled(_build(request), cache, asked)
+        return _compiled(_build(request), cache)
 
 
-def _compiled(build: Build, cache: Cache, asked: str) -> Loaded:
-    name = entry_name(build.text)
-    with suppress(KeyError):
-        shared = _shared(name, cache)
-        cache.put_manifest(asked, build.files(), name)
-        return shared
+def _compiled(build: Build, cache: Cache) -> Loaded:
+    doubts = certainty.doubts(build.called)
+    name = None if doubts else entry_name(build.text)
+    if name is not None:
+        with suppress(KeyError):
+            return _answered(build, cache, name, _shared(name, cache))
+    addressing = build.check_functions()
     image = build.image()
+    doubts = (*doubts, *certainty.doubts_of_compiled(build.called, addressing))
+    certainty.note(build.request, cache, doubts)
+    if name is None or doubts:
+        return _linked(build.header, image)
     cache.put(name, build.header, image)
-    cache.put_manifest(asked, build.files(), name)
-    return _linked(build.header, image)
+    return _answered(build, cache, name, _linked(build.header, image))
+
+
+def _answered(build: Build, cache: Cache, name: str, loaded: Loaded) -> Loaded:
+    """A program that the cache has, as the answer to its request from now on, if the request says all."""
+    if build.request.is_identified():
+        cache.put_manifest(request_name(build.request.key()), build.files(), name)
+    return loaded
 
 
 @lru_cache(maxsize=64)

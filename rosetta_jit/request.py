@@ -11,6 +11,8 @@ from rosetta_jit.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from rosetta_jit.runtime.functions.identity import Identity
+
 Direction = Literal["decode", "encode"]
 ByteOrder = Literal["little", "big"]
 Backend = Literal["numba", "llvm", "python", "interpreter"]
@@ -18,11 +20,11 @@ Backend = Literal["numba", "llvm", "python", "interpreter"]
 
 @dataclass(frozen=True, slots=True)
 class GivenFunction:
-    """A function of the user's own. The digest changes with whatever it computes."""
+    """A function of the user's own, and which one it is. Those without a digest cannot be told from others: see `uncertain`."""
 
     name: str
-    digest: str
     function: Callable[..., Any]
+    identity: Identity
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +79,13 @@ class Request:
     functions: tuple[GivenFunction, ...] = ()
     backend: Backend | None = None
 
+    def is_identified(self) -> bool:
+        """Whether the cache can know the answer: a function that is not identified may be another one each time."""
+        return all(each.identity.digest is not None for each in self.functions)
+
     def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
         """The request as plain data, with the surroundings that relative names depend on."""
-        functions = [[each.name, each.digest] for each in self.functions]
+        functions = [[each.name, each.identity.digest] for each in self.functions]
         plain: dict[str, Any] = {name: getattr(self, name) for name in self.__match_args__}
         return {**plain, "functions": functions, "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more
 

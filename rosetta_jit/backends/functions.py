@@ -26,6 +26,9 @@ NUMBA_TYPES: dict[str, Any] = {
 KEPT = ("error_model", "fastmath", "boundscheck")
 """Of the options that `njit` was given, those that change what a function computes."""
 
+ADDRESSES = "numba.dynamic.globals."
+"""How the names of global variables begin in which numba keeps addresses of the process (`add_dynamic_addr` of numba/core/base.py)."""
+
 MAX_REASON = 400
 
 
@@ -42,12 +45,13 @@ def compile_function(declared: UserFunction) -> binding.ModuleRef:
     """
     given: Any = declared.function
     options = {key: value for key, value in getattr(given, "targetoptions", {}).items() if key in KEPT}
+    types_of_locals: Any = getattr(given, "locals", {})
     decorate: Any = njit
     arguments = tuple(NUMBA_TYPES[each] for each in declared.parameters)
     function = getattr(given, "py_func", given)
 
     def compiled(signature: object) -> Dispatcher:
-        return decorate(signature, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
+        return decorate(signature, locals=types_of_locals, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
 
     try:
         dispatcher = compiled(arguments)
@@ -59,6 +63,11 @@ def compile_function(declared: UserFunction) -> binding.ModuleRef:
     except (NumbaError, TypeError, NotImplementedError) as error:  # the others are what numba raises on arguments, and on bytecode
         raise FunctionTypeError(_reason(error)) from error
     return _module(declared.name, dispatcher)
+
+
+def has_addresses(module: binding.ModuleRef) -> bool:
+    """Whether compiled code refers to objects or functions of this process by their addresses."""
+    return any(variable.name.startswith(ADDRESSES) for variable in module.global_variables)
 
 
 def _module(name: str, dispatcher: Dispatcher) -> binding.ModuleRef:

@@ -35,8 +35,13 @@ def _info(*, as_json: bool) -> int:
     facts = asdict(info) | {"folder": str(info.folder) if info.folder else None}
     if as_json:
         print(json.dumps(facts))
-    else:
-        print("\n".join(f"{name.replace('_', ' ') + ':':<12}{value}" for name, value in facts.items() if value != ""))
+        return int(bool(info.problem))
+    del facts["compiled_anew"]
+    print("\n".join(f"{name.replace('_', ' ') + ':':<12}{value}" for name, value in facts.items() if value != ""))
+    if info.compiled_anew:
+        print("compiled anew whenever they are made, because it cannot be told for certain which functions they call:")
+    for unkept in info.compiled_anew:
+        print(f"  {unkept.program}", *unkept.reasons, sep="\n    ")
     return int(bool(info.problem))
 
 

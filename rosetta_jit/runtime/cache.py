@@ -1,8 +1,8 @@
 """The kernel cache: what was compiled once is loaded by every later process, which then parses and compiles nothing.
 
-Two kinds of file. An *entry* holds the object code of a program; its name is what the code depends on (`cache_names.entry_name`). A
+Three kinds of file. An *entry* holds the object code of a program; its name is what the code depends on (`cache_names.entry_name`). A
 *manifest* leads to it: its name is what was asked for (`cache_names.request_name`), its content the digests of all files that were read for
-the answer. A warm process digests those files again and never looks into them.
+the answer. A warm process digests those files again and never looks into them. A *note* names a program that cannot be kept, and why.
 
 Whatever is wrong with a file or a folder costs a recompile and one warning, never an error.
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 import errno
 import os
 import warnings
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -23,12 +24,21 @@ from rosetta_jit.runtime.stores import FolderStore, MemoryStore, Store, Stored, 
 from rosetta_jit.sha import sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
 
 DEFAULT_MAX_BYTES = 512 * 1024 * 1024
-ENTRY, MANIFEST = ".kernel", ".manifest"
+ENTRY, MANIFEST, NOTE = ".kernel", ".manifest", ".note"
+OWN = (ENTRY, MANIFEST, NOTE)
+
+
+@dataclass(frozen=True, slots=True)
+class Unkept:
+    """A program that is compiled anew in each process, and why. It was so when it was made last."""
+
+    program: str
+    reasons: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +51,7 @@ class CacheInfo:
     manifests: int
     size_bytes: int
     max_bytes: int
+    compiled_anew: tuple[Unkept, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +110,19 @@ class Cache:
         """
         self._write(request + MANIFEST, {"entry": entry, "files": dict(files)}, b"")
 
+    def put_note(self, name: str, program: str, reasons: tuple[str, ...]) -> None:
+        """Note that a program is not kept, unless the same is noted already."""
+        header = {"program": program, "reasons": list(reasons)}
+        noted = self._read(name + NOTE)
+        if noted is None or noted.header != header:
+            self._write(name + NOTE, header, b"")
+
+    def drop_note(self, name: str) -> None:
+        """Forget a note: the program is kept."""
+        for store in (self._store, self._memory):
+            with suppress(OSError, UntrustedError):
+                store.remove(name + NOTE)
+
     def info(self) -> CacheInfo:
         problem = ""
         try:
@@ -112,6 +136,7 @@ class Cache:
             manifests=sum(file.name.endswith(MANIFEST) for file in stored),
             size_bytes=sum(file.size_bytes for file in stored),
             max_bytes=self.max_bytes,
+            compiled_anew=tuple(sorted(self._unkept(stored), key=lambda each: each.program)),
         )
 
     def verify(self) -> tuple[DamagedFile, ...]:
@@ -120,7 +145,7 @@ class Cache:
         return tuple(DamagedFile(name, reason) for name, reason in sorted(found) if reason)
 
     def clear(self) -> int:
-        """Remove all entries and manifests, and nothing else; how many there were."""
+        """Remove all entries, manifests and notes, and nothing else; how many there were."""
         from rosetta_jit.runtime.usage import USAGE
 
         files = self._own_files()
@@ -156,7 +181,12 @@ class Cache:
             self._keep_small(self._memory, len(data))
 
     def _own_files(self) -> list[Stored]:
-        return [file for file in self._store.stored() if file.name.endswith((ENTRY, MANIFEST))]
+        return [file for file in self._store.stored() if file.name.endswith(OWN)]
+
+    def _unkept(self, stored: Iterable[Stored]) -> Iterator[Unkept]:
+        for noted in [self._read(file.name) for file in stored if file.name.endswith(NOTE)]:
+            if noted is not None:
+                yield Unkept(str(noted.header["program"]), tuple(map(str, cast("list[object]", noted.header["reasons"]))))
 
     def _keep_small(self, store: Store, written_bytes: int) -> None:
         from rosetta_jit.runtime.usage import begin_look, end_look, note
@@ -174,7 +204,7 @@ class Cache:
         for file in files:
             if total <= self.max_bytes * 7 // 8:
                 break
-            if file.name.endswith((ENTRY, MANIFEST)):
+            if file.name.endswith(OWN):
                 store.remove(file.name)
                 total -= file.size_bytes
         return total

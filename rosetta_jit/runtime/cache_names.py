@@ -43,7 +43,7 @@ def surroundings() -> str:
         "abi": ABI,
         "package": _package_digest(),
         "llvmlite": llvmlite.__version__,
-        "numba": _numba_version(),
+        "numba": numba_version(),
         "processor": processor(),
         "python": [sys.implementation.cache_tag, getattr(sys, "abiflags", ""), hasattr(sys, "gettotalrefcount")],
     }
@@ -69,7 +69,8 @@ def _package_digest() -> str:
     return sha256("".join(files).encode("utf-8", "surrogatepass")).hexdigest()
 
 
-def _numba_version() -> str:
+@cache
+def numba_version() -> str:
     """The name of numba's metadata folder, because neither numba nor importlib.metadata may be imported at a warm start: both are slow."""
     spec = find_spec("numba")
     if spec is None or spec.origin is None:

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.runtime.function_digest import digest_of
 
 BACKENDS = ["numba", "llvm", "python", "interpreter"]
 FILES = {
@@ -242,31 +241,6 @@ def test_results_of_another_type_are_refused(backend):
     for wrong in (lambda *_: None, lambda *_: "1", lambda *_: True, lambda x, _: x / 0):
         with pytest.raises(rj.DecodeError, match="raised an exception"):
             decoder(UNPACK, backend, f=wrong)(write(x=1.0))
-
-
-def test_what_a_digest_covers():
-    def outer(value, table=(1, 2)):
-        def inner(x):
-            return x * value + table[0] + OFFSET
-
-        return inner
-
-    alike = digest_of(outer(1.0)), digest_of(outer(1.0)), digest_of(numba.njit(outer(1.0)).py_func)
-    assert len(set(alike)) == 1
-    others = {
-        digest_of(each)
-        for each in (outer(2.0), outer(1), outer(1.0, (3, 2)), outer(np.float32(1)), outer(np.arange(2)), outer(np.arange(3)))
-    }
-    assert len({*others, alike[0]}) == 7
-    assert digest_of(numba.njit(fastmath=True)(outer(1.0))) != alike[0]
-    assert digest_of(outer(calibrate)) == digest_of(outer(calibrate))
-    assert digest_of(outer(calibrate)) != digest_of(outer(outer(1.0)))
-    assert digest_of(outer(object())) != digest_of(outer(object()))
-    assert digest_of(outer(recursive)) == digest_of(outer(recursive))
-
-
-def recursive(x):
-    return recursive(x - 1) if x else 0
 
 
 def test_check_needs_no_functions(tmp_path):
