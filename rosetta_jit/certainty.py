@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.cache_names import request_name
-from rosetta_jit.runtime.functions.identity import settle
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -30,6 +28,9 @@ def doubts_of_compiled(called: Iterable[GivenFunction], addressing: Collection[s
     """Why the code of functions cannot be kept that were identified, or are not: they changed meanwhile, or their code has addresses."""
     found: list[str] = []
     for given in called:
+        from rosetta_jit.catalogue import uncertain as words  # most programs call no functions
+        from rosetta_jit.runtime.functions.identity import settle
+
         is_same = settle(given.identity, given.function, given.name)
         if given.name in addressing:
             found.append(words.address_in_code(given.name))
@@ -46,6 +47,8 @@ def note(request: Request, cache: Cache, reasons: tuple[str, ...]) -> None:
     if not reasons:
         cache.drop_note(name)
         return
+    from rosetta_jit.catalogue import uncertain as words
+
     program = f"{request.mapping or request.type} ({request.direction})"
     more = (words.more_reasons(len(reasons) - MAX_REASONS),) if len(reasons) > MAX_REASONS else ()
     cache.put_note(name, program, (*reasons[:MAX_REASONS], *more))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.names import shorten
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -253,11 +254,6 @@ def error(code: str, message: str, span: Span | None, label: str = "", *, notes:
 def warning(code: str, message: str, span: Span | None, label: str = "", *, help_: str = "") -> Diagnostic:
     """The same for what is suspect and not wrong."""
     return Diagnostic("warning", code, message, span, label, (), help_)
-
-
-def shorten(name: str) -> str:
-    """A name of hostile length, cut for a report."""
-    return name if len(name) <= 80 else f"{name[:77]}..."
 
 
 def _listed(names: list[str]) -> str:

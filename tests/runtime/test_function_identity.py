@@ -313,6 +313,12 @@ def test_dispatchers_that_numba_compiled():
     assert digest_of(function) is None  # and again, not for us
 
 
+def test_dispatchers_that_show_another_function():
+    function, variables = fresh(2.0)
+    variables["g"].py_func = fresh(3.0)[1]["g"].py_func
+    assert digest_of(function) is None
+
+
 def test_dispatchers_whose_globals_changed():
     function, variables = fresh(2.0)
     before = identify(function, "f")

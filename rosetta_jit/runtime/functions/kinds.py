@@ -122,11 +122,13 @@ def is_dispatcher(given: object) -> bool:
 
 
 def is_ordinary(dispatcher: Any) -> bool:
-    """Whether numba's usual compiler compiles what the dispatcher calls, for whatever types, and no code comes from a file."""
+    """Whether numba's usual compiler compiles what the dispatcher shows, for whatever types, and no code comes from a file."""
     compiler, caching = sys.modules.get("numba.core.compiler"), sys.modules.get("numba.core.caching")
     if compiler is None or caching is None:
         return False
-    usual = dispatcher._compiler.pipeline_class is compiler.Compiler  # noqa: SLF001 - numba has no other name
+    own = dispatcher._compiler  # noqa: SLF001 - numba has no other name
+    shown = own.py_func is dispatcher.py_func and own.targetoptions == dispatcher.targetoptions and own.locals == dispatcher.locals
+    usual = shown and own.pipeline_class is compiler.Compiler
     return usual and type(dispatcher._cache) is caching.NullCache and dispatcher._can_compile  # noqa: SLF001 - as above
 
 
