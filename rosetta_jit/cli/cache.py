@@ -39,7 +39,7 @@ def _info(*, as_json: bool) -> int:
     del facts["compiled_anew"]
     print("\n".join(f"{name.replace('_', ' ') + ':':<12}{value}" for name, value in facts.items() if value != ""))
     if info.compiled_anew:
-        print("compiled anew whenever they are made, because it cannot be told for certain which functions they call:")
+        print("compiled anew in each process, because it cannot be told for certain which functions they call:")
     for unkept in info.compiled_anew:
         print(f"  {unkept.program}", *unkept.reasons, sep="\n    ")
     return int(bool(info.problem))
