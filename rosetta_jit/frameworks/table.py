@@ -15,9 +15,12 @@ _DDS = {
     "text": "bytes that are no UTF-8 are kept (Fast CDR)",
     "enum": "numbers that the enum does not name are kept (rosbags, Cyclone DDS in Python)",
     "bounds": "more than a bound allows is read and written (rosbags)",
-    "trailing": "up to three bytes may be left over, announced or not (payloads padded by older Fast DDS)",
+    "trailing": "up to three bytes may be left over, announced or not, and whatever they are (rmw_serialize of rmw_fastrtps)",
 }
-_ROS2 = {"wstring": "wide strings have four bytes a unit, and units are counted, both ways (rmw_fastrtps, rmw_cyclonedds)"}
+_ROS2 = {
+    "padding": "zeros up to a multiple of four bytes are written behind a message; they are read anyway (rmw_cyclonedds)",
+    "wstring": "wide strings have four bytes a unit, and units are counted, both ways (rmw_fastrtps, rmw_cyclonedds)",
+}
 _IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (

@@ -188,9 +188,14 @@ def _padding(writer: Writer, where: Where, scalar: Scalar, value: int, order: st
         writer.store(Const(scalar, value), where, order)
 
 
+def distance(writer: Writer, size: int) -> Expr:
+    """How many bytes there are to the next multiple of ``size`` bytes from the origin."""
+    return Binary("and", Binary("sub", writer.origin, writer.position), index(size - 1))
+
+
 def align(writer: Writer, size: int, when: Expr | None = None) -> None:
     """Padding up to a multiple of ``size`` bytes from the origin, always or under a condition."""
-    padding: Expr = Binary("and", Binary("sub", writer.origin, writer.position), index(size - 1))
+    padding = distance(writer, size)
     padding = writer.let("padding", padding if when is None else Select(when, padding, index(0)))
     writer.require(padding, Where())
     if writer.direction == "encode":

@@ -306,11 +306,13 @@ Codec = (
 class Ending:
     """Padding behind a message: the last two bits of its byte number ``told`` say how many bytes.
 
-    It is written up to a multiple of ``align`` bytes from the origin.
+    It is written up to a multiple of ``align`` bytes from the origin. Where these bits say that there is none, zeros up to a multiple of
+    ``untold`` bytes are read nevertheless, and what is written is not told.
     """
 
     told: int
     align: int = 1
+    untold: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,7 +322,7 @@ class Encoding:
     ``attempts`` are what a reader tries, in this order; ``written`` is what a writer writes, None where it would have to guess.
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
     ``origin`` is where alignment counts from, in bytes behind the begin of the message. At its end there is what ``ending`` says, and
-    ``spare`` bytes may be left over.
+    ``spare`` bytes may be left over. Of the leniency ``trailing`` of the encoding, so many could: ``forgivable``, 0 where it has none.
     """
 
     name: str
@@ -331,6 +333,7 @@ class Encoding:
     origin: int = 0
     ending: Ending | None = None
     spare: int = 0
+    forgivable: int = 0
 
 
 def recurses(codec: Codec) -> bool:

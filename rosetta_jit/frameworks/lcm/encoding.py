@@ -40,7 +40,8 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     first = Constant((), fingerprint(struct, schema), "u64", ">")
     root = Seq((first, *writing.fields(struct, ())))
     nested = {each: Seq(writing.fields(_struct(schema, each), ())) for each in sorted(writing.recursive)}
-    return Encoding(name, (root,), root, nested=(nested,) if nested else (), spare=ANY if "trailing" in choices.lenient else 0)
+    spare = ANY if "trailing" in choices.lenient else 0
+    return Encoding(name, (root,), root, nested=(nested,) if nested else (), spare=spare, forgivable=ANY)
 
 
 @dataclass(slots=True)

@@ -61,8 +61,8 @@ IDENTIFIERS = {
 PADDING_OF_PAYLOADS = 3
 OPTIONS = 3
 """The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
-ENDINGS = {"cdr": Ending(OPTIONS), "cdr2": Ending(OPTIONS, align=4)}
-"""XCDR2 is written with the padding that the specification asks for; XCDR1 without any, as ROS 2 has it."""
+ENDINGS = {"cdr": Ending(OPTIONS, untold=4), "cdr2": Ending(OPTIONS, align=4)}
+"""XCDR2 is written with the padding that the specification asks for; XCDR1 as ROS 2 has it, without any or with untold zeros."""
 DUAL_USE = {1: 5, 4: 6, 8: 7}
 """Length codes of sequences whose count is also their length, by the size of their elements."""
 
@@ -83,7 +83,21 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
     origin = 0 if name == "cdr-giop" else HEADER_BYTES
     spare = PADDING_OF_PAYLOADS if "trailing" in choices.lenient else 0
     recursion = tuple(nested) if recursive else ()
-    return Encoding(name, tuple(attempts), attempts[0], nested=recursion, origin=origin, ending=ENDINGS.get(name), spare=spare)
+    return Encoding(
+        name,
+        tuple(attempts),
+        attempts[0],
+        nested=recursion,
+        origin=origin,
+        ending=_ending(name, choices),
+        spare=spare,
+        forgivable=PADDING_OF_PAYLOADS,
+    )
+
+
+def _ending(name: str, choices: Choices) -> Ending | None:
+    ending = ENDINGS.get(name)
+    return replace(ending, align=ending.untold) if ending is not None and "padding" in choices.lenient else ending
 
 
 @dataclass(frozen=True, slots=True)
