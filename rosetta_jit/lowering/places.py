@@ -96,7 +96,7 @@ def _shown_index(step: IndexStep) -> str:
 
 def _joined(parts: list[Field | str]) -> str:
     """A text of fields and of what stands between them."""
-    following = [*parts[1:], None]
+    following = [*parts, None][1:]
     return "".join(part if isinstance(part, str) else _member(part, behind) for part, behind in zip(parts, following, strict=True))
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import describe
+from rosetta_jit.lowering.counters import counter_of
 from rosetta_jit.lowering.places import shown_shape
 from rosetta_jit.lowering.typed import (
     Access,
@@ -41,7 +42,9 @@ from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from rosetta_jit.lowering.typed import Asked, Expr, Place
+    from collections.abc import Sequence
+
+    from rosetta_jit.lowering.typed import Asked, Expr, Place, Step
 
 MAX_SIZE = 1000
 """Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
@@ -171,7 +174,7 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Access(place):
             return _field_value(place)
         case LenOf(place):
-            return atom(f"len({shown_shape(place.steps)})", *_indices(place))
+            return _length(place)
         case Unary("not", operand):
             return atom("not", polynomial_of(operand))
         case Unary(operand=operand):
@@ -186,11 +189,11 @@ def polynomial_of(expr: Expr) -> Polynomial:
         case Told() | HostCall() | ImageCall():
             return _asked(expr)
         case IsText(place, text):
-            return atom(f"{shown_shape(place.steps)} == {text!r}", *_indices(place))
+            return atom(f"{shown_shape(place.steps)} == {text!r}", *_indices(place.steps))
         case Has(place):
-            return atom(f"has {shown_shape(place.steps)}", *_indices(place))
+            return atom(f"has {shown_shape(place.steps)}", *_indices(place.steps))
         case Search(place, _, condition):
-            return atom(f"in {shown_shape(place.steps)}", *_indices(place), polynomial_of(condition))
+            return atom(f"in {shown_shape(place.steps)}", *_indices(place.steps), polynomial_of(condition))
         case Choice() | Listed() | Given():
             return _chosen(expr)
         case Const(value=value):
@@ -244,11 +247,20 @@ def _field_value(place: Place) -> Polynomial:
         case FieldStep(field) if isinstance(field.constant, Literal) and type(field.constant.value) is int:
             return number(field.constant.value)
         case _:
-            return atom(shown_shape(place.steps), *_indices(place))
+            return atom(shown_shape(place.steps), *_indices(place.steps))
 
 
-def _indices(place: Place) -> list[Polynomial]:
-    return [polynomial_of(step.index) for step in place.steps if not isinstance(step, FieldStep)]
+def _length(place: Place) -> Polynomial:
+    """How many elements are at a place; where another field of a message tells that, it is what that field says."""
+    counter = counter_of(place.steps)
+    if place.side != "wire" or counter is None:
+        return atom(f"len({shown_shape(place.steps)})", *_indices(place.steps))
+    around, name = counter
+    return atom(f"{shown_shape(around)}.{name}", *_indices(around))
+
+
+def _indices(steps: Sequence[Step]) -> list[Polynomial]:
+    return [polynomial_of(step.index) for step in steps if not isinstance(step, FieldStep)]
 
 
 def _of(terms: Counter[Monomial]) -> Polynomial:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.lowering import typed
+from rosetta_jit.lowering.counters import counters_of
 from rosetta_jit.lowering.places import field_names, places_in, shown_names, value_inside
 from rosetta_jit.model.types import Optional, Struct, Union
 
@@ -30,8 +31,10 @@ def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: t
 
 
 def unread(rules: tuple[Rule, ...], source: Message) -> list[Names]:
-    """Fields of the source whose values go nowhere."""
-    return untouched({field_names(place) for place in _read(rules)}, source, source.root, ())
+    """Fields of the source whose values go nowhere; one that counts an array goes where its elements go."""
+    places = list(_read(rules))
+    counters = {names for place in places for names in counters_of(place.steps)}
+    return untouched({field_names(place) for place in places} | counters, source, source.root, ())
 
 
 def unset(rules: tuple[Rule, ...], target: Message) -> list[Names]:
