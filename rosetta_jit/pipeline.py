@@ -30,7 +30,7 @@ from rosetta_jit.lowering.writer import TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
+from rosetta_jit.model.types import Ref, Schema, Struct, same_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -290,8 +290,8 @@ def _named_files(request: Request) -> dict[str, str]:
     if "" in files:
         if request.encoding is None and request.framework is None:
             raise _report(request, words.nameless_schema())
-        name = "/".join(name_parts(request.type or "schema")) + _readers(request).suffixes[0]
-        files[name] = files.pop("")
+        text = files.pop("")
+        files[_readers(request).likely[0].file_of(request.type or "schema", text)] = text
     return files
 
 

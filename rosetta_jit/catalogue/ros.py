@@ -120,17 +120,16 @@ def optional_nothing(span: Span) -> Diagnostic:
     return _error("annotation", "there is nothing to be optional", span, "no field follows")
 
 
-def no_section_name(span: Span) -> Diagnostic:
+def no_section_name(span: Span, kinds: Sequence[str]) -> Diagnostic:
     """A line of `=` without the name of what follows."""
-    return _error(
-        "section", "a definition does not say its name", span, "the line below this one must say it", "Write `MSG: package/Name`."
-    )
+    help_ = f"Write {', '.join(f'`{kind}: package/Name`' for kind in kinds[:-1])} or `{kinds[-1]}: package/Name`."
+    return _error("section", "a definition does not say its name", span, "the line below this one must say it", help_)
 
 
-def wrong_section_name(span: Span, text: str) -> Diagnostic:
+def wrong_section_name(span: Span, text: str, kind: str) -> Diagnostic:
     """A name behind `MSG:` that no message has."""
-    message = f"`{_short(text)}` is no qualified name of a message"
-    return _error("section", message, span, "not a name", "Write `MSG: package/Name`.")
+    what = {"MSG": "a message", "SRV": "a service", "ACTION": "an action"}.get(kind, "a file")
+    return _error("section", f"`{_short(text)}` is no qualified name of {what}", span, "not a name", f"Write `{kind}: package/Name`.")
 
 
 def defined_twice(span: Span, name: str, first: Span) -> Diagnostic:

@@ -50,6 +50,14 @@ class Encoder(Protocol):
         ...
 
 
+class FileOf(Protocol):
+    """A function from a text to the name of the file that it would be."""
+
+    def __call__(self, framework: Framework, type_: str, text: str) -> str:
+        """The name of the file of a type."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class Framework:
     """One framework; every implementation as ``module:name``.
@@ -73,6 +81,9 @@ class Framework:
         Encodings whose byte order can be chosen.
     features
         Probes of what its IDLs can describe: see `rosetta_jit.frameworks.features`.
+    texts
+        A function that gives the file that declares a type the name that its text calls for: see `file_of`. Empty where all texts are of
+        one kind.
     """
 
     name: str
@@ -84,6 +95,7 @@ class Framework:
     leniencies: Mapping[str, Mapping[str, str]] = field(default_factory=dict[str, "Mapping[str, str]"])
     byte_orders: tuple[str, ...] = ()
     features: str = ""
+    texts: str = ""
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""
@@ -103,11 +115,21 @@ class Framework:
 
     def files_of(self, parts: tuple[str, ...]) -> Iterator[str]:
         """The files of several types of which one has that name."""
-        for suffix, endings in self.several.items():
-            folders = tuple(each for each in parts[:-1] if each != suffix[1:])
-            for stem in (parts[-1].removesuffix(each) for each in endings if parts[-1].endswith(each)):
-                yield "/".join((*folders, suffix[1:], stem)) + suffix
-                yield "/".join((*folders, stem)) + suffix
+        for suffix in self.several:
+            yield from self.files_of_kind(parts, suffix)
+
+    def files_of_kind(self, parts: tuple[str, ...], suffix: str) -> Iterator[str]:
+        """Those of them with that suffix."""
+        folders = tuple(each for each in parts[:-1] if each != suffix[1:])
+        for stem in (parts[-1].removesuffix(each) for each in self.several[suffix] if parts[-1].endswith(each)):
+            yield "/".join((*folders, suffix[1:], stem)) + suffix
+            yield "/".join((*folders, stem)) + suffix
+
+    def file_of(self, type_: str, text: str) -> str:
+        """The name of the file that a text would be which comes without one, and declares a type."""
+        if self.texts:
+            return cast("FileOf", _found(self.texts))(self, type_, text)
+        return "/".join(name_parts(type_)) + next(iter(self.idl))
 
     def front_end(self, file: str) -> FrontEnd:
         """The front end for a file that it `reads`, imported when it is first called."""

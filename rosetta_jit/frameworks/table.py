@@ -21,6 +21,7 @@ _ROS2 = {
     "padding": "zeros up to a multiple of four bytes are written behind a message; they are read anyway (rmw_cyclonedds)",
     "wstring": "wide strings have four bytes a unit, and units are counted, both ways (rmw_fastrtps, rmw_cyclonedds)",
 }
+_ROS_TEXTS = f"{_HERE}.ros.texts:file_of"
 _IDL = f"{_HERE}.omg.idl:parse"
 
 FRAMEWORKS = (
@@ -41,6 +42,7 @@ FRAMEWORKS = (
     Framework(
         "ros1",
         features=f"{_HERE}.ros1.features:PROBES",
+        texts=_ROS_TEXTS,
         idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros1.idl:parse"),
         several={
             ".srv": ("Request", "Response"),
@@ -71,6 +73,7 @@ FRAMEWORKS = (
     Framework(
         "ros2",
         features=f"{_HERE}.ros2.features:PROBES",
+        texts=_ROS_TEXTS,
         idl=dict.fromkeys((".msg", ".srv", ".action"), f"{_HERE}.ros2.idl:parse") | {".idl": f"{_HERE}.ros2.idl:parse_idl"},
         several={
             ".srv": ("_Request", "_Response", "_Event", ""),

@@ -62,6 +62,8 @@ class Dialect:
         Builtin words that are structs.
     aliases
         Words that stand for a message of a certain package.
+    usual
+        Words that stand for one where the package around has no message of that name.
     line_ends
         Where a line ends, as the peer splits them.
     truths
@@ -92,6 +94,7 @@ class Dialect:
     extended: bool
     structs: Mapping[str, Struct] = field(default_factory=dict[str, "Struct"])
     aliases: Mapping[str, str] = field(default_factory=dict[str, str])
+    usual: Mapping[str, str] = field(default_factory=dict[str, str])
     interfaces: Mapping[str, Interface] = field(default_factory=dict[str, Interface])
     foreign: str = ""
     empty: tuple[Field, ...] = ()

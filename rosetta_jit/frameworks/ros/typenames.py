@@ -56,10 +56,10 @@ def _base(word: str, written: str, section: Section, dialect: Dialect) -> str | 
         return dialect.aliases[written]
     if word in section.local:
         return section.local[word]
-    parts = word.split("/")
-    if len(parts) > 2 or not dialect.messages.allows(parts[-1]) or (len(parts) == 2 and not dialect.packages.allows(parts[0])):
-        return None
-    return dialect.message(parts[0] if len(parts) == 2 else section.package, parts[-1])
+    package, *folders, short = word.split("/") if "/" in word else (section.package, word)
+    folder = folders[0] if len(folders) == 1 else "msg"
+    known = len(folders) < 2 and folder in ("msg", *dialect.interfaces) and (dialect.packages.allows(package) or "/" not in word)
+    return dialect.message(package, short, folder) if known and dialect.messages.allows(short) else None
 
 
 def _may_have_bounds(match: re.Match[str], dialect: Dialect) -> bool:

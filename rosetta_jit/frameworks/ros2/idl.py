@@ -1,4 +1,4 @@
-"""The front end of ROS 2's `.msg`, `.srv` and `.action` files, and of the concatenated messages in an MCAP file, as rosidl reads them.
+"""The front end of ROS 2's `.msg`, `.srv` and `.action` files, and of the concatenated texts in an MCAP file, as rosidl reads them.
 
 https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
 """
@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.omg.idl import parse as parse_declarations
 from rosetta_jit.frameworks.ros import Dialect, Interface, Rule, gathered, schema_of
 from rosetta_jit.frameworks.ros2.adapter import idl_text, with_messages
+from rosetta_jit.frameworks.ros2.concatenated import in_order, is_concatenated
 from rosetta_jit.model.types import Bool, Field, Float, Int, String
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
-    from rosetta_jit.frameworks.ros import Definition
+    from rosetta_jit.frameworks.ros import Gathered
     from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
 
@@ -81,14 +82,15 @@ ROS2 = Dialect(
     dashes=re.compile(r"^---\r?(?:\n|\Z)", re.MULTILINE),
     extended=True,
     foreign=".idl",
+    usual={"Header": "std_msgs/msg/Header"},
     interfaces={"srv": SERVICE, "action": ACTION},
     empty=(Field(DUMMY, SCALARS["uint8"]),),
 )
 
 
-def as_idl(definitions: tuple[Definition, ...], source: Source, load: Load) -> Schema:
-    """All messages as rosidl would write them in `.idl` files, so that those can include others."""
-    texts = {f"{each.name}.idl": idl_text(each, ROS2) for each in definitions}
+def as_idl(found: Gathered, source: Source, load: Load) -> Schema:
+    """All messages as rosidl would write them in `.idl` files, which can include others, and the `.idl` files of the text itself."""
+    texts = {f"{each.name}.idl": idl_text(each, ROS2) for each in found.definitions} | dict(in_order(found.files))
     root = Source(f"{source.name}.idl", "".join(f'#include "{name}"\n' for name in texts))
     return parse_declarations(root, with_messages(load, ROS2, texts))
 
@@ -103,7 +105,8 @@ def parse(source: Source, load: Load) -> Schema:
     Parameters
     ----------
     source
-        The text, named after what it declares: ``sensor_msgs/msg/Imu.msg``, ``sensor_msgs/Imu.msg``, ``std_srvs/srv/SetBool.srv``.
+        The text, named after what it declares: ``sensor_msgs/msg/Imu.msg``, ``sensor_msgs/Imu.msg``, ``std_srvs/srv/SetBool.srv``. It may
+        hold several, each behind a line of `=` and one with its kind and name.
     load
         Finds the files of other messages.
 
@@ -113,15 +116,17 @@ def parse(source: Source, load: Load) -> Schema:
         With everything that is wrong in any of the texts.
     """
     found = gathered(source, load, ROS2)
-    return schema_of(found.definitions, ROS2) if not found.foreign else as_idl(found.definitions, source, load)
+    return as_idl(found, source, load) if found.foreign or found.files else schema_of(found.definitions, ROS2)
 
 
 def parse_idl(source: Source, load: Load) -> Schema:
-    """The same of a `.idl` file, which may include the `.idl` files that rosidl would make of `.msg` files.
+    """The same of a `.idl` file, or of several in one text, which may include the `.idl` files that rosidl would make of `.msg` files.
 
     Raises
     ------
     SchemaError
         With everything that is wrong.
     """
+    if is_concatenated(source.text):
+        return parse(source, load)
     return parse_declarations(source, with_messages(load, ROS2))
