@@ -8,6 +8,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering import leaves
+from rosetta_jit.lowering.absent_members import MOST, MOST_EACH, elements_given, give
 from rosetta_jit.lowering.writer import Writer, block, integer
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block, Local
     from rosetta_jit.lowering.fields import Fields
     from rosetta_jit.lowering.writer import Where
-    from rosetta_jit.wire.codec import Codec, Member, Members
+    from rosetta_jit.wire.codec import Codec, Member, Members, Order, Parameter
 
     Walk = Callable[[Codec, Fields, Writer], None]
 
@@ -40,13 +41,13 @@ def members(codec: Members, fields: Fields, writer: Writer, walk: Walk) -> None:
     writer.advance(4)
     inside = writer.let("inside", writer.position)
     for member in codec.members:
-        if_present(member, fields, writer, lambda member=member: _write_member(codec, member, fields, writer, walk))
+        if_present(member, fields, writer, lambda member=member: _write_member(member, codec.order, fields, writer, walk))
     store_size(writer, begin, inside, where, codec.order)
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """Which members have come, a bit each: each once, and all that are not optional."""
+    """Which members have come, a bit each: each once, and all that are owed."""
 
     writer: Writer
     fields: Fields
@@ -66,11 +67,19 @@ class Seen:
         self.writer.assign(word, Binary("or", word, bit))
 
     def complete(self) -> None:
-        """Behind the last member."""
+        """Behind the last member: what did not come gets its value, if it is neither optional nor owed."""
+        most = MOST_EACH if self.fields.where.indices else MOST
         for number, member in enumerate(self.members):
-            if not member.optional:
-                there = Compare("ne", Binary("and", self.words[number // 64], Const("u64", 1 << number % 64)), Const("u64", 0))
+            if member.optional:
+                continue
+            came = Binary("and", self.words[number // 64], Const("u64", 1 << number % 64))
+            if member.owed or elements_given(member.value) > most:
+                there = Compare("ne", came, Const("u64", 0))
                 self.writer.expect(there, "missing", self.fields.shown(member.path), "a member did not come")
+                continue
+            with self.writer.nested() as absent:
+                give(member.value, self.fields, self.writer)
+            self.writer.emit(If(Compare("eq", came, Const("u64", 0)), block(absent)))
 
 
 # --- reading -----------------------------------------------------------------------------------------------------------------
@@ -84,7 +93,7 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
         writer.position = at
         leaves.align(writer, 4)
         head = writer.let("head", integer(writer.load("u32", where, codec.order)))
-        start, size = _extent(writer, codec, head, where)
+        start, size = _extent(writer, codec.order, head, where)
         writer.require(size, where, at=start)
         behind = writer.let("behind", Binary("add", start, size))
         inside = Binary("and", Compare("le", behind, stop), Compare("gt", behind, at))
@@ -111,14 +120,14 @@ def _read(codec: Members, fields: Fields, writer: Writer, walk: Walk, stop: Expr
     seen.complete()
 
 
-def _extent(writer: Writer, codec: Members, head: Expr, where: Where) -> tuple[Expr, Expr]:
+def _extent(writer: Writer, order: Order, head: Expr, where: Where) -> tuple[Expr, Expr]:
     """Where a member begins, and its size in bytes."""
     code = writer.let("code", Binary("and", Binary("shr", head, index(CODE_SHIFT)), index(7)))
     start, size = writer.var("start", writer.position), writer.var("size", index(8))
     for short in (0, 1, 2):
         writer.assign(size, Select(Compare("eq", code, index(short)), index(1 << short), size))
     with writer.nested() as told:
-        word = writer.let("length", integer(writer.load("u32", where, codec.order)))
+        word = writer.let("length", integer(writer.load("u32", where, order)))
         writer.assign(start, Select(Compare("eq", code, index(OWN_LENGTH)), writer.position, start))
         unit: Expr = index(1)
         for long, factor in UNITS.items():
@@ -150,11 +159,29 @@ def if_present(member: Member, fields: Fields, writer: Writer, write: Callable[[
     writer.position = at
 
 
-def _write_member(codec: Members, member: Member, fields: Fields, writer: Writer, walk: Walk) -> None:
+def member_here(codec: Parameter, fields: Fields, writer: Writer, walk: Walk) -> None:
+    """Read or write a member whose place is known: its id must be what belongs there."""
+    member, where = codec.member, fields.shown(codec.member.path)
+    if writer.direction != "decode":
+        _write_member(member, codec.order, fields, writer, walk)
+        return
+    head = writer.let("head", integer(writer.load("u32", where, codec.order)))
+    right = Compare("eq", Binary("and", head, index(ID_BITS)), index(member.number))
+    writer.expect(right, "tag", where, "another member than the one that belongs here")
+    start, size = _extent(writer, codec.order, head, where)
+    writer.require(size, where, at=start)
+    behind = writer.let("behind", Binary("add", start, size))
+    writer.position = start
+    fields.appear(member.path)
+    walk(member.value, fields, writer)
+    writer.expect(Compare("eq", writer.position, behind), "length", where, "its content is not as long as it says")
+
+
+def _write_member(member: Member, order: Order, fields: Fields, writer: Writer, walk: Walk) -> None:
     where = fields.shown(member.path)
     leaves.align(writer, 4)
     head = member.number | member.length_code << CODE_SHIFT | (MUST_UNDERSTAND if member.must_understand else 0)
-    writer.store(Const("u32", head), where, codec.order)
+    writer.store(Const("u32", head), where, order)
     if member.length_code != OWN_LENGTH:
         walk(member.value, fields, writer)
         return
@@ -163,7 +190,7 @@ def _write_member(codec: Members, member: Member, fields: Fields, writer: Writer
     writer.advance(4)
     inside = writer.let("inside", writer.position)
     walk(member.value, fields, writer)
-    store_size(writer, begin, inside, where, codec.order)
+    store_size(writer, begin, inside, where, order)
 
 
 def store_size(writer: Writer, begin: Expr, inside: Expr, where: Where, order: str) -> None:

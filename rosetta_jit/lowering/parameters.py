@@ -12,7 +12,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Assign, Binary, Compare, Const, If, Local, Select, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, END, index
 from rosetta_jit.lowering import leaves
-from rosetta_jit.lowering.members import Seen, if_present, store_size
+from rosetta_jit.lowering.members import Seen, if_present, member_here, store_size
 from rosetta_jit.lowering.writer import Writer, block, integer
 
 if TYPE_CHECKING:
@@ -33,7 +33,10 @@ NOTHING = -1
 
 
 def parameter(codec: Parameter, fields: Fields, writer: Writer, walk: Walk) -> None:
-    """Read or write an optional member of a plain struct: its place is known, its id must be what belongs there."""
+    """Read or write a member whose place is known, and whose id must be what belongs there; an optional one may have no size."""
+    if codec.second:
+        member_here(codec, fields, writer, walk)
+        return
     member = codec.member
     where = fields.shown(member.path)
     if writer.direction != "decode":
@@ -43,6 +46,8 @@ def parameter(codec: Parameter, fields: Fields, writer: Writer, walk: Walk) -> N
         return
     head = _read_head(writer, where, codec.order)
     writer.expect(Compare("eq", head.number, index(member.number)), "tag", where, "another member than the one that belongs here")
+    if not member.optional:
+        writer.expect(Compare("gt", head.size, index(0)), "length", where, "no such length")
     with writer.nested() as there:
         fields.appear(member.path)
         _read_value(member, head, fields, writer, walk)

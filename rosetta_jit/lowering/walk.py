@@ -265,6 +265,8 @@ def discriminator_path(codec: Codec) -> tuple[str, ...]:
     match codec:
         case Number(path) | Table(path) | Choice(path):
             return path
+        case Parameter(member):
+            return member.path
         case Seq(items):
             return discriminator_path(items[-1])
         case _:

@@ -95,7 +95,8 @@ def settle(codec: Codec, phase: Phase) -> tuple[Codec, Phase]:
             members = tuple(replace(each, value=settle(each.value, Phase(4, 0))[0]) for each in codec.members)
             return replace(codec, members=members), ANYWHERE
         case Parameter(member):
-            return replace(codec, member=replace(member, value=settle(member.value, ORIGIN)[0])), ANYWHERE
+            inside = Phase(4, 0) if codec.second else ORIGIN
+            return replace(codec, member=replace(member, value=settle(member.value, inside)[0])), ANYWHERE
         case Parameters():
             members = tuple(replace(each, value=settle(each.value, ORIGIN)[0]) for each in codec.members)
             return replace(codec, members=members), ANYWHERE

@@ -26,24 +26,26 @@ Order = Literal["<", ">"]
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A fixed-width scalar, stored as it is."""
+    """A fixed-width scalar, stored as it is; ``absent`` where it is in a member of a mutable struct that did not come."""
 
     path: Path
     scalar: str
     order: Order = "<"
+    absent: int | float = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
     """A fixed-width number on the wire that stands for a value of the field: pairs of wire number and value. Others are refused.
 
-    Without a ``scalar`` nothing is on the wire, and the field has the value of the one pair.
+    Without a ``scalar`` nothing is on the wire, and the field has the value of the one pair. ``absent`` as of a `Number`.
     """
 
     path: Path
     scalar: str | None
     pairs: tuple[tuple[int, int], ...]
     order: Order = "<"
+    absent: int | float = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,12 +110,16 @@ class Align:
 
 @dataclass(frozen=True, slots=True)
 class Blob:
-    """Counted bytes of a string or bytes field. ``text`` must be UTF-8; ``terminated`` counts a NUL that is not part of the value."""
+    """Counted bytes of a string or bytes field. ``text`` must be UTF-8; ``terminated`` counts a NUL that is not part of the value.
+
+    ``absent`` as of a `Number`; bytes that it lacks are zero.
+    """
 
     path: Path
     count: Count
     text: bool = False
     terminated: bool = False
+    absent: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +131,8 @@ class Seq:
 class Repeat:
     """Counted elements of an array. Other fields may stand between the count and the elements (``head``), and be counted with them.
 
-    Before the first element, if there is one, there is padding up to a multiple of ``align`` bytes.
+    Before the first element, if there is one, there is padding up to a multiple of ``align`` bytes. ``absent`` as of a `Number`: the units
+    of a text.
     """
 
     path: Path
@@ -134,6 +141,7 @@ class Repeat:
     head: tuple[Codec, ...] = ()
     extra: int = 0
     align: int = 1
+    absent: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +195,10 @@ class Utf16:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member with its id and its length before it; ``length_code`` is how XCDR2 tells that (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2)."""
+    """A member with its id and its length before it; ``length_code`` is how XCDR2 tells that (``LC`` of DDS-XTypes 1.3, 7.4.3.4.2).
+
+    A mutable struct without an ``owed`` one is refused; any other has a value where it does not come.
+    """
 
     number: int
     path: Path
@@ -195,6 +206,7 @@ class Member:
     length_code: int = 4
     optional: bool = False
     must_understand: bool = False
+    owed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,10 +220,15 @@ class Members:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """An optional member as XCDR1 has it: its id, and its length, which is zero where it is absent. Alignment counts from its begin."""
+    """One member at its place, which its id must be: an optional one as XCDR1 has it, or what a mutable union consists of.
+
+    ``second`` says that its id and length are those of XCDR2; else a length of zero says that it is absent, and alignment counts from its
+    begin.
+    """
 
     member: Member
     order: Order = "<"
+    second: bool = False
 
 
 @dataclass(frozen=True, slots=True)

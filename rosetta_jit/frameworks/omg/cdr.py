@@ -63,6 +63,8 @@ OPTIONS = 3
 """The byte of the header whose last two bits say how many bytes of padding are behind the value (DDS-XTypes 1.3, 7.6.3.1.2)."""
 ENDINGS = {"cdr": Ending(OPTIONS, untold=4), "cdr2": Ending(OPTIONS, align=4)}
 """XCDR2 is written with the padding that the specification asks for; XCDR1 as ROS 2 has it, without any or with untold zeros."""
+SENTINEL = 0x7F02
+"""The end of a list of parameters, which must be understood (DDS-XTypes 1.3, 7.4.1.2.1)."""
 DUAL_USE = {1: 5, 4: 6, 8: 7}
 """Length codes of sequences whose count is also their length, by the size of their elements."""
 
@@ -168,26 +170,47 @@ class _Rules:
     def optional(self, field: Field, path: Path, struct: Struct) -> Codec:
         if self.encoding == "cdr-giop":
             raise SchemaError((words.no_optionals(field.span, field.name),))
-        member = self.member(field, struct.fields.index(field), path)
-        if recurses(member.value):
-            raise SchemaError((words.recursive_parameter(field.span, field.name),))
-        return self.aligned(Parameter(member, self.order), 4)
+        return self.aligned(Parameter(self.member(field, struct.fields.index(field), path), self.order), 4)
 
     def mutable(self, struct: Struct, path: Path) -> Codec:
         if self.encoding == "cdr-giop":
             raise SchemaError((words.no_mutables(struct.span, struct.name),))
+        union = next((each for each in struct.fields if isinstance(each.type, Union) and each.type.discriminator), None)
+        if union is not None:
+            return self.mutable_union(union, path, struct)
         members = tuple(self.member(each, number, (*path, each.name)) for number, each in enumerate(struct.fields))
-        recursive = next((each for each, member in zip(struct.fields, members, strict=True) if recurses(member.value)), None)
-        if recursive is not None:
-            raise SchemaError((words.recursive_parameter(recursive.span, recursive.name),))
         kind = Members if self.second else Parameters
         return self.aligned(kind(path, members, self.order), 4)
 
     def member(self, field: Field, position: int, path: Path) -> Member:
         optional = isinstance(field.type, Optional)
         value = self.value(field.type.value if isinstance(field.type, Optional) else field.type, path, field)
+        if recurses(value):
+            raise SchemaError((words.recursive_parameter(field.span, field.name),))
         number = position if field.number is None else field.number
-        return Member(number, path, value, self.length_code(field.type), optional, bool(field.option("must_understand")))
+        must = bool(field.option("must_understand"))
+        owed = must or bool(field.option("key"))  # without these no two types are one (DDS-XTypes 1.3, 7.2.4.4.8)
+        return Member(number, path, value, self.length_code(field.type), optional, must, owed)
+
+    def mutable_union(self, field: Field, path: Path, struct: Struct) -> Codec:
+        """The discriminator as a member with the id 0, then the case that it selects as another (DDS-XTypes 1.3, 7.4.3.5.3)."""
+        union = field.type
+        assert isinstance(union, Union)
+        teller = next(each for each in struct.fields if each.name == union.discriminator)
+        own = (*path, field.name)
+        discriminator = self.placed(replace(self.member(teller, 0, (*path, teller.name)), must_understand=True))
+        cases = tuple(
+            (labels, self.placed(self.member(case, number, (*own, case.name))))
+            for number, (labels, case) in enumerate(zip(union.labels, union.cases, strict=True), 1)
+        )
+        body = Cases(own, discriminator, cases, union.default)
+        if self.second:
+            return self.sized(body, path)
+        return Seq((body, Align(4), Constant((), SENTINEL, "u16", self.order), Constant((), 0, "u16", self.order)))
+
+    def placed(self, member: Member) -> Codec:
+        """A member of a mutable union; its length has a word of its own, as Cyclone DDS writes it."""
+        return self.aligned(Parameter(replace(member, length_code=4, optional=False), self.order, self.second), 4)
 
     def length_code(self, type_: Type) -> int:
         """How the length of a member is told: by the code, by a word of its own, or by its first word."""
@@ -226,18 +249,21 @@ class _Rules:
     def value(self, type_: Type, path: Path, field: Field) -> Codec:
         match type_:
             case Bool():
-                return Number(path, "bool") if "bool" in self.lenient else Table(path, "u8", ((0, 0), (1, 1)))
+                absent = int(field.default is True)
+                return Number(path, "bool", absent=absent) if "bool" in self.lenient else Table(path, "u8", ((0, 0), (1, 1)), absent=absent)
             case Int(16, _, "wchar") if self.encoding == "cdr-giop":
                 return Seq((Constant(path[:0], 2, "u8", kind="count"), Number(path, "u16", ">")))
             case Int() | Float():
                 scalar = scalar_of(type_)
-                return self.aligned(Number(path, scalar, self.order), WIDTH[scalar])
+                absent = field.default if isinstance(field.default, int | float) else 0
+                return self.aligned(Number(path, scalar, self.order, absent), WIDTH[scalar])
             case Enum():
-                return self.enumerator(type_, path)
+                return self.enumerator(type_, path, field)
             case String():
-                return self.string(type_, path)
+                return self.string(type_, path, field)
             case Bytes(_, length, maximum):
-                return Blob(path, Count(None, value=length)) if length is not None else self.counted(Blob(path, self.count(maximum)))
+                blob = Blob(path, Count(None, value=length), absent=field.default if isinstance(field.default, bytes) else b"")
+                return blob if length is not None else self.counted(replace(blob, count=self.count(maximum)))
             case Array():
                 return self.array(type_, path, field)
             case Map(key, value, maximum):
@@ -251,7 +277,7 @@ class _Rules:
                 return Repeat(path, Count(None, value=1), Recursion((), name))
             case Ref(name):
                 declared = self.schema.types[name]
-                return self.enumerator(declared, path) if isinstance(declared, Enum) else self.struct(declared, path)
+                return self.enumerator(declared, path, field) if isinstance(declared, Enum) else self.struct(declared, path)
             case Struct():
                 return self.struct(type_, path)
             case Optional() | Union():
@@ -259,28 +285,35 @@ class _Rules:
             case _:
                 assert_never(type_)
 
-    def enumerator(self, enum: Enum, path: Path) -> Codec:
+    def enumerator(self, enum: Enum, path: Path, field: Field) -> Codec:
         scalar, size = f"i{enum.bits}", enum.bits // 8
+        numbers = dict(enum.values)
+        given = numbers.get(field.default) if isinstance(field.default, str) else field.default
+        absent = given if isinstance(given, int) else next(iter(numbers.values()), 0)
         if "enum" in self.lenient:
-            return self.aligned(Number(path, scalar, self.order), size)
-        numbers = tuple((number, number) for number in sorted({number for _, number in enum.values}))
-        return self.aligned(Table(path, scalar, numbers, self.order), size)
+            return self.aligned(Number(path, scalar, self.order, absent), size)
+        pairs = tuple((number, number) for number in sorted(set(numbers.values())))
+        return self.aligned(Table(path, scalar, pairs, self.order, absent), size)
 
-    def string(self, string: String, path: Path) -> Codec:
+    def string(self, string: String, path: Path, field: Field) -> Codec:
+        default = field.default if isinstance(field.default, str) else ""
         if string.encoding == "utf-16":
-            return self.counted(self.wide_string(string, path))
-        return self.counted(Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True))
+            return self.counted(self.wide_string(string, path, default))
+        data = default.encode("utf-8", "surrogateescape")
+        return self.counted(Blob(path, self.count(string.maximum), text=string.encoding == "utf-8", terminated=True, absent=data))
 
-    def wide_string(self, string: String, path: Path) -> Codec:
+    def wide_string(self, string: String, path: Path, default: str) -> Codec:
         """On DDS its bytes are counted, and there is no mark (DDS-XTypes 1.3, 7.4.1.1.2); what ROS 2 does instead is a leniency."""
         counted = self.count(string.maximum)
         if self.encoding == "cdr-giop":
             return Utf16(path, replace(counted, unit=2))
+        data = default.encode("utf-16-le", "surrogatepass")
+        absent = tuple(int.from_bytes(data[each : each + 2], "little") for each in range(0, len(data), 2))
         unit = Number((), "u16", self.order)
         if "wstring" not in self.lenient:
-            return Repeat(path, replace(counted, unit=2), unit)
+            return Repeat(path, replace(counted, unit=2), unit, absent=absent)
         halves = (unit, Constant((), 0, "u16", self.order))
-        return Repeat(path, counted, Seq(halves if self.order == "<" else halves[::-1]))
+        return Repeat(path, counted, Seq(halves if self.order == "<" else halves[::-1]), absent=absent)
 
     def counted(self, codec: Codec) -> Codec:
         return self.aligned(codec, 4)
@@ -294,7 +327,7 @@ class _Rules:
         return self.sized(plain, path) if headed else plain
 
     def elements(self, array: Array, path: Path, field: Field) -> Codec:
-        inner = array.element
+        inner, field = array.element, replace(field, default=None)  # the default is that of the array
         if isinstance(inner, Array) and inner.fixed is not None and array.fixed is not None:
             item = self.elements(inner, (), field)  # the dimensions of one array
         else:

@@ -62,6 +62,8 @@ LOOSE = [
     ("another order", long(9, 8) + ONE + long(7, 1) + "05000000", {"first": 5, "second": 1.0}),
     ("short", "09000800" + ONE + "07000100" + "05000000", {"first": 5, "second": 1.0}),
     ("one absent", long(7, 1) + "05000000", {"first": 5}),
+    ("one with a default absent", long(9, 8) + ONE, {"first": 0, "second": 1.0}),
+    ("all absent", "", {"first": 0}),
     ("an unknown one", "08000400" + "ffffffff" + long(7, 1) + "05000000", {"first": 5}),
     ("an implementation's own", "07800400" + "ffffffff" + long(7, 1) + "05000000", {"first": 5}),
     ("one to ignore", "037f0400" + "ffffffff" + long(7, 1) + "05000000", {"first": 5}),
@@ -82,7 +84,6 @@ def test_mutable_structs_are_written(backend):
 
 WRONG = [
     ("no end", "Loose", LIST + long(7, 1) + "05000000", "truncated"),
-    ("not there", "Loose", LIST + END, "missing"),
     ("twice", "Loose", LIST + 2 * (long(7, 1) + "05000000") + END, "tag"),
     ("must be understood", "Loose", LIST + "08400400" + "ffffffff" + long(7, 1) + "05000000" + END, "tag"),
     ("must be understood, long", "Loose", LIST + long(8, 4, must=1) + "ffffffff" + long(7, 1) + "05000000" + END, "tag"),
