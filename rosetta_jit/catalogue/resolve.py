@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.mapping import error, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
@@ -233,6 +233,25 @@ def integer_needed(span: Span | None, what: str, found: str) -> Diagnostic:
 def zero_division(span: Span | None) -> Diagnostic:
     """A divisor that is known to be zero."""
     return error("zero-division", "division by zero", span, "this is zero", help_="divide by something else")
+
+
+def rounded(span: Span | None, number: float, single: float) -> Diagnostic:
+    """A constant that becomes another number, as float32 has it."""
+    help_ = f"write `float32({number!r})` to say that it is meant"
+    return warning("rounded", f"no float32 is {number!r}: {single!r} is the nearest", span, "rounded to it", help_=help_)
+
+
+def rounded_by_unit(span: Span | None, found: str, source: str, target: str) -> Diagnostic:
+    """A value that loses digits in the conversion of its unit, though nothing in the text makes it a float32."""
+    message = f"{found} in {source} is rounded to a float32 in {target}"
+    return warning("rounded", message, span, "rounded", help_="write `float32(...)` to say that it is meant")
+
+
+def fraction(span: Span | None, number: int, divisor: int) -> Diagnostic:
+    """A quotient of constants that is no integer, and that nothing says to be rounded."""
+    message = f"{number} / {divisor} is no integer"
+    help_ = f"write `{number}.0 / {divisor}` for the float, or `floor_divide({number}, {divisor})` for the integer below it"
+    return error("fraction", message, span, "both are integers", help_=help_)
 
 
 def shift_range(span: Span | None, bits: int, most: int) -> Diagnostic:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import nodes, places
 from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.conversions import describe
+from rosetta_jit.lowering.conversions import describe, rounded_constant
 from rosetta_jit.lowering.unit_places import unit_at
 from rosetta_jit.lowering.units import TAKES, shown, unit_of
-from rosetta_jit.model.types import Int
+from rosetta_jit.model.types import Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -63,18 +63,35 @@ def _notes(rule: Rule) -> Iterator[Note]:
 
 
 def _conversions(root: object) -> Iterator[Note]:
+    checked = {id(part) for node in nodes(root) if isinstance(node, typed.Nearest) for part in nodes(node.check)}
     for node in nodes(root):
-        match node:
-            case typed.Convert(operand, target, rule) if rule != "widen":
-                yield Note(f"{describe(operand.type)} → {describe(target)}, {HOW[rule]}", rule in LOSSY)
-            case typed.Binary("/", _, _, Int()):
-                yield Note("a quotient of integers, without its fraction", lossy=True)
-            case typed.Binary("%" | ">>" | "&" | "|" as operator):
-                yield Note(f"`{operator}` keeps a part of a value", lossy=True)
-            case typed.Call(function) if function in MAKES_WHOLE:
-                yield Note(f"`{function}` drops what is below one", lossy=True)
-            case _:
-                pass
+        if id(node) not in checked:
+            yield from _conversion(node)
+
+
+def _conversion(node: object) -> Iterator[Note]:
+    match node:
+        case typed.Convert(operand, target, rule) if rule != "widen":
+            yield Note(f"{describe(operand.type)} → {describe(target)}, {HOW[rule]}", rule in LOSSY)
+        case typed.Nearest(operand, type=target):
+            yield Note(f"{describe(operand.type)} → {describe(target)}, the nearest, refused where that does not unpack to the value")
+        case typed.Const() if (single := rounded_constant(node)) is not None:
+            yield Note(f"{node.value!r} → float32, rounded to {single!r}", lossy=True)
+        case typed.Binary("/", _, _, Int()):
+            yield Note("a quotient of integers, without its fraction", lossy=True)
+        case typed.Binary("%" | ">>" | "&" | "|" as operator):
+            yield Note(f"`{operator}` keeps a part of a value", lossy=True)
+        case typed.Binary("+" | "-" | "*" | "/", _, _, Float(bits)) | typed.Call(_, _, Float(bits)) if not _is_choosing(node):
+            yield Note(f"computed in float{bits}, rounded", lossy=bits == 32)
+        case typed.Call(function) if function in MAKES_WHOLE:
+            yield Note(f"`{function}` drops what is below one", lossy=True)
+        case _:
+            pass
+
+
+def _is_choosing(node: object) -> bool:
+    """Whether a function gives one of its arguments, or a whole number, so that nothing is rounded on the way."""
+    return isinstance(node, typed.Call) and node.function in {*MAKES_WHOLE, "abs", "min", "max"}
 
 
 def _changes(change: Change) -> Iterator[Note]:

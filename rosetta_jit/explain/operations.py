@@ -113,7 +113,7 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "array reorder"
         case typed.Rescale() | typed.Call():
             yield "arithmetic"
-        case typed.Convert(rule="exact"):
+        case typed.Convert(rule="exact") | typed.Nearest():
             yield "rejection"
         case typed.Convert(rule=rule) if rule != "widen":
             yield "arithmetic"

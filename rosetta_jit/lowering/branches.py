@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.folding import folded, is_constant
-from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve, subject_of
+from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solved, subject_of
 from rosetta_jit.model.expr import Binary, Call, Choice, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Reject, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, rebuilt
@@ -45,7 +45,7 @@ def _equal(expr: Expr, constant: Expr) -> dict[Field, Expr]:
     if len(fields_in(expr)) != 1 or condition_in(expr):
         return {}
     try:
-        solution = solve(expr, folded(constant))
+        solution = solved(expr, folded(constant))
     except NoInverseError:
         return {}
     return {solution.place: solution.value}

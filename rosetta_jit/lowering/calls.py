@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Literal, cast
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering import conversions
-from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, wrap
+from rosetta_jit.lowering.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single, wrap
 from rosetta_jit.lowering.layouts import ARGUMENTS
 from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS, type_image_call
 from rosetta_jit.lowering.type_number_bytes import NUMBERS_AT, type_byte, type_number_at
@@ -156,7 +156,13 @@ def _rule(expr: model.Call, rules: tuple[ConversionRule, ...], scope: Scope) -> 
 def _converted(value: Expr, target: Type, rule: ConversionRule, expr: model.Call, scope: Scope) -> Expr | None:
     free = convert(value, target)
     if free is not None:
-        return replace(free, span=expr.span)
+        known = in_single(free) if isinstance(free, Const) and is_single(target) else None
+        if known is not None and isinstance(free, Const) and rule == "exact" and known.value != free.value:
+            scope.problems.append(words.constant_range(value.span, repr(free.value), describe(target)))
+            return None
+        found = known or free
+        is_declared = isinstance(found, Const) and isinstance(target, Float)  # so that what the text says holds in arithmetic, too
+        return replace(found, span=expr.span, declared=True) if is_declared else replace(found, span=expr.span)
     match value, target:
         case Const(value=int(number), type=Int()), Int():
             if rule == "exact":
@@ -194,7 +200,7 @@ def _function(expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | N
     for target in targets:
         converted = [_argument(argument, target) for argument in arguments]
         known = [argument for argument in converted if argument is not None]
-        if len(known) == len(arguments) and not _narrows(arguments, target, targets):
+        if len(known) == len(arguments) and (not is_single(target) or any(is_single(argument.type) for argument in arguments)):
             return _folded(expr, known, target)
     wrong = next((argument for argument in arguments if _argument(argument, targets[-1]) is None), arguments[0])
     scope.problems.append(words.operand(wrong.span, expr.function, describe(wrong.type)))
@@ -215,13 +221,10 @@ def _candidates(function: str) -> tuple[Int | Float, ...]:
 
 
 def _argument(value: Expr, target: Int | Float) -> Expr | None:
-    return as_int64(value) if isinstance(target, Int) else convert(value, target)
-
-
-def _narrows(arguments: list[Expr], target: Int | Float, targets: tuple[Int | Float, ...]) -> bool:
-    """Constants alone are computed in float64, whatever narrower type could hold them."""
-    constant = all(isinstance(argument, Const) for argument in arguments)
-    return constant and isinstance(target, Float) and target != targets[-1]
+    """An argument as the type in which a function is computed: in float32 only what is one."""
+    if isinstance(target, Int):
+        return as_int64(value)
+    return as_single(value) if is_single(target) else convert(value, target)
 
 
 def _folded(expr: model.Call, arguments: list[Expr], target: Int | Float) -> Expr:

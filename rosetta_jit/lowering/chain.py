@@ -3,43 +3,29 @@
 An expression of one field is a chain of steps from it. Steps that are affine (`+ - * /` by constants, `radians`, conversions) are followed
 as a slope and an offset, with the rounding of each; bijections of another kind (`^`, `not`, tables) must be met by their own inverses.
 
-For the bound: a step that gives s·x + o and rounds it by at most u·|s·x + o| is off by u·(|x| + |o/s|) in terms of x, if the rest of the
-chain undoes it. The sum over all steps is at most ulp · ulp(max(|x|, floor)), as |v|·2^-p < ulp(v). Higham, Accuracy and Stability of
-Numerical Algorithms, chapter 3.
+For the bound, what each step is off by (`rosetta_jit.lowering.followed`) is added. The sum over all steps is at most
+ulp · ulp(max(|x|, floor)), as |v|·2^-p < ulp(v). Higham, Accuracy and Stability of Numerical Algorithms, chapter 3.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import field, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.conversions import EXACT_BITS, bounds
+from rosetta_jit.lowering.conversions import EXACT_BITS
+from rosetta_jit.lowering.followed import LARGEST, PRECISION, Error, LostError, Value, fraction, rounded, scaled, shifted, turned
 from rosetta_jit.lowering.text_laws import inner_text, rounds_moment, undone, why_lost
-from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, TextCall, Unary
-from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, Nearest, TextCall, Unary
+from rosetta_jit.lowering.wholes import as_whole, is_whole, squeezed
+from rosetta_jit.model.types import Float, Int
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.typed import Expr
     from rosetta_jit.model.types import Type
-
-PRECISION = {32: 24, 64: 53}
-LARGEST = {32: 2.0**128 * (1 - 2.0**-24), 64: math.ldexp(1 - 2.0**-53, 1024)}
-SMALLEST = {32: 2.0**-126, 64: 2.0**-1022}
-"""IEEE 754: bits of precision, the largest finite number, the smallest normal one."""
-
-FAR = 2.0**20
-"""How far from what underflows a value is to be, for that not to count."""
-
-WHOLE = {
-    "round": "it is rounded to a whole number",
-    "truncate": "what is behind the point is dropped",
-    "saturate": "it is rounded to a whole number that fits",
-}
-"""What becomes of a float that is made an integer."""
 
 NANOSECOND = 4.6e6
 """Seconds whose float64, rounded, is off by at most half a nanosecond and what rounding that has added: 0.5000003e-9 · 2^53 and more."""
@@ -71,50 +57,6 @@ Outcome = Rounding | Lost | None
 UNSHOWN = Lost("it cannot be shown that its value comes back")
 
 
-class _LostError(Exception):
-    """A step that loses something; never leaves this module."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Error:
-    """A rounding: at most ``unit`` · (|x| + ``floor``), where a floor that ``is_tiny`` is that of what underflows, times `FAR`."""
-
-    unit: float
-    floor: float
-    is_tiny: bool
-
-    def times(self) -> float:
-        """How often the unit counts for values of at least the floor."""
-        return self.unit * (1 + 1 / FAR if self.is_tiny else 2)
-
-
-@dataclass(frozen=True, slots=True)
-class _Value:
-    """slope · x + Σ offsets[k] · (pi/180)^k, and what was rounded on the way."""
-
-    type: Type
-    source: Type
-    slope: Fraction = Fraction(1)
-    turns: int = 0
-    offsets: tuple[tuple[int, Fraction], ...] = ()
-    errors: tuple[_Error, ...] = ()
-    bits: OneOf[32, 64] = 64
-    limit: float = math.inf
-    opened: tuple[tuple[Expr, _Value], ...] = field(default=(), repr=False)
-
-    @property
-    def size(self) -> float:
-        return abs(float(self.slope)) * (math.pi / 180) ** self.turns
-
-    @property
-    def offset(self) -> float:
-        return abs(sum(float(value) * (math.pi / 180) ** turns for turns, value in self.offsets))
-
-    @property
-    def is_itself(self) -> bool:
-        return self.slope == 1 and not self.turns and not self.offsets and not self.errors
-
-
 def come_back(expr: Expr, goal: Expr) -> Outcome:
     """What is left of the field ``goal`` in an expression of it."""
     steps: list[Expr] = []
@@ -125,11 +67,11 @@ def come_back(expr: Expr, goal: Expr) -> Outcome:
             return UNSHOWN if why is None else Lost(why)
         steps.append(expr)
         expr = inner
-    value = _Value(goal.type, goal.type)
+    value = Value(goal.type, goal.type)
     try:
         for step in reversed(steps):
             value = _done(step, value)
-    except _LostError as error:
+    except LostError as error:
         return Lost(str(error))
     except OverflowError:
         return UNSHOWN
@@ -155,7 +97,7 @@ def table_of(choice: Choice) -> tuple[Expr, dict[object, object], Const | None] 
 def _inner(expr: Expr) -> Expr | None:
     """The part of a step that the field is in."""
     match expr:
-        case Convert(operand) | Unary(_, operand):
+        case Convert(operand) | Unary(_, operand) | Nearest(operand):
             return operand
         case Binary(_, left, Const()):
             return left
@@ -172,20 +114,22 @@ def _inner(expr: Expr) -> Expr | None:
             return None
 
 
-def _done(step: Expr, value: _Value) -> _Value:
+def _done(step: Expr, value: Value) -> Value:
     match step:
         case Convert(_, type_, rule):
             return _converted(value, type_, rule)
+        case Nearest(type=type_):
+            return as_whole(replace(value, type=type_), "round")
         case Unary("-"):
-            return replace(_scaled(value, Fraction(-1)), type=step.type)
+            return replace(scaled(value, Fraction(-1)), type=step.type)
         case Unary() | Choice() | TextCall():
             return _bijection(step, value)
         case Call("radians"):
-            return _rounded(replace(_turned(value, 1), type=step.type), 2)
+            return rounded(replace(turned(value, 1), type=step.type), 2)
         case Call("degrees"):
-            return _rounded(replace(_turned(value, -1), type=step.type), 2)
+            return rounded(replace(turned(value, -1), type=step.type), 2)
         case Call("divide", (_, Const(divisor))) if divisor:
-            return _rounded(replace(_scaled(value, 1 / _fraction(divisor)), type=step.type), 1)
+            return rounded(replace(scaled(value, 1 / fraction(divisor)), type=step.type), 1)
         case Call("floor_divide", (_, Const(divisor))) if divisor:
             return _divided(step, value, divisor)
         case Binary("^"):
@@ -193,127 +137,63 @@ def _done(step: Expr, value: _Value) -> _Value:
         case Binary():
             return _computed(step, replace(value, type=step.type))
         case _:
-            raise _LostError(UNSHOWN.why)
+            raise LostError(UNSHOWN.why)
 
 
-def _computed(step: Binary, value: _Value) -> _Value:
+def _computed(step: Binary, value: Value) -> Value:
     match step:
         case Binary("+", left, right):
             constant = right if isinstance(right, Const) else left
-            return _rounded(_shifted(value, _fraction(_number(constant))), 1)
+            return rounded(shifted(value, fraction(_number(constant))), 1)
         case Binary("-", _, Const(number)):
-            return _rounded(_shifted(value, -_fraction(number)), 1)
+            return rounded(shifted(value, -fraction(number)), 1)
         case Binary("-", Const(number), _):
-            return _rounded(_shifted(_scaled(value, Fraction(-1)), _fraction(number)), 1)
+            return rounded(shifted(scaled(value, Fraction(-1)), fraction(number)), 1)
         case Binary("*", left, right):
             constant = right if isinstance(right, Const) else left
-            return _rounded(_scaled(value, _fraction(_number(constant))), 1)
+            return rounded(scaled(value, fraction(_number(constant))), 1)
         case Binary("/", _, Const(number)) if number:
             return _divided(step, value, number)
         case _:
-            raise _LostError(f"`{step.operator}` gives the same for several values")
+            raise LostError(f"`{step.operator}` gives the same for several values")
 
 
-def _divided(step: Binary | Call, value: _Value, divisor: object) -> _Value:
-    divided = _scaled(value, 1 / _fraction(divisor))
-    if isinstance(step.type, Int) and not _is_whole(divided):
-        raise _LostError(f"`{step.operator if isinstance(step, Binary) else step.function}` drops remainders")
-    return _rounded(divided, 1)
+def _divided(step: Binary | Call, value: Value, divisor: object) -> Value:
+    divided = scaled(value, 1 / fraction(divisor))
+    if isinstance(step.type, Int) and not is_whole(divided):
+        raise LostError(f"`{step.operator if isinstance(step, Binary) else step.function}` drops remainders")
+    return rounded(divided, 1)
 
 
 def _number(expr: Expr) -> object:
     return expr.value if isinstance(expr, Const) else None
 
 
-def _fraction(number: object) -> Fraction:
-    if isinstance(number, bool) or not isinstance(number, int | float) or not math.isfinite(number):
-        raise _LostError(UNSHOWN.why)
-    return Fraction(number)
-
-
-def _scaled(value: _Value, factor: Fraction) -> _Value:
-    if not factor:
-        raise _LostError("it is multiplied by 0")
-    return replace(value, slope=value.slope * factor, offsets=tuple((turns, offset * factor) for turns, offset in value.offsets))
-
-
-def _turned(value: _Value, turns: int) -> _Value:
-    return replace(value, turns=value.turns + turns, offsets=tuple((each + turns, offset) for each, offset in value.offsets))
-
-
-def _shifted(value: _Value, by: Fraction) -> _Value:
-    offsets = dict(value.offsets)
-    offsets[0] = offsets.get(0, Fraction(0)) + by
-    return replace(value, offsets=tuple((turns, offset) for turns, offset in sorted(offsets.items()) if offset))
-
-
-def _rounded(value: _Value, times: int) -> _Value:
-    """After an operation of floats, which rounds so many times; integers are exact, or refused."""
-    if not isinstance(value.type, Float):
-        return value
-    bits = value.type.bits
-    floor = (value.offset or SMALLEST[bits] * FAR) / value.size
-    error = _Error(times * 2.0 ** -PRECISION[bits], floor, is_tiny=not value.offsets)
-    limit = min(value.limit, (LARGEST[bits] / 2 - value.offset) / value.size)
-    return replace(value, errors=(*value.errors, error), bits=32 if bits == 32 else value.bits, limit=limit)
-
-
 # --- conversions -------------------------------------------------------------------------------------------------------
 
 
-def _converted(value: _Value, target: Type, rule: str) -> _Value:
+def _converted(value: Value, target: Type, rule: str) -> Value:
     converted = replace(value, type=target)
     match value.type, target:
         case _, Float() if rule == "exact":
             return converted
         case Float(bits), Float(other):
-            return converted if other >= bits else _rounded(converted, 1)
+            return converted if other >= bits else rounded(converted, 1)
         case Int(bits), Float(other):
             came = value.is_itself and isinstance(value.source, Float) and value.source.bits <= other
-            return converted if came or bits <= EXACT_BITS[other] else _rounded(converted, 1)
+            return converted if came or bits <= EXACT_BITS[other] else rounded(converted, 1)
         case Float(), Int():
-            return _whole(converted, rule)
+            return as_whole(converted, rule)
         case Int(), Int() if rule in {"saturate", "wrap"}:
-            return _squeezed(value, converted, rule)
+            return squeezed(value, converted, rule)
         case _:
             return converted
-
-
-def _whole(value: _Value, rule: str) -> _Value:
-    """A float as an integer."""
-    if not isinstance(value.source, Int):
-        if rule == "exact":
-            return value
-        raise _LostError(WHOLE[rule])
-    largest = float(1 << value.source.bits)
-    off = sum(error.unit * (largest + error.floor) for error in value.errors) * value.size
-    if not value.errors:
-        return value
-    if off < 0.25 and rule in {"round", "exact", "saturate"} and _is_whole(value):
-        return replace(value, errors=())
-    raise _LostError("large integers are rounded to a float")
-
-
-def _squeezed(before: _Value, after: _Value, rule: str) -> _Value:
-    """An integer made to fit: nothing is lost where it fits anyway."""
-    if isinstance(before.source, Int) and isinstance(after.type, Int) and before.slope == 1 and not before.offsets:
-        low, high = bounds(before.source)
-        least, most = bounds(after.type)
-        if least <= low and high <= most:
-            return after
-    raise _LostError("values that do not fit are saturated" if rule == "saturate" else "values that do not fit are wrapped")
-
-
-def _is_whole(value: _Value) -> bool:
-    """Whether integers stay integers."""
-    numbers = (value.slope, *(offset for _, offset in value.offsets))
-    return isinstance(value.source, Int | Bool | Enum) and not value.turns and all(number.denominator == 1 for number in numbers)
 
 
 # --- bijections --------------------------------------------------------------------------------------------------------
 
 
-def _bijection(step: Expr, value: _Value) -> _Value:
+def _bijection(step: Expr, value: Value) -> Value:
     """Met by its inverse, a step leaves what was before it."""
     if value.opened and value.is_itself:
         opening, before = value.opened[-1]
@@ -323,14 +203,14 @@ def _bijection(step: Expr, value: _Value) -> _Value:
     if isinstance(step, Choice):
         found = table_of(step)
         if found is None:
-            raise _LostError(UNSHOWN.why)
-    return _Value(step.type, step.type, opened=(*value.opened, (step, value)))
+            raise LostError(UNSHOWN.why)
+    return Value(step.type, step.type, opened=(*value.opened, (step, value)))
 
 
-def _timed(value: _Value) -> _Value:
+def _timed(value: Value) -> Value:
     """A float64 of seconds that is rounded to nanoseconds and put together again: off by at most half of one, and one rounding more."""
     floor = (value.offset + NANOSECOND) / value.size
-    return replace(value, errors=(*value.errors, _Error(2.0**-53, floor, is_tiny=False)))
+    return replace(value, errors=(*value.errors, Error(2.0**-53, floor, is_tiny=False)))
 
 
 def _undoes(step: Expr, opening: Expr) -> bool:
@@ -344,7 +224,7 @@ def _undoes(step: Expr, opening: Expr) -> bool:
         case TextCall(), TextCall():
             found = undone(step, opening)
             if isinstance(found, str):
-                raise _LostError(found)
+                raise LostError(found)
             return found
         case _:
             return False
@@ -363,9 +243,9 @@ def _tables_undo(step: Choice, opening: Choice) -> bool:
         rest = back[2].value if back[2] is not None else None
         found = back[1].get(value, rest)
         if found != key:
-            raise _LostError(f"{_shown(key)} comes back as {_shown(found)}" if found is not None else f"{_shown(key)} does not come back")
+            raise LostError(f"{_shown(key)} comes back as {_shown(found)}" if found is not None else f"{_shown(key)} does not come back")
     if there[2] is not None:
-        raise _LostError(f"all values without an entry of the table become {_shown(there[2].value)}")
+        raise LostError(f"all values without an entry of the table become {_shown(there[2].value)}")
     return True
 
 
@@ -377,7 +257,7 @@ def _shown(value: object) -> str:
 # --- the whole ---------------------------------------------------------------------------------------------------------
 
 
-def _outcome(value: _Value) -> Outcome:
+def _outcome(value: Value) -> Outcome:
     off, left = abs(float(value.slope) - 1.0) if not value.turns else 1.0, value.offset
     if off > 2.0**-40 or (left and left > 2.0**-40 * max((error.floor for error in value.errors), default=0.0)):
         return Lost("it comes back as another value")

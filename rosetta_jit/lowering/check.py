@@ -25,6 +25,7 @@ from rosetta_jit.lowering.other_lengths import other_lengths
 from rosetta_jit.lowering.others import read_others
 from rosetta_jit.lowering.reads import left_out
 from rosetta_jit.lowering.resolve import Resolved, resolve
+from rosetta_jit.lowering.rounding import rounded
 from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
@@ -148,7 +149,7 @@ def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
     for block, (source, read_at), (target, set_at) in ((resolved.unpack, wire, holder), (resolved.pack, holder, wire)):
         if block is not None and block.rules:
             warnings += left_out(block.rules, source, target, (read_at, set_at))
-            warnings += other_lengths(block.rules)
+            warnings += [*other_lengths(block.rules), *rounded(block.rules)]
     return warnings
 
 

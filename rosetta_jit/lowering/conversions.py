@@ -74,6 +74,35 @@ def widens(source: Type, target: Type) -> bool:
             return False
 
 
+def is_single(type_: Type) -> bool:
+    """Whether a type is float32, however its IDL calls it."""
+    return isinstance(type_, Float) and type_.bits == 32
+
+
+def in_single(value: Const) -> Const | None:
+    """A number as the nearest float32; None where that is beyond the greatest one."""
+    number = float(value.value)
+    if not _fits_float32(number):
+        return None
+    return replace(value, value=struct.unpack("<f", struct.pack("<f", number))[0], type=Float(32))
+
+
+def as_single(value: Expr) -> Expr | None:
+    """A float32 as it is, and a constant that is equal to one; None of all else, which meets a float32 as float64."""
+    if is_single(value.type) or not isinstance(value, Const) or value.declared or not isinstance(value.type, Int | Float):
+        return value if is_single(value.type) else None
+    known = in_single(value)
+    return known if known is not None and known.value == value.value else None
+
+
+def rounded_constant(value: Const) -> float | None:
+    """The float32 that a constant becomes where none is equal to it; None of all other constants."""
+    if not isinstance(value.value, float) or not is_single(value.type):
+        return None
+    known = in_single(value)
+    return None if known is None or known.value == value.value else float(known.value)
+
+
 def holds(type_: Int, value: int) -> bool:
     """Whether an integer type has this value."""
     low, high = bounds(type_)

@@ -1,7 +1,7 @@
 """Types of expressions: model expression → typed expression, every conversion made explicit.
 
-Integers are computed in int64, where `/` and `%` truncate; floats in the wider of the two operands. What cannot be typed
-is reported and gives None; whoever asked stops there, so that one mistake makes one report.
+Integers are computed in int64, where `/` and `%` truncate; two float32 in float32, and all else in float64. What
+cannot be typed is reported and gives None; whoever asked stops there, so that one mistake makes one report.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.lowering.absent import length_there, text_there
 from rosetta_jit.lowering.calls import type_call
-from rosetta_jit.lowering.conversions import FLOAT64, as_int64, convert, describe, holds
+from rosetta_jit.lowering.conversions import FLOAT64, as_int64, as_single, convert, describe, holds, in_single, is_single
 from rosetta_jit.lowering.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.lowering.functions import type_host_call
-from rosetta_jit.lowering.held import type_held
+from rosetta_jit.lowering.held import type_held, type_nearest
 from rosetta_jit.lowering.inverse_texts import for_comparison, for_type
 from rosetta_jit.lowering.listed import compared_text, type_listed
 from rosetta_jit.lowering.scope import Broken, Sought, resolve_path
@@ -72,8 +72,8 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
             return type_listed(expr, scope, type_expr)
-        case model.Held():
-            return type_held(expr, scope, type_expr, type_index)
+        case model.Held() | model.Nearest():
+            return type_held(expr, scope, type_expr, type_index) if isinstance(expr, model.Held) else type_nearest(expr, scope, type_expr)
         case _:
             assert_never(expr)
 
@@ -101,9 +101,10 @@ def _literal(expr: model.Literal) -> Const:
         case bool():
             return Const(expr.value, Bool(), expr.span)
         case int():
-            return Const(expr.value, Int(64, signed=holds(INT64, expr.value)), expr.span)
+            return Const(expr.value, Int(64, signed=holds(INT64, expr.value)), expr.span, declared=expr.type is not None)
         case float():
-            return Const(expr.value, FLOAT64, expr.span)
+            is_float32 = expr.type is not None and is_single(expr.type)
+            return Const(expr.value, Float(32) if is_float32 else FLOAT64, expr.span, declared=expr.type is not None)
         case str():
             return Const(expr.value, String(), expr.span)
 
@@ -111,6 +112,8 @@ def _literal(expr: model.Literal) -> Const:
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
         return Local(expr.name + scope.suffix, INT64, expr.span)
+    if expr.name == model.NEAREST and scope.nearest is not None:
+        return Local(expr.name, scope.nearest, expr.span)
     if expr.name in CONSTANTS:
         return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
     if expr.name in scope.constants:
@@ -168,7 +171,7 @@ def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
     if operand is None:
         return None
     if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
-        return _constant(-operand.value, expr.span, scope)
+        return _folded(expr, operand, operand, -operand.value, scope)
     number = _computable(operand, "-", scope)
     wide = as_int64(number) if number is not None and isinstance(number.type, Int) else number
     return None if wide is None else Unary("-", wide, wide.type, expr.span)
@@ -187,9 +190,14 @@ def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
         scope.problems.append(words.shift_range(right.span, right.value, MOST_BITS))
         return None
     match left, right:
-        case Const(value=int() | float() as x, type=Int() | Float()), Const(value=int() | float() as y, type=Int() | Float()):
+        case Const(value=int(x), type=Int()), Const(value=int(y), type=Int()) if expr.operator == "/" and x % y:
+            scope.problems.append(words.fraction(expr.span, x, y))
+            return None
+        case Const(value=int() | float() as x, type=Int() | Float()) as one, Const(
+            value=int() | float() as y, type=Int() | Float()
+        ) as other:
             if expr.operator not in model.BITWISE:
-                return _constant(_compute(expr.operator, x, y), expr.span, scope)
+                return _folded(expr, one, other, _compute(expr.operator, x, y), scope)
         case _:
             pass
     if expr.operator in SUMS and not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
@@ -214,24 +222,22 @@ def _computable(operand: Expr, operator: str, scope: Scope) -> Expr | None:
 
 
 def unify(left: Expr, right: Expr, scope: Scope) -> tuple[Expr, Expr] | None:
-    """Two numbers as one type: int64, or the narrowest float that holds both."""
+    """Two numbers as the type in which they are computed: int64 of two integers, float32 of two float32, else float64.
+
+    A constant is a float32 beside one, where one is equal to it.
+    """
     if isinstance(left.type, Int) and isinstance(right.type, Int):
         pair = as_int64(left), as_int64(right)
         return None if pair[0] is None or pair[1] is None else (pair[0], pair[1])
-    for target in (Float(32), FLOAT64):
-        if Float(64) in {_bare(left), _bare(right)} and target.bits == 32:
-            continue
-        pair = convert(left, target), convert(right, target)
-        if pair[0] is not None and pair[1] is not None:
-            return pair[0], pair[1]
-    wide = left if convert(left, FLOAT64) is None else right
+    singles = as_single(left), as_single(right)
+    if singles[0] is not None and singles[1] is not None:
+        return singles[0], singles[1]
+    pair = convert(left, FLOAT64), convert(right, FLOAT64)
+    if pair[0] is not None and pair[1] is not None:
+        return pair[0], pair[1]
+    wide = left if pair[0] is None else right
     scope.problems.append(words.needs_word(wide.span, describe(wide.type), "float64", "`float64(...)` rounds to the nearest"))
     return None
-
-
-def _bare(value: Expr) -> Float | None:
-    """The float type of a value without the IDL's word; None for integers and constants, which adapt."""
-    return Float(value.type.bits) if isinstance(value.type, Float) and not isinstance(value, Const) else None
 
 
 def _compute(operator: model.Operator, x: float, y: float) -> float | None:
@@ -246,18 +252,22 @@ def _compute(operator: model.Operator, x: float, y: float) -> float | None:
             case "*":
                 return x * y
             case "/":
-                return _quotient(int(x), int(y)) if whole else x / y
+                return int(x) // int(y) if whole else x / y
             case "%":
-                return int(x) - int(y) * _quotient(int(x), int(y)) if whole else math.fmod(x, y)
+                return abs(int(x)) % abs(int(y)) * (-1 if x < 0 else 1) if whole else math.fmod(x, y)
             case _:
                 raise AssertionError(operator)
     except OverflowError:
         return None
 
 
-def _quotient(x: int, y: int) -> int:
-    """Integer division that truncates toward zero."""
-    return abs(x) // abs(y) * (1 if (x < 0) == (y < 0) else -1)
+def _folded(expr: model.Unary | model.Binary, left: Const, right: Const, value: float | None, scope: Scope) -> Const | None:
+    """What two constants come to, of the type that they have in arithmetic."""
+    made = _constant(value, expr.span, scope)
+    if made is None:
+        return None
+    made = replace(made, declared=left.declared or right.declared)
+    return in_single(made) if is_single(left.type) and is_single(right.type) else made
 
 
 def _constant(value: float | None, span: Span | None, scope: Scope) -> Const | None:

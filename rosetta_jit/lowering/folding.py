@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rosetta_jit.model.expr import Binary, Choice, Expr, Held, Literal, Name, Unary
+from rosetta_jit.model.expr import Binary, Choice, Expr, Held, Literal, Name, Nearest, Unary
 from rosetta_jit.model.walk import rebuilt
 
 TRUE, FALSE = Literal(value=True), Literal(value=False)
@@ -19,8 +19,10 @@ def folded(expr: Expr) -> Expr:
     match expr:
         case Unary("not", Literal(bool(value))):
             return Literal(not value, expr.span)
-        case Unary("-", Literal(int() | float() as value)) if not isinstance(value, bool):
-            return Literal(-value, expr.span)
+        case Unary("-", Literal(int() | float() as value) as number) if not isinstance(value, bool):
+            return replace(number, value=-value, span=expr.span)
+        case Nearest(Literal(int()) as known):
+            return known
         case Binary("and" | "or" as operator, left, right):
             return _logic(operator == "and", left, right, expr)
         case Binary("+" | "-" | "*" | "<" | "<=" | ">" | ">=", Literal(int() as a), Literal(int() as b)):

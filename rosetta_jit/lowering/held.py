@@ -1,4 +1,4 @@
-"""Values as a place holds them: what a rule that is written for both directions knows of the other side before it is written."""
+"""What rules that are written for both directions know of the other side before it is written: values as a place holds them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from rosetta_jit.lowering.calls import rules_between
 from rosetta_jit.lowering.conversions import convert
 from rosetta_jit.lowering.inverse_texts import for_type
 from rosetta_jit.lowering.scope import Broken, resolve_path
-from rosetta_jit.lowering.typed import Convert
+from rosetta_jit.lowering.typed import Binary, Convert, Local, Nearest
 from rosetta_jit.lowering.units import in_unit
+from rosetta_jit.model.expr import NEAREST, Held, Path
+from rosetta_jit.model.expr import Binary as Operation
+from rosetta_jit.model.types import Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,6 +37,16 @@ def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: T
         return None
     measured = in_unit(value, place, scope)
     return None if measured is None else fitted(measured, place.type)
+
+
+def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+    """The typed form of a solved relation: of a float for an integer the nearest integer, if the relation gives its place back."""
+    value = type_expr(expr.value, scope)
+    if value is None or not isinstance(expr.type, Int) or not isinstance(value.type, Float):
+        return value
+    again = Held(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
+    check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, nearest=expr.type))
+    return Nearest(value, Local(NEAREST, expr.type), check, expr.type, expr.span) if isinstance(check, Binary) else None
 
 
 def fitted(value: Expr, target: Type) -> Expr:

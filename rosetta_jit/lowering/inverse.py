@@ -32,8 +32,8 @@ from rosetta_jit.lowering.inverse_texts import opposite, without
 from rosetta_jit.lowering.layouts import ARGUMENTS, put_back
 from rosetta_jit.lowering.type_images import IMAGE_FUNCTIONS
 from rosetta_jit.lowering.type_texts import NAMES
-from rosetta_jit.model.expr import Binary, Call, Choice, Len, Path, Unary
-from rosetta_jit.model.walk import rebuilt, side_of
+from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.walk import parts, rebuilt, side_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -72,6 +72,48 @@ def solve(expr: Expr, value: Expr) -> Solution:
     while not isinstance(expr, Path | Len):
         expr, value = _step(expr, value)
     return Solution(expr, value)
+
+
+def solved(expr: Expr, value: Expr) -> Solution:
+    """The same; an integer field that was computed with floats is the nearest one, if the expression gives the value of it again.
+
+    Raises
+    ------
+    NoInverseError
+    """
+    found = solve(expr, value)
+    if isinstance(found.place, Len) or not _may_round(expr):
+        return found
+    return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, span=expr.span))
+
+
+def _may_round(expr: Expr) -> bool:
+    """Whether an expression of an integer may be computed in floats, so that what turns it round is off by their rounding."""
+    found = [part for part in parts(expr) if _is_rounding(part)]
+    of_integers = all(isinstance(part, Binary) and part.operator != "/" and _has_whole(part) for part in found)
+    is_float = any(isinstance(part, Call) and part.function in ("float32", "float64") for part in parts(expr))
+    return bool(found) and (is_float or not of_integers)
+
+
+def _is_rounding(part: Expr) -> bool:
+    """Whether an operation rounds, if it is one of floats."""
+    match part:
+        case Binary(operator="+" | "-" | "*" | "/"):
+            return True
+        case Call(function):
+            return function in OPPOSITE or function == "divide"
+        case _:
+            return False
+
+
+def _has_whole(part: Binary) -> bool:
+    """Whether an operand is an integer, or a text, that is written down: then the other one is, too."""
+    return any(isinstance(each, Literal) and isinstance(each.value, int | str) for each in (folded(part.left), folded(part.right)))
+
+
+def _named(expr: Expr, field: Field) -> Expr:
+    """An expression with the name of the integer that is sought in place of the field."""
+    return Name(NEAREST, expr.span) if expr == field else rebuilt(expr, lambda part: _named(part, field))
 
 
 def fields_in(expr: Expr) -> list[Field]:

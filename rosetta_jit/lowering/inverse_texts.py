@@ -22,8 +22,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.expr import Binary, Call, Literal, Unary
-from rosetta_jit.model.types import Array, Bytes, Float
+from rosetta_jit.model.expr import Binary, Call, Choice, Literal, Nearest, Unary
+from rosetta_jit.model.types import Array, Bytes, Float, Int
 from rosetta_jit.model.walk import rebuilt
 
 if TYPE_CHECKING:
@@ -98,6 +98,12 @@ def as_written(expr: Expr) -> Expr:
 def for_type(expr: Expr, type_: Type) -> Expr:
     """An expression that was turned round, for a field of a type."""
     match expr:
+        case Nearest(value):
+            inner = for_type(value, type_)
+            return replace(expr, value=inner, type=type_) if isinstance(type_, Int) else inner
+        case Choice(cases, otherwise):
+            pairs = tuple((condition, for_type(chosen, type_)) for condition, chosen in cases)
+            return replace(expr, cases=pairs, otherwise=None if otherwise is None else for_type(otherwise, type_))
         case Unary(_, operand):
             return replace(expr, operand=for_type(operand, type_))
         case Binary(_, left, right):

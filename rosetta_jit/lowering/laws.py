@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.lowering.matching import reads_other, same_number
+from rosetta_jit.lowering.matching import given_back, reads_other, same_number
 from rosetta_jit.lowering.places import field_names, shown_names, shown_place
 from rosetta_jit.lowering.reads import untouched
 from rosetta_jit.lowering.rebuild import normal
@@ -150,7 +150,7 @@ def _outcome(result: Result, trip: Trip) -> Outcome:
     trip.ranges = result.ranges
     place, value = result.place, result.value
     goal = LenOf(place) if result.is_length else Access(place, place.type)
-    value = None if value is None else trip.towards(value, goal)
+    value = None if value is None else given_back(trip.towards(value, goal))
     match value:
         case None:
             return Lost("it is left out: 0, empty or absent")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solve
+from rosetta_jit.lowering.inverse import NoInverseError, condition_in, fields_in, solved
 from rosetta_jit.lowering.inverse_parts import part, plain, put_together, rest_of, taken_part
 from rosetta_jit.lowering.knowledge import Beside, Knowledge, Loop, Loops, key_of
 from rosetta_jit.lowering.related import equal_lengths
@@ -143,7 +143,7 @@ def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Exp
     if fields_of(condition, "wire") or any(condition_in(part) for part in parts[1:]):
         return False
     try:
-        found = [solve(part, place) for part in parts[1:] if len(fields_in(part)) == 1]
+        found = [solved(part, place) for part in parts[1:] if len(fields_in(part)) == 1]
     except NoInverseError:
         return False
     if len(found) != 2 or found[0].place != found[1].place:
@@ -154,7 +154,7 @@ def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Exp
 
 def _set_by(known: Knowledge, rule: Relation, expr: Expr, place: Expr, loops: Loops) -> bool:
     try:
-        solution = solve(expr, place)
+        solution = solved(expr, place)
     except NoInverseError:
         return False
     _say(known, rule, solution.place, solution.value, loops)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.lowering.polynomial import TooComplexError, polynomial_of
 from rosetta_jit.lowering.quotients import NOTHING, are_same, mentions, only_atom
-from rosetta_jit.lowering.rebuild import rebuilt
-from rosetta_jit.lowering.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local
+from rosetta_jit.lowering.rebuild import rebuilt, renamed
+from rosetta_jit.lowering.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
@@ -98,6 +98,23 @@ def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
         return are_same(polynomial_of(value), polynomial_of(goal), facts)
     except TooComplexError:
         return False
+
+
+def given_back(value: Expr) -> Expr:
+    """A value as what it was packed from, where it is what the check of a `Nearest` within it says that unpacking gives."""
+    found: list[Nearest] = []
+    _find_nearest(value, found)
+    for each in found:
+        if renamed(each.check.right, {each.variable.name: each}) == value:
+            return each.check.left
+    return value
+
+
+def _find_nearest(expr: Expr, found: list[Nearest]) -> None:
+    if isinstance(expr, Nearest):
+        found.append(expr)
+        return
+    rebuilt(expr, lambda part: _find_nearest(part, found) or part)
 
 
 def same_place(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:

@@ -81,7 +81,7 @@ def _scalar(value: object, type_: Type, name: str) -> Expr | str:
         case _, bool():
             return f"{name} is needed, not {_shown(value)}"
         case Int(), int():
-            return Literal(value) if holds(type_, value) else f"{_shown(value)} does not fit {name}"
+            return Literal(value, type=type_) if holds(type_, value) else f"{_shown(value)} does not fit {name}"
         case Float(), int() | float():
             return _float(value, type_, name)
         case String(), str():
@@ -99,7 +99,7 @@ def _float(value: float, type_: Float, name: str) -> Expr | str:
         return f"{_shown(value)} does not fit {name}"
     if isinstance(value, int) and rounded != value:
         return f"{_shown(value)} does not fit {name}"
-    return Literal(float(rounded)) if math.isfinite(rounded) else f"{_shown(value)} is not finite"
+    return Literal(float(rounded), type=type_) if math.isfinite(rounded) else f"{_shown(value)} is not finite"
 
 
 def _text(value: str) -> Expr | str:

@@ -33,6 +33,7 @@ from rosetta_jit.lowering.typed import (
     LenOf,
     Listed,
     Local,
+    Nearest,
     Search,
     TextCall,
     Told,
@@ -181,9 +182,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return subtract(number(0), polynomial_of(operand))
         case Binary(operator, left, right):
             return _arithmetic(operator, polynomial_of(left), polynomial_of(right))
-        case Convert(operand, _, rule):
-            keeps = isinstance(operand.type, Int) and rule in {"widen", "exact"}
-            return polynomial_of(operand) if keeps else atom(f"{describe(expr.type)} {rule}", polynomial_of(operand))
+        case Convert() | Nearest():
+            return _converted(expr)
         case Call(function, arguments) | TextCall(function, arguments) | BytesCall(function, arguments):
             return atom(function, *map(polynomial_of, arguments))
         case Told() | HostCall() | ImageCall():
@@ -200,6 +200,12 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(repr(value))
         case _:
             assert_never(expr)
+
+
+def _converted(value: Convert | Nearest) -> Polynomial:
+    rule = value.rule if isinstance(value, Convert) else "solved"
+    keeps = isinstance(value.operand.type, Int) and rule in {"widen", "exact"}
+    return polynomial_of(value.operand) if keeps else atom(f"{describe(value.type)} {rule}", polynomial_of(value.operand))
 
 
 def _asked(asked: Asked) -> Polynomial:

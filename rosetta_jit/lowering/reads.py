@@ -111,7 +111,7 @@ def _in(value: Expr) -> Iterator[Place]:
             yield from _in_indices(place)
         case typed.Unary(_, operand) | typed.Convert(operand) | typed.Search(_, _, operand):
             yield from _in(operand)
-        case typed.Binary(_, left, right):
+        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
             yield from _in(left)
             yield from _in(right)
         case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.TextCall(_, arguments) | typed.BytesCall(_, arguments):

@@ -24,6 +24,7 @@ from rosetta_jit.lowering.typed import (
     LenOf,
     Listed,
     Local,
+    Nearest,
     Reject,
     Search,
     SetLength,
@@ -50,6 +51,8 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, operand=change(operand))
         case Binary(left=left, right=right):
             return replace(expr, left=change(left), right=change(right))
+        case Nearest(operand=operand, check=check):
+            return replace(expr, operand=change(operand), check=replace(check, left=change(check.left), right=change(check.right)))
         case Call(arguments=arguments) | BytesCall(arguments=arguments) | TextCall(arguments=arguments):
             return replace(expr, arguments=tuple(map(change, arguments)))
         case Choice(cases, otherwise):

@@ -34,6 +34,7 @@ from rosetta_jit.lowering.typed import (
     IndexStep,
     LenOf,
     Local,
+    Nearest,
     Reject,
     SetLength,
     TextCall,
@@ -349,7 +350,7 @@ class Trip:
                 return _logic(operator == "and", left, right, expr)
             case Choice(cases, otherwise):
                 return _decided(cases, otherwise, expr)
-            case Convert() | Unary() | Binary():
+            case Convert() | Unary() | Binary() | Nearest():
                 return _itself(expr) or simplified(expr, self.truth) or expr
             case Call() | TextCall():
                 return simplified(expr, self.truth) or expr
@@ -409,8 +410,10 @@ def _itself(expr: Expr) -> Expr | None:
 
 def _operand(expr: Expr) -> Expr | None:
     match expr:
-        case Convert(operand) | Unary(_, operand) | Binary(_, operand, Const()) | Binary(_, Const(), operand):
+        case Convert(operand) | Unary(_, operand) | Nearest(operand) | Binary(_, operand, Const()) | Binary(_, Const(), operand):
             return operand
+        case Call("radians" | "degrees", (argument,)) | Call("divide", (argument, Const())):
+            return argument
         case _:
             return None
 

@@ -44,7 +44,7 @@ class Scope:
     """The names that are known at one point of a mapping; where problems go, and the enums that were named.
 
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
-    ``suffix`` tells its loop variables from those around.
+    ``suffix`` tells its loop variables from those around. ``nearest`` is the type of `model.expr.NEAREST`, where that is one.
     """
 
     messages: Mapping[Side, Message]
@@ -58,6 +58,7 @@ class Scope:
     others: Others
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
+    nearest: Int | None = None
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))

@@ -181,7 +181,7 @@ def _array_places(node: object) -> list[typed.Place]:
             return _indexed(place)
         case typed.Unary(_, operand) | typed.Convert(operand, _, _) | typed.Search(_, _, operand):
             return _array_places(operand)
-        case typed.Binary(_, left, right):
+        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
             return _array_places((left, right))
         case typed.ImageCall(_, image, _, _, numbers):
             looked_at = [image.place] if isinstance(image, typed.Access) else []

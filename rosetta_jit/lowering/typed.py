@@ -1,6 +1,6 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Search | Choice | Listed | Given | Calls
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Choice | Listed | Given | Calls
     each with `type`
     Calls = Call | TextCall | BytesCall | Asked
     Asked = Told | HostCall | ImageCall
@@ -110,11 +110,15 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Const:
-    """A number, text or enum value that is known; floats that a float32 cannot hold exactly are rounded when used."""
+    """A number, text or enum value that is known; floats that a float32 cannot hold exactly are rounded when used.
+
+    A parameter's is ``declared``: in arithmetic it is of the type that the mapping says, whatever else may hold it.
+    """
 
     value: bool | int | float | str
     type: Type
     span: Span | None = field(default=None, compare=False, repr=False)
+    declared: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +176,20 @@ class Convert:
     operand: Expr
     type: Type
     rule: ConversionRule
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """The integer nearest to a float, for which ``check`` must hold, where ``variable`` is it: else an error of kind ``range``.
+
+    It packs what a relation computes in floats from an integer: ``check`` says that the relation gives the same of it.
+    """
+
+    operand: Expr
+    variable: Local
+    check: Binary
+    type: Int
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -316,7 +334,7 @@ Asked = Told | HostCall | ImageCall
 """What the kernel's host answers."""
 
 Calls = Call | TextCall | BytesCall | Asked
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | IsText | Has | Search | Choice | Listed | Given | Calls
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Choice | Listed | Given | Calls
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.lowering.conversions import FLOAT64, convert, describe
 from rosetta_jit.lowering.dimensions import conversion
-from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, Unary
+from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, Nearest, Unary
 from rosetta_jit.lowering.unit_places import Mixed, pairs_in_step, unit_at
 from rosetta_jit.model.types import Enum, Float, Int
 
@@ -89,7 +89,7 @@ def unit_of(value: Expr) -> Unit:
     match value:
         case Access(place):
             return unit_at(place)
-        case Unary(_, operand) | Convert(operand):
+        case Unary(_, operand) | Convert(operand) | Nearest(operand):
             return unit_of(operand)
         case Binary("+" | "-" | "%", left, right):
             return unit_of(left) or unit_of(right)

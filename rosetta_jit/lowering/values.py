@@ -33,6 +33,7 @@ from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, differ, 
 from rosetta_jit.lowering.asked import asked
 from rosetta_jit.lowering.conversions import describe
 from rosetta_jit.lowering.fields import converted, scalar_name
+from rosetta_jit.lowering.nearest import nearest
 from rosetta_jit.lowering.number_bytes import of_bytes
 from rosetta_jit.lowering.rebuild import rebuilt
 from rosetta_jit.lowering.rejections import reject_with
@@ -120,6 +121,8 @@ class Values:
                     if rule == "exact" and is_named(type_, number)
                     else self.convert(number, scalar_type(type_), rule)
                 )
+            case typed.Nearest():
+                return nearest(value, self)
             case typed.Call(function, arguments, _):
                 return self.call(function, [self.of(argument) for argument in arguments])
             case typed.IsText(place, text):

@@ -1,6 +1,6 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
-    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held
+    Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held | Nearest
     Path = Root, Step*         Step = Member(name) | Index(Expr) | Keyed(name*, Expr) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
@@ -30,10 +30,11 @@ BITWISE: frozenset[str] = frozenset(("&", "|", "^", "<<", ">>"))
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A number, a string, or a boolean written in the text."""
+    """A number, a string, or a boolean written in the text, or the value of a parameter, whose ``type`` it has."""
 
     value: bool | int | float | str
     span: Span | None = field(default=None, compare=False, repr=False)
+    type: Type | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,4 +194,23 @@ class Held:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held
+NEAREST = "(nearest)"
+"""The name of the integer that a `Nearest` gives, within what computes its relation again. No mapping can write it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """A relation solved for a field that may be an integer: then the one nearest to ``value``, if the relation gives its place back.
+
+    ``again`` is the relation's expression with `NEAREST` for the field, ``place`` what that must be. ``type`` is the field's, where it is
+    known. No text has one; rules for both directions are made of them.
+    """
+
+    value: Expr
+    again: Expr
+    place: Expr
+    type: Type | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held | Nearest

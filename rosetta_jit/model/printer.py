@@ -83,7 +83,7 @@ def show_expr(value: expr.Expr) -> str:
             return f"{show_expr(items)}[{show_expr(at)}]"
         case expr.Given(name, arguments):
             return name + "".join(f"[{show_expr(argument)}]" for argument in arguments)
-        case expr.Held(_, held):
+        case expr.Held(value=held) | expr.Nearest(held):
             return show_expr(held)
         case _:
             assert_never(value)

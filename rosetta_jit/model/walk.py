@@ -23,6 +23,7 @@ from rosetta_jit.model.expr import (
     Literal,
     Member,
     Name,
+    Nearest,
     Path,
     Slice,
     Unary,
@@ -65,6 +66,8 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, arguments=tuple(map(change, arguments)))
         case Held(place, value):
             return replace(expr, place=with_indices(place, change), value=change(value))
+        case Nearest(value, again, origin):
+            return replace(expr, value=change(value), again=change(again), place=change(origin))
         case _:
             assert_never(expr)
 

@@ -37,8 +37,8 @@ LEAVES = {
 }
 """The fields that expressions read; and `xs`, float64[], `ks`, int32[], `q`, int16[4]."""
 
-NARROW = {"int8", "uint8", "int16", "uint16"}
-"""Integers that a float32 holds."""
+NARROW = {"int8", "uint8", "int16", "uint16", "int32", "uint32"}
+"""Integers that meet floats without a word: a float64 holds them."""
 
 
 class Refused(Exception):  # noqa: N818  not an error of ours
@@ -132,12 +132,19 @@ def as_float(value: float, type_: str, rule: str = "nearest") -> np.floating:
     return made
 
 
+def together(types: tuple[str, str], constants: tuple[float | None, float | None] = (None, None)) -> str:
+    """The type in which two numbers are computed: float32 of two float32, and of a constant that is equal to one; else float64 or int64."""
+    if all(type_ in INTEGERS for type_ in types):
+        return "int64"
+    singles = [
+        type_ == "float32" or (constant is not None and float(np.float32(constant)) == constant)
+        for type_, constant in zip(types, constants, strict=True)
+    ]
+    return "float32" if all(singles) else "float64"
+
+
 def exactly(value: float) -> int | float:
     return int(value) if float(value).is_integer() else float(value)
-
-
-def same_number(text: str) -> float:
-    return float(text)
 
 
 def element(values: list[Value], index: int, name: str = "") -> Value:

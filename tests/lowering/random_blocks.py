@@ -38,7 +38,18 @@ class Relations(Scalars):
     def part(self) -> Part:
         self.made += 1
         name = f"f{self.made}"
-        forms = [self.integers, self.integers, self.floats, self.flags, self.texts, self.text_numbers, self.kinds, self.told, self.checked]
+        forms = [
+            self.integers,
+            self.integers,
+            self.floats,
+            self.measured,
+            self.flags,
+            self.texts,
+            self.text_numbers,
+            self.kinds,
+            self.told,
+            self.checked,
+        ]
         forms += [partial(form, self) for form in self.more]
         if not self.is_counted:
             forms += [self.arrays, self.lists, self.structs, *(partial(form, self) for form in self.more_arrays)]

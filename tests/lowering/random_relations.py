@@ -13,6 +13,7 @@ import numpy as np
 
 from tests.lowering.meaning import (
     INTEGERS,
+    NARROW,
     TEXTS,
     Refused,
     Value,
@@ -22,6 +23,7 @@ from tests.lowering.meaning import (
     fits,
     quotient,
     spelled,
+    together,
     wrapped,
     written,
 )
@@ -87,6 +89,23 @@ def chosen(
     return {name: value for name, kind in kinds.items() if (value := some(rng, kind, count)) is not None}
 
 
+FLOAT_STEPS: list[tuple[str, Callable[[Any, Any], Any]]] = [
+    ("({} + {})", lambda x, c: x + c),
+    ("({1} - {0})", lambda x, c: c - x),
+    ("({} * {})", lambda x, c: x * c),
+    ("({} / {})", lambda x, c: x / c),
+    ("(-{})", lambda x, _: -x),
+]
+
+
+def computed(function: Callable[[Any, Any], Any], value: np.floating, number: float) -> np.floating:
+    """A step of a float and a constant, of the type in which it is computed."""
+    if function is FLOAT_STEPS[-1][1]:  # which has no constant
+        return -value
+    kind = np.float32 if together((value.dtype.name, "constant"), (None, number)) == "float32" else np.float64
+    return function(kind(value), kind(number))
+
+
 @dataclass
 class Scalars:
     """Makes relations of single fields between the types of two wires; ``constant`` names a constant of the holder's enum."""
@@ -144,26 +163,45 @@ class Scalars:
         for _ in range(self.rng.randrange(3)):
             number = self.rng.choice([0.5, 3.0, 0.1, 273.15, -2.5, 1000.0])
             shown = str(number) if number > 0 else f"({number})"
-            template, function = self.rng.choice(
-                [
-                    ("({} + {})", lambda x, c: x + c),
-                    ("({1} - {0})", lambda x, c: c - x),
-                    ("({} * {})", lambda x, c: x * c),
-                    ("({} / {})", lambda x, c: x / c),
-                    ("(-{})", lambda x, _: -x),
-                ]
-            )
+            template, function = self.rng.choice(FLOAT_STEPS)
             text = template.format(text, shown)
             functions.append((function, number))
 
         def unpack(fields: Values) -> Values:
             value = np.float32(fields[name]) if origin == "float32" else np.float64(fields[name])
             for function, number in functions:
-                value = function(value, type(value)(number))
+                value = computed(function, value, number)
             return {name: np.float32(value) if aim == "float32" else np.float64(value)}
 
-        is_narrowed = (origin, aim) == ("float64", "float32")
+        is_narrowed = aim == "float32" and (origin == "float64" or functions)
         return Part({name: Scalar(origin)}, {name: Scalar(aim)}, f".{name} <-> {f'float32({text})' if is_narrowed else text}\n", unpack)
+
+    def measured(self, name: str) -> Part:
+        """An integer that is a float on the other side."""
+        origin, aim = self.rng.choice([each for each in self.wire.scalars if each in NARROW]), self.rng.choice(["float32", "float64"])
+        text, functions = f".{name}", []
+        for step in range(self.rng.randrange(1, 4)):
+            number = self.rng.choice([0.01, 255.0, 0.1, 1e7, 1000.0, -2.5, 0.5, 273.15, 1234567890.0])
+            template, function = self.rng.choice(FLOAT_STEPS if step else FLOAT_STEPS[:-1])  # what is negated first is an int64
+            text = template.format(text, f"({number!r})")
+            functions.append((function, number))
+        if self.rng.random() < 0.2:
+            turn, factor = self.rng.choice([("radians", np.pi / 180), ("degrees", 180 / np.pi)])
+            text = f"{turn}({text})"
+            functions.append((lambda x, c: x * c, factor))
+        if aim == "float32":
+            text = f"float32({text})"
+
+        def unpack(fields: Values) -> Values:
+            value = np.float64(fields[name])
+            for function, number in functions:
+                value = function(value, np.float64(number))
+            return {name: np.float32(value) if aim == "float32" else value}
+
+        def made(rng: random.Random) -> Values:
+            return unpack({name: some(rng, Scalar(origin))})
+
+        return Part({name: Scalar(origin)}, {name: Scalar(aim)}, f".{name} <-> {text}\n", unpack, holders=made)
 
     def flags(self, name: str) -> Part:
         """Bools and integers."""

@@ -35,6 +35,7 @@ from tests.lowering.meaning import (
     lowered,
     raised,
     spelled,
+    together,
     whole,
     wrapped,
     written,
@@ -43,6 +44,10 @@ from tests.lowering.meaning import (
 if TYPE_CHECKING:
     import random
     from collections.abc import Callable
+
+
+CONSTANTS = [0.1, 2.5, -0.5, 3.0, 1234567890.0, 1e-7, 255.0, 2, -3]
+"""Constants that stand beside numbers of other types; of some there is a float32."""
 
 
 @dataclass
@@ -266,20 +271,8 @@ class Maker:
             case 5 if type_ == "float64":
                 operand = self.live("float64", depth - 1)
                 return Made(f"sqrt({operand.text})", type_, lambda fields: np.sqrt(operand.evaluate(fields)))
-            case 6:
-                narrow = self.narrow()
-                if narrow is not None:
-                    left, operator = self.live(type_, depth - 1), self.rng.choice("+-*/")
-                    kind = np.float32 if type_ == "float32" else np.float64
-                    _, function = FLOAT_OPERATIONS[operator]
-                    if left.is_known:
-                        left = field("f32" if type_ == "float32" else "f64", type_)
-                    return Made(
-                        f"({left.text} {operator} {narrow.text})",
-                        type_,
-                        lambda fields: function(left.evaluate(fields), kind(narrow.evaluate(fields))),
-                    )
-                return self.leaf(type_)
+            case 6 | 7:
+                return self.mixed(type_, depth)
             case _:
                 template, function = FLOAT_OPERATIONS[self.rng.choice(list(FLOAT_OPERATIONS))]
                 left, right = self.pair(type_, depth - 1)
@@ -291,12 +284,49 @@ class Maker:
                     lambda fields: both(function, left.evaluate(fields), right.evaluate(fields)),
                 )
 
-    def narrow(self) -> Made | None:
+    def mixed(self, type_: str, depth: int) -> Made:
+        """Arithmetic of numbers of two types, or of one and a constant of the text."""
+        template, function = FLOAT_OPERATIONS[self.rng.choice(list(FLOAT_OPERATIONS))]
+        kind = np.float32 if type_ == "float32" else np.float64
+        for _ in range(20):
+            left, constant = self.operand(depth), self.rng.choice([None, *CONSTANTS])
+            right = self.operand(depth) if constant is None else constant_of(constant)
+            if self.rng.random() < 0.5 and not (template.endswith(("/ {})", "% {})")) or template.startswith("divide")):
+                pair, constants = (right, left), (constant, None)
+            else:
+                pair, constants = (left, right), (None, constant)
+            of_integers = constant is not None and isinstance(constant, int) and left.type in INTEGERS
+            if not of_integers and together((pair[0].type, pair[1].type), constants) == type_:
+                return Made(
+                    template.format(pair[0].text, pair[1].text),
+                    type_,
+                    lambda fields, pair=pair: both(function, kind(pair[0].evaluate(fields)), kind(pair[1].evaluate(fields))),
+                )
+        return self.leaf(type_)
+
+    def operand(self, depth: int) -> Made:
+        """A float, or a field of an integer that a float64 holds."""
         names = [name for name, kind in self.leaves.items() if kind in NARROW]
-        return field(name := self.rng.choice(names), self.leaves[name]) if names else None
+        if names and self.rng.random() < 0.5:
+            return field(name := self.rng.choice(names), self.leaves[name])
+        return self.live(self.rng.choice(["float32", "float64"]), depth - 1)
+
+    def mixed_comparison(self, depth: int) -> Made:
+        """Numbers of two types compared exactly, and an integer with a float constant."""
+        left, operator = self.operand(depth), self.rng.choice(list(COMPARED))
+        right, constant = self.operand(depth), self.rng.choice(CONSTANTS)
+        if left.type in INTEGERS and self.rng.random() < 0.5:
+            right = constant_of(constant)
+        return Made(
+            f"({left.text} {operator} {right.text})",
+            "bool",
+            lambda fields: bool(COMPARED[operator](np.float64(left.evaluate(fields)), np.float64(right.evaluate(fields)))),
+        )
 
     def condition(self, depth: int) -> Made:
-        match self.rng.randrange(8):
+        match self.rng.randrange(9):
+            case 8:
+                return self.mixed_comparison(depth)
             case 0:
                 operand = self.live("bool", depth - 1)
                 return Made(f"(not {operand.text})", "bool", lambda fields: not operand.evaluate(fields))
@@ -368,6 +398,11 @@ class Maker:
                 return Made(f"behind({text.text}, {quoted(begin)})", "string", lambda fields: behind(text.evaluate(fields), begin))
             case _:
                 return self.leaf("string")
+
+
+def constant_of(number: float) -> Made:
+    """A number that the text writes down; a negative one in brackets."""
+    return Made(f"{number!r}" if number >= 0 else f"({number!r})", "constant", lambda _: number)
 
 
 def both(function: Callable[[Any, Any], Any], left: Value, right: Value) -> Value:

@@ -74,7 +74,9 @@ def test_radians_are_computed_in_float64() -> None:
     ("text", "number"),
     [
         ("2 * 3 + 4", 10),
-        ("7 / -2", -3),
+        ("8 / -2", -4),
+        ("7 * -2 / 7", -2),
+        ("floor_divide(7, -2)", -4),
         ("-7 % 3", -1),
         ("align(10, 8)", 16),
         ("align(10, 0)", 10),

@@ -188,13 +188,15 @@ def floats(draw: st.DrawFn) -> Part:
     for template, function in draw(st.lists(st.sampled_from(STEPS), max_size=3).filter(is_measured)):
         constant = draw(CONSTANTS)
         text = template.format(text, repr(constant))
-        functions.append((function, constant))
+        functions.append((function, constant if "{1}" in template else 0.0))
 
     def unpack(value: Any) -> Any:
         number: Any = np.float32(value) if wire_single else np.float64(value)
         with np.errstate(all="ignore"):
             for function, constant in functions:
-                number = function(number, type(number)(constant))
+                is_single = isinstance(number, np.float32) and np.float32(constant) == np.float64(constant)
+                kind = np.float32 if is_single else np.float64
+                number = function(kind(number), kind(constant))
             return float(np.float32(number)) if holder_single else float(number)
 
     rule = f".NAME <-> float32({text})" if holder_single else f".NAME <-> {text}"
