@@ -243,7 +243,7 @@ def rounded(span: Span | None, number: float, single: float) -> Diagnostic:
 
 def rounded_by_unit(span: Span | None, found: str, source: str, target: str) -> Diagnostic:
     """A value that loses digits in the conversion of its unit, though nothing in the text makes it a float32."""
-    message = f"{found} in {source} is rounded to a float32 in {target}"
+    message = f"a {found} in {source} becomes a float32 in {target}, rounded"
     return warning("rounded", message, span, "rounded", help_="write `float32(...)` to say that it is meant")
 
 

@@ -81,17 +81,12 @@ def _conversion(node: object) -> Iterator[Note]:
             yield Note("a quotient of integers, without its fraction", lossy=True)
         case typed.Binary("%" | ">>" | "&" | "|" as operator):
             yield Note(f"`{operator}` keeps a part of a value", lossy=True)
-        case typed.Binary("+" | "-" | "*" | "/", _, _, Float(bits)) | typed.Call(_, _, Float(bits)) if not _is_choosing(node):
-            yield Note(f"computed in float{bits}, rounded", lossy=bits == 32)
+        case typed.Binary("+" | "-" | "*" | "/", _, _, Float(32)) | typed.Call("divide", _, Float(32)):
+            yield Note("computed in float32, rounded", lossy=True)
         case typed.Call(function) if function in MAKES_WHOLE:
             yield Note(f"`{function}` drops what is below one", lossy=True)
         case _:
             pass
-
-
-def _is_choosing(node: object) -> bool:
-    """Whether a function gives one of its arguments, or a whole number, so that nothing is rounded on the way."""
-    return isinstance(node, typed.Call) and node.function in {*MAKES_WHOLE, "abs", "min", "max"}
 
 
 def _changes(change: Change) -> Iterator[Note]:

@@ -121,7 +121,7 @@ def _when(condition: Expr, body: list[Tree], context: Context, span: Span) -> Wh
 
 def _reject(tree: Tree, context: Context, span: Span) -> Rule:
     text, pieces = _template(tree, context)
-    rejection = Reject(text, span, pieces)
+    rejection = Reject(text, span, pieces, written=True)
     for condition in _trees(tree):
         return When(_expr(condition, context), (rejection,), (), span)
     return rejection

@@ -19,7 +19,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import EXACT_BITS
 from rosetta_jit.lowering.followed import LARGEST, PRECISION, Error, LostError, Value, fraction, rounded, scaled, shifted, turned
 from rosetta_jit.lowering.text_laws import inner_text, rounds_moment, undone, why_lost
-from rosetta_jit.lowering.typed import Binary, Call, Choice, Const, Convert, Nearest, TextCall, Unary
+from rosetta_jit.lowering.typed import Access, Binary, Call, Choice, Const, Convert, LenOf, Nearest, TextCall, Unary
 from rosetta_jit.lowering.wholes import as_whole, is_whole, squeezed
 from rosetta_jit.model.types import Float, Int
 
@@ -76,6 +76,16 @@ def come_back(expr: Expr, goal: Expr) -> Outcome:
     except OverflowError:
         return UNSHOWN
     return UNSHOWN if value.opened else _outcome(value)
+
+
+def field_in(expr: Expr) -> Access | LenOf | None:
+    """The field that an expression is a chain of steps from."""
+    while not isinstance(expr, Access | LenOf):
+        inner = _inner(expr)
+        if inner is None:
+            return None
+        expr = inner
+    return expr
 
 
 def table_of(choice: Choice) -> tuple[Expr, dict[object, object], Const | None] | None:

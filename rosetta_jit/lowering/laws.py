@@ -1,6 +1,7 @@
 """What a mapping in both directions guarantees: which values come back as they were, which are rounded, and what is lost.
 
-Whatever cannot be shown counts as lost. The laws are about messages and holders that neither direction refuses.
+Whatever cannot be shown counts as lost. The laws are about messages and holders that the first direction does not refuse; what the second
+one may refuse is lost.
 """
 
 from __future__ import annotations
@@ -133,6 +134,8 @@ def _outcomes(way: Way, second: tuple[Rule, ...], message: Message) -> Iterator[
     if trip.refused:
         yield "", Lost("some messages are rejected on the way back"), None
         return
+    for refusal in trip.refusals:
+        yield "", Lost(f'some are refused on the way back: "{refusal.text}"'), refusal.span
     for result in results:
         yield _shown(result), _outcome(result, trip), result.span
     touched = {field_names(result.place) for result in results}
@@ -146,7 +149,13 @@ def _shown(result: Result) -> str:
 
 
 def _outcome(result: Result, trip: Trip) -> Outcome:
-    """What becomes of one field."""
+    """What becomes of one field, which is lost where its rule may refuse it."""
+    found = _value_outcome(result, trip)
+    is_lost = isinstance(found, Lost) or not result.may_be_refused
+    return found if is_lost else Lost("it is refused where a conversion does not take it")
+
+
+def _value_outcome(result: Result, trip: Trip) -> Outcome:
     trip.ranges = result.ranges
     place, value = result.place, result.value
     goal = LenOf(place) if result.is_length else Access(place, place.type)

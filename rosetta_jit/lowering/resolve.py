@@ -201,8 +201,8 @@ class _Block:
                 return self.loop(rule, scope)
             case model.When():
                 return self.when(rule, scope)
-            case model.Reject(text, span, pieces):
-                return Reject(text, span, type_pieces(pieces, scope, type_expr))
+            case model.Reject(text, span, pieces, written):
+                return Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
             case model.Ignore(path) | model.Default(path):
                 return self.left_alone(rule, path, scope)
             case model.SameNames():

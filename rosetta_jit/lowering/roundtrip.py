@@ -18,6 +18,7 @@ from rosetta_jit.lowering.part_laws import simplified
 from rosetta_jit.lowering.places import field_names
 from rosetta_jit.lowering.quotients import Facts
 from rosetta_jit.lowering.rebuild import placed, rebuilt, renamed
+from rosetta_jit.lowering.refusals import may_refuse
 from rosetta_jit.lowering.typed import (
     BOOL,
     Access,
@@ -31,6 +32,7 @@ from rosetta_jit.lowering.typed import (
     FieldStep,
     For,
     Given,
+    Has,
     IndexStep,
     LenOf,
     Local,
@@ -42,7 +44,7 @@ from rosetta_jit.lowering.typed import (
     When,
 )
 from rosetta_jit.model.expr import Literal
-from rosetta_jit.model.types import Float
+from rosetta_jit.model.types import Array, Float, Map, Struct, Union
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -110,13 +112,17 @@ def _ways_of(rule: Rule) -> list[Way]:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a place has when both directions are done, in loops over ``ranges``; None where that does not follow."""
+    """What a place has when both directions are done, in loops over ``ranges``; None where that does not follow.
+
+    ``may_be_refused`` is whether a conversion within the rule is not known to take all that came through the first direction.
+    """
 
     place: Place
     is_length: bool
     value: Expr | None
     span: Span | None
     ranges: Ranges
+    may_be_refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +138,10 @@ class _Write:
 class Trip:
     """The second direction, run on what one way through the first one leaves."""
 
-    """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops."""
+    """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops.
+
+    ``refusals`` are the rejections of the text for which nothing shows that what came through the first direction passes them.
+    """
 
     def __init__(self, way: Way) -> None:
         self.writes: dict[tuple[str, ...], list[_Write]] = {}
@@ -147,6 +156,7 @@ class Trip:
         for condition, holds, ranges in way.known:
             self.know(condition, ranges, holds=holds)
         self.refused = False
+        self.refusals: list[Reject] = []
         self.by_round = any(has_local(condition) for condition, _, _ in way.known)
         self.left = MAX_ORDERED
 
@@ -195,7 +205,8 @@ class Trip:
             match rule:
                 case Assign(place, value) | SetLength(place, value):
                     where = placed(place, self.of)
-                    yield Result(where, isinstance(rule, SetLength), self.of(_changed(rule, value)), rule.span, self.ranges)
+                    made = self.of(_changed(rule, value))
+                    yield Result(where, isinstance(rule, SetLength), made, rule.span, self.ranges, may_refuse(value, self.of))
                 case Default(place):
                     yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
                 case For(_, start, stop, body):
@@ -214,9 +225,11 @@ class Trip:
             case Const(bool(holds)):
                 yield from self.run(then if holds else otherwise)
             case _ if all(isinstance(rule, Reject) for rule in then):
+                self.refusals += [rule for rule in then if isinstance(rule, Reject) and rule.written]
                 self.know(condition, self.ranges, holds=False)
                 yield from self.run(otherwise)
             case _ if otherwise and all(isinstance(rule, Reject) for rule in otherwise):
+                self.refusals += [rule for rule in otherwise if isinstance(rule, Reject) and rule.written]
                 self.know(condition, self.ranges, holds=True)
                 yield from self.run(then)
             case _:
@@ -232,6 +245,8 @@ class Trip:
                 return self.read(replace(expr, place=placed(place, self.of)), length=False)
             case LenOf(place):
                 return self.read(replace(expr, place=placed(place, self.of)), length=True)
+            case Has(place) if self.is_set(placed(place, self.of)):
+                return Const(value=True, type=BOOL)
             case _:
                 return self.simple(rebuilt(expr, self.of))
 
@@ -251,6 +266,11 @@ class Trip:
             if len(inner) == 1:
                 return LenOf(inner[0]) if length else Access(inner[0], place.type)
         return expr
+
+    def is_set(self, place: Place) -> bool:
+        """Whether the first direction sets a number or a text, which then is there."""
+        is_plain = not isinstance(place.type, Array | Struct | Union | Map)
+        return is_plain and bool(list(self.matching(field_names(place), place, length=False)))
 
     def matching(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
         alike: list[tuple[_Write, Expr]] = []

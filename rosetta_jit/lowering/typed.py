@@ -407,11 +407,12 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class Reject:
-    """The message is refused, with this text, or with what the ``pieces`` say, which are texts."""
+    """The message is refused, with this text, or with what the ``pieces`` say, which are texts; ``written`` is as in `mapping.Reject`."""
 
     text: str
     span: Span | None = field(default=None, compare=False, repr=False)
     pieces: tuple[Expr, ...] = ()
+    written: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

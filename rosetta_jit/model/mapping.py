@@ -113,11 +113,15 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class Reject:
-    """``reject "text"``: the message is refused, whatever else it holds. ``pieces`` are the texts and values of a text with braces."""
+    """``reject "text"``: the message is refused, whatever else it holds. ``pieces`` are the texts and values of a text with braces.
+
+    One that is ``written`` stands in the text; all others check what relations say.
+    """
 
     text: str
     span: Span | None = field(default=None, compare=False, repr=False)
     pieces: tuple[Expr, ...] = ()
+    written: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,6 +86,37 @@ def test_what_it_says(mapping):
     assert unpack.cost.cost.repeated[0].count == "len(.list)"
 
 
+def test_where_values_are_rounded(mapping):
+    """Arithmetic in float32, constants that no float32 is equal to, and integers that pack as the nearest; what only checks is no loss."""
+    text = (
+        HEAD
+        + """rules:
+  .angle <-> float32(.n * 0.1)
+  len(.list) <-> 2
+unpack-rules:
+  .inner.wide = 1
+  .list[0] = float32(.yaw) * 0.5
+  .list[1] = 0.1
+  ignore .list
+  ignore .spare
+pack-rules:
+  ignore .inner.wide
+  ignore .list
+  .yaw = 0.0
+  len(.list) = 0
+  .spare = 0
+"""
+    )
+    unpack, pack = explanation(mapping(text), encoding="yarp4").directions
+    notes = {line.text: [note.text for note in line.notes] for line in (*unpack.lines, *pack.lines)}
+    assert notes[".angle = float32(.n * 0.1)"] == ["float64 → float32, rounded to the nearest"]
+    assert notes[".n = divide(.angle, 0.1)"] == ["float64 → int32, the nearest, refused where that does not unpack to the value"]
+    assert "computed in float32, rounded" in notes[".list[0] = float32(.yaw) * 0.5"]
+    assert notes[".list[1] = 0.1"] == ["0.1 → float32, rounded to 0.10000000149011612"]
+    warnings = [each.message for each in rj.check("m.mapping").warnings if each.code == "rounded"]
+    assert warnings == ["no float32 is 0.1: 0.10000000149011612 is the nearest"]
+
+
 def test_one_way(mapping):
     text = HEAD + "unpack-rules:\n  .angle = 1.0\n  .inner.wide = 2\n  len(.list) = 0\n"
     told = as_text(explanation(mapping(text)))

@@ -137,6 +137,32 @@ def test_two_blocks_by_hand_have_laws_too():
     assert [loss.why for loss in made.messages.losses] == ["it comes back as another value"]
 
 
+@pytest.mark.parametrize(
+    ("fields", "unpack", "pack", "messages", "holders"),
+    [
+        ("int64 int64", ".v = .v", ".v = int8(.v)", "a conversion does not take it", ""),
+        ("int64 int64", ".v = int8(.v)", ".v = .v", "", "a conversion does not take it"),
+        ("int64 int64", ".v = .v", 'reject "too much" when .v > 5 .v = .v', 'on the way back: "too much"', ""),
+        ("int64 int64", 'reject "too much" when .v > 5 .v = .v', 'reject "too much" when .v > 5 .v = .v', "", ""),
+        ("int16 double", ".v = .v * 0.01", ".v = int16(.v * 100.0)", "rounding leaves a fraction", None),
+        ("int16 double", ".v = .v * 0.01", ".v = int16(.v * 100.0, round)", "", None),
+        ("int16 double", ".v = .v * 0.5", ".v = int16(.v * 2.0)", "", None),
+        ("float64 double", ".v = .v", ".v = int32(.v)", "a conversion does not take it", ""),
+    ],
+)
+def test_refusals_on_the_way_back_are_losses(fields, unpack, pack, messages, holders):
+    wire, holder = fields.split()
+    texts = {
+        "p/W.msg": f"{wire} v\n",
+        "h.proto": f'syntax = "proto2"; message H {{ required {holder} v = 1; }}',
+        "m.mapping": f'import "p/W.msg" import "h.proto" data-holder: H wire-schema: p/W unpack-rules: {unpack} pack-rules: {pack}',
+    }
+    made = rj.Decoder("m.mapping", schema=texts, encoding="ros1", backend="interpreter").mapping.laws
+    for law, why in ((made.messages, messages), (made.holders, holders)):
+        if why is not None:
+            assert [loss.why for loss in law.losses if why in loss.why] if why else not law.losses, str(made)
+
+
 def test_one_way_mappings_have_none():
     texts = files('("a" :double)', "required double a = 1;", "unpack-rules:\n  .a = .a\n")
     mapping = rj.Decoder("m.mapping", schema=texts, encoding="yarp3", backend="interpreter").mapping

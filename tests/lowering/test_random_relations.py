@@ -105,7 +105,7 @@ def broken_law(law: Any, values: dict[str, Any], back: dict[str, Any]) -> list[A
             numbers = pair if isinstance(pair[0], list) else ([pair[0]], [pair[1]])
             is_right = all(is_same(left, right, rounded[place]) for left, right in zip(*numbers, strict=True))
         else:
-            is_right = plain(pair[0]) == plain(pair[1])
+            is_right = plain(pair[0]) == plain(pair[1]) or pair == (0, 0)  # an integer has no sign of zero
         if not is_right:
             found.append((name, *pair, rounded.get(place)))
     return found
