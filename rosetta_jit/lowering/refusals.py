@@ -26,7 +26,12 @@ def may_refuse(value: Expr, of: Callable[[Expr], Expr]) -> bool:
 
 
 def _exact(expr: Expr) -> Iterator[Convert]:
-    if isinstance(expr, Convert) and expr.rule == "exact" and isinstance(expr.type, Int) and isinstance(expr.operand.type, Int | Float):
+    if (
+        isinstance(expr, Convert)
+        and expr.rule == "exact"
+        and isinstance(expr.type, Int | Float)
+        and isinstance(expr.operand.type, Int | Float)
+    ):
         yield expr
     below: list[Expr] = []
     rebuilt(expr, lambda part: below.append(part) or part)

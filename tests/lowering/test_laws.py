@@ -148,6 +148,9 @@ def test_two_blocks_by_hand_have_laws_too():
         ("int16 double", ".v = .v * 0.01", ".v = int16(.v * 100.0, round)", "", None),
         ("int16 double", ".v = .v * 0.5", ".v = int16(.v * 2.0)", "", None),
         ("float64 double", ".v = .v", ".v = int32(.v)", "a conversion does not take it", ""),
+        ("float64 double", ".v = .v", ".v = float32(.v, exact)", "a conversion does not take it", ""),
+        ("float32 double", ".v = .v", ".v = float32(.v, exact)", "", ""),
+        ("float64 float", ".v = float32(.v, exact)", ".v = .v", "", ""),
     ],
 )
 def test_refusals_on_the_way_back_are_losses(fields, unpack, pack, messages, holders):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from tests.lowering.random_relations import FLOAT_STEPS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,31 +73,37 @@ def programs(wire: str, relations: list[tuple[str, str, Any]] = RELATIONS, backe
 
 
 def all_of(wire: str) -> np.ndarray:
-    """A message for each value of a type, all of whose fields have it."""
+    """Every value of a type."""
     info = np.iinfo(wire)
-    values = np.arange(info.min, info.max + 1).astype(np.dtype(wire).newbyteorder("<"))
-    return np.repeat(values[:, None], len(RELATIONS), axis=1)
+    return np.arange(info.min, info.max + 1).astype(np.dtype(wire).newbyteorder("<"))
+
+
+def assert_all_come_back(wire: str, relations: list[tuple[str, str, Any]], values: np.ndarray) -> None:
+    """What is decoded is what numpy computes, nothing of it is refused, and all comes back: as the law says."""
+    decode, encode = programs(wire, relations)
+    assert str(decode.mapping.laws.messages) == "exact inverse"
+    messages = np.repeat(values[:, None], len(relations), axis=1)
+    data = messages.tobytes()
+    with np.errstate(all="ignore"):
+        batch = decode.many(data, np.arange(len(messages) + 1) * messages.itemsize * len(relations))
+        for number, (text, _, function) in enumerate(relations):
+            found = getattr(batch, f"f{number}")
+            assert np.array_equal(found, function(values.astype(np.float64)).astype(found.dtype)), text
+    assert encode.many(batch)[0].tobytes() == data
 
 
 @pytest.mark.parametrize("wire", NARROW)
 def test_every_integer_comes_back(wire):
-    """What is decoded is what numpy computes in float64, nothing of it is refused, and all comes back: as the law says."""
-    decode, encode = programs(wire)
-    assert str(decode.mapping.laws) == "messages: exact inverse\nholders: exact inverse"
-    messages = all_of(wire)
-    data = messages.tobytes()
-    batch = decode.many(data, np.arange(len(messages) + 1) * messages.itemsize * messages.shape[1])
-    for number, (text, _, function) in enumerate(RELATIONS):
-        found = getattr(batch, f"f{number}")
-        assert np.array_equal(found, function(messages[:, number].astype(np.float64)).astype(found.dtype)), text
-    assert encode.many(batch)[0].tobytes() == data
+    assert_all_come_back(wire, RELATIONS, all_of(wire))
+    assert str(programs(wire)[0].mapping.laws.holders) == "exact inverse"
 
 
 @pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
 def test_backends_agree(backend):
     decode, encode = programs("int8", backend=backend)
-    for message in all_of("int8")[::17]:
-        assert encode(decode(message.tobytes())) == message.tobytes()
+    for value in all_of("int8")[::17]:
+        message = value.tobytes() * len(RELATIONS)
+        assert encode(decode(message)) == message
 
 
 @pytest.mark.parametrize("backend", ["llvm", "python"])
@@ -208,3 +216,42 @@ rules:
         message = np.uint16(value).tobytes() + np.int32(-7).tobytes()
         assert encode(decode(message)) == message
     assert decode.mapping.laws.messages.kind == "exact"
+
+
+# --- random relations ------------------------------------------------------------------------------------------------------
+
+CONSTANTS = [0.01, 255.0, 0.1, 1e7, -2.5, 0.5, 273.15, 1234567890.0, 1e-7, 1 / 3, 7e8, -1e-3, 2.0**-20, 1e12]
+
+
+def some_relation(rng: random.Random) -> tuple[str, str, Callable[[Any], Any]]:
+    """Steps by constants, an angle now and then, into a holder of either type."""
+    text, steps, kind = "{}", [], rng.choice(["double", "float"])
+    for number in range(rng.randrange(1, 5)):
+        constant, (template, step) = rng.choice(CONSTANTS), rng.choice(FLOAT_STEPS if number else FLOAT_STEPS[:-1])
+        text = template.format(text, f"({constant!r})")
+        steps.append((step, constant))
+    if rng.random() < 0.25:
+        name, factor = rng.choice([("radians", np.pi / 180), ("degrees", 180 / np.pi)])
+        text = f"{name}({text})"
+        steps.append((lambda value, constant: value * constant, factor))
+
+    def run(value: Any) -> Any:
+        for step, constant in steps:
+            value = step(value, constant)
+        return value
+
+    return (f"float32({text})" if kind == "float" else text), kind, run
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", range(60))
+def test_campaign(seed):
+    rng = random.Random(f"nearest {seed}")
+    wire = rng.choice([*NARROW, "int32", "uint32"])
+    relations = [some_relation(rng) for _ in range(40)]
+    lossy = {loss.place for loss in programs(wire, relations, "interpreter")[0].mapping.laws.messages.losses}
+    kept = [each for number, each in enumerate(relations) if f".f{number}" not in lossy]
+    info = np.iinfo(wire)
+    some = np.random.default_rng(seed).integers(info.min, info.max, 10_000, wire, endpoint=True)
+    values = all_of(wire) if wire in NARROW else np.concatenate([some, np.array([info.min, 0, 1, info.max], wire)])
+    assert_all_come_back(wire, kept, values)
