@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel import claims
 from rosetta_jit.kernel.linear import Linear
+from rosetta_jit.kernel.obligations import demand, oblige
 from rosetta_jit.kernel.paths import from_begin, variable
 from rosetta_jit.kernel.rewrite import locals_in
-from rosetta_jit.kernel.symbolic import Scope, condition, demand, entry, evaluate, oblige, unknown
+from rosetta_jit.kernel.scope import Scope, entry
+from rosetta_jit.kernel.symbolic import condition, evaluate, unknown
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Call, Routine
+    from rosetta_jit.kernel.record import Record
 
 MESSAGE = ("begin", "end")
 """What every routine sees of its caller."""
 
 
-def inside(strides: tuple[int, ...], routine: Routine) -> Scope:
+def inside(strides: tuple[int, ...], routine: Routine, record: Record | None) -> Scope:
     """The scope at the start of a routine: any arguments that it allows."""
-    scope = entry(strides)
+    scope = entry(strides, record)
     scope.locals = {name: scope.locals[name] for name in MESSAGE}
     for parameter in routine.parameters:
         scope.locals[parameter.name] = parameter.type, unknown(scope, parameter.type)
@@ -32,7 +36,7 @@ def keep(scope: Scope, routine: Routine) -> None:
     for result in routine.results:
         demand(result.name in scope.locals and scope.locals[result.name][0] == result.type, f"no {result.type} {result.name}")
     for ensured in routine.ensures:
-        oblige(scope, condition(scope, ensured), "a routine that may break its promise")
+        oblige(scope, condition(scope, ensured), claims.PROMISE)
 
 
 def bind(scope: Scope, routine: Routine, call: Call) -> None:
@@ -42,11 +46,12 @@ def bind(scope: Scope, routine: Routine, call: Call) -> None:
     `begin`. One without a promise is a number that was read, and may be multiplied.
     """
     inner = Scope(scope.strides, scope.facts, {name: scope.locals[name] for name in MESSAGE}, scope.used, scope.capacity)
+    inner.record, inner.at = scope.record, scope.at
     for parameter, argument in zip(routine.parameters, call.arguments, strict=True):
         inner.locals[parameter.name] = typed = evaluate(scope, argument)
         demand(typed[0] == parameter.type, f"{typed[0]} where {parameter.type} belongs")
     for required in routine.requires:
-        oblige(inner, condition(inner, required), "a call that asks for what may not be there")
+        oblige(inner, condition(inner, required), claims.DEMANDS)
     moves = any(isinstance(value, Linear) and from_begin(value) for _, value in (inner.locals[p.name] for p in routine.parameters))
     told = {name for ensured in routine.ensures for name in locals_in(ensured)}
     for result in routine.results:

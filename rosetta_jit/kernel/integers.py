@@ -41,8 +41,8 @@ def _monomial(facts: Facts, a: int, b: int) -> Linear:
     is_new = not facts.has(key)
     atom = facts.named(key, *_corners(facts.born(a), facts.born(b)))
     low, high = _corners((facts.lows[a], facts.highs[a]), (facts.lows[b], facts.highs[b]))
-    facts.assume(shifted(atom, -low))
-    facts.assume(shifted(times(atom, -1), high))
+    facts.derive(shifted(atom, -low))
+    facts.derive(shifted(times(atom, -1), high))
     if is_new or facts.lower(atom) >= 0:
         _multiply_facts(facts, a, b)
         _multiply_facts(facts, b, a)
@@ -68,10 +68,10 @@ def _multiply_facts(facts: Facts, atom: int, factor: int) -> None:
             total = times(unit, fact.constant)
             for a, c in fact.terms:
                 total = plus(total, times(facts.named(_monomial_key(a, factor), 0, 0), c))
-            facts.assume(total)
+            facts.derive(total)
     known = facts.named(_monomial_key(atom, factor), 0, 0)
-    facts.assume(minus(known, times(unit, facts.lows[atom])))
-    facts.assume(minus(times(unit, facts.highs[atom]), known))
+    facts.derive(minus(known, times(unit, facts.lows[atom])))
+    facts.derive(minus(times(unit, facts.highs[atom]), known))
 
 
 def quotient(facts: Facts, left: Linear, right: Linear) -> Linear:
@@ -81,11 +81,11 @@ def quotient(facts: Facts, left: Linear, right: Linear) -> Linear:
         return _constant_quotient(facts, left, right.constant)
     result = _no_larger(facts, ("div", left, right), left, bound)
     if facts.lower(left) >= 0 and facts.lower(right) >= 1:
-        facts.assume(result)
-        facts.assume(minus(left, result))
+        facts.derive(result)
+        facts.derive(minus(left, result))
         covered = product(facts, result, right)
-        facts.assume(minus(left, covered))
-        facts.assume(shifted(minus(plus(covered, right), left), -1))
+        facts.derive(minus(left, covered))
+        facts.derive(shifted(minus(plus(covered, right), left), -1))
     return result
 
 
@@ -94,8 +94,8 @@ def _no_larger(facts: Facts, key: tuple[str, Linear, Linear | int], operand: Lin
     low, high = facts.widest(operand)
     most = max(abs(low), abs(high))
     atom = facts.named(key, -most, most)
-    facts.assume(shifted(atom, bound))
-    facts.assume(shifted(times(atom, -1), bound))
+    facts.derive(shifted(atom, bound))
+    facts.derive(shifted(times(atom, -1), bound))
     return atom
 
 
@@ -106,12 +106,12 @@ def _constant_quotient(facts: Facts, left: Linear, divisor: int) -> Linear:
     bound = max(abs(facts.lower(left)), abs(facts.upper(left)))
     result = _no_larger(facts, ("div", left, divisor), left, bound)
     rest = minus(left, times(result, divisor))
-    facts.assume(shifted(rest, divisor - 1))
-    facts.assume(shifted(times(rest, -1), divisor - 1))
+    facts.derive(shifted(rest, divisor - 1))
+    facts.derive(shifted(times(rest, -1), divisor - 1))
     if facts.lower(left) >= 0:
-        facts.assume(rest)
-        facts.assume(result)
-        facts.assume(shifted(times(result, -1), facts.upper(left) // divisor))
+        facts.derive(rest)
+        facts.derive(result)
+        facts.derive(shifted(times(result, -1), facts.upper(left) // divisor))
     return result
 
 
@@ -122,10 +122,10 @@ def remainder(facts: Facts, left: Linear, right: Linear) -> Linear:
     bound = max(abs(facts.lower(right)), abs(facts.upper(right))) - 1
     result = _no_larger(facts, ("rem", left, right), left, bound)
     if facts.lower(left) >= 0:
-        facts.assume(result)
-        facts.assume(minus(left, result))
+        facts.derive(result)
+        facts.derive(minus(left, result))
         if facts.lower(right) >= 1:
-            facts.assume(shifted(minus(right, result), -1))
+            facts.derive(shifted(minus(right, result), -1))
     return result
 
 
@@ -139,8 +139,8 @@ def bits_and(facts: Facts, left: Linear, right: Linear, limits: Range) -> Linear
     mask = right.constant if not right.terms else None
     for operand in (left, right):
         if facts.lower(operand) >= 0:
-            facts.assume(result)
-            facts.assume(minus(operand, result))
+            facts.derive(result)
+            facts.derive(minus(operand, result))
     if mask is not None:
         _clears_low_bits(facts, left, mask if mask < 0 or limits[0] < 0 else mask - limits[1] - 1, result)
     return result
@@ -149,8 +149,8 @@ def bits_and(facts: Facts, left: Linear, right: Linear, limits: Range) -> Linear
 def _clears_low_bits(facts: Facts, operand: Linear, mask: int, result: Linear) -> None:
     """Facts of a mask ``-(2 ** k)``: it rounds down by less than 2 ** k."""
     if mask < 0 and (-mask) & (-mask - 1) == 0:
-        facts.assume(minus(operand, result))
-        facts.assume(shifted(minus(result, operand), -mask - 1))
+        facts.derive(minus(operand, result))
+        facts.derive(shifted(minus(result, operand), -mask - 1))
 
 
 def bits_or(facts: Facts, left: Linear, right: Linear, limits: Range, *, exclusive: bool) -> Linear:
@@ -160,12 +160,12 @@ def bits_or(facts: Facts, left: Linear, right: Linear, limits: Range, *, exclusi
     result = facts.named(("xor" if exclusive else "or", left, right, limits), *limits)
     if facts.lower(left) >= 0 and facts.lower(right) >= 0:
         bits = max(facts.upper(left).bit_length(), facts.upper(right).bit_length())
-        facts.assume(result)
-        facts.assume(shifted(times(result, -1), (1 << bits) - 1))
-        facts.assume(minus(plus(left, right), result))
+        facts.derive(result)
+        facts.derive(shifted(times(result, -1), (1 << bits) - 1))
+        facts.derive(minus(plus(left, right), result))
         if not exclusive:
-            facts.assume(minus(result, left))
-            facts.assume(minus(result, right))
+            facts.derive(minus(result, left))
+            facts.derive(minus(result, right))
     return result
 
 
@@ -182,12 +182,12 @@ def shift_right(facts: Facts, left: Linear, right: Linear, limits: Range) -> Lin
     """``left >> right``: a division that rounds down."""
     result = facts.named(("shr", left, right, limits), *limits)
     if facts.lower(left) >= 0:
-        facts.assume(result)
-        facts.assume(minus(left, result))
+        facts.derive(result)
+        facts.derive(minus(left, result))
     if not right.terms and 0 <= right.constant < WORD:
         rest = minus(left, times(result, 1 << right.constant))
-        facts.assume(rest)
-        facts.assume(shifted(times(rest, -1), (1 << right.constant) - 1))
-        facts.assume(shifted(result, -(facts.lower(left) >> right.constant)))
-        facts.assume(shifted(times(result, -1), facts.upper(left) >> right.constant))
+        facts.derive(rest)
+        facts.derive(shifted(times(rest, -1), (1 << right.constant) - 1))
+        facts.derive(shifted(result, -(facts.lower(left) >> right.constant)))
+        facts.derive(shifted(times(result, -1), facts.upper(left) >> right.constant))
     return result

@@ -9,20 +9,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel import claims
 from rosetta_jit.kernel.arithmetic import FLOATS
+from rosetta_jit.kernel.formula import All, Any
 from rosetta_jit.kernel.ir import Advance, Assign
-from rosetta_jit.kernel.linear import Linear, minus, plus, times
+from rosetta_jit.kernel.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.paths import anchors, from_begin, grown, variable
-from rosetta_jit.kernel.prove import All
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.symbolic import linear
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.kernel.formula import Formula
     from rosetta_jit.kernel.ir import Block
-    from rosetta_jit.kernel.prove import Formula
-    from rosetta_jit.kernel.symbolic import Scope, Typed
+    from rosetta_jit.kernel.scope import Scope, Typed
 
 MAX_ROUNDS = 1 << 20
 """A loop that neither the message nor a value bounds runs at most so often."""
@@ -62,13 +63,19 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
     kept = [guess for guess in guesses(scope, names) if guess not in dropped]
     while True:
+        written = 0 if scope.record is None else scope.record.mark()
         lost = _round(scope, loop, at_entry, kept)
         scope.rollback(at_entry.mark)
         scope.used = list(at_entry.used)
         if not lost:
             break
+        if scope.record is not None:
+            scope.record.retract(written)
         dropped.update(lost)
         kept = [guess for guess in kept if guess not in dropped]
+    if scope.record is not None:
+        first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)) for guess in kept]
+        scope.record.owe_all(scope, first, claims.RELATION_FIRST)
     forget(scope, at_entry, lanes, kept)
 
 
@@ -81,17 +88,23 @@ def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list
     lost: list[Guess] = []
     if not loop.walk() and not facts.impossible:
         loop.leave()
-        lost = [guess for guess in kept if not facts.proves(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)))]
+        claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess))) for guess in kept]
+        lost = [guess for guess, formula in claimed if not facts.proves(formula)]
+        if scope.record is not None:
+            scope.record.owe_all(scope, [formula for _, formula in claimed], claims.RELATION_KEPT)
     facts.rollback(mark)
     return lost
 
 
-def is_bounded(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -> bool:
-    """Whether a measure cannot grow for ever: the message's end, the loop's condition or a constant lies above it."""
-    facts = scope.facts
-    if facts.upper(measure) - facts.lower(measure) <= MAX_ROUNDS or facts.proves(minus(linear(scope.locals["end"][1]), measure)):
-        return True
-    return any(all(atom < first_atom for atom, _ in plus(part, measure).terms) for part in _conjuncts(condition))
+def bounds(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -> Formula:
+    """That a measure cannot grow for ever: a constant lies above it, or the message's end, or what the loop's condition compares it with.
+
+    The last must be the same in each round: made of atoms before ``first_atom``, the first that the round made.
+    """
+    low, high = scope.facts.lower(measure), scope.facts.upper(measure)
+    within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_ROUNDS else False
+    fixed = (part for part in _conjuncts(condition) if all(atom < first_atom for atom, _ in plus(part, measure).terms))
+    return Any((within, minus(linear(scope.locals["end"][1]), measure), *fixed))
 
 
 def _conjuncts(formula: Formula) -> list[Linear]:

@@ -9,17 +9,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel import claims
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.formula import All
 from rosetta_jit.kernel.linear import Linear, coefficient_of, minus, plus, shifted, times
-from rosetta_jit.kernel.symbolic import MAX_ROWS, Scope, linear
+from rosetta_jit.kernel.scope import MAX_POSITION, MAX_ROWS
+from rosetta_jit.kernel.symbolic import linear
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.kernel.formula import Formula
     from rosetta_jit.kernel.ir import Scalar
     from rosetta_jit.kernel.linear import Terms
-    from rosetta_jit.kernel.prove import Formula
-    from rosetta_jit.kernel.symbolic import Typed
+    from rosetta_jit.kernel.record import Premise
+    from rosetta_jit.kernel.scope import Scope, Typed
 
 BEGIN_ATOM = 0
 """The first atom of every scope."""
@@ -30,12 +34,13 @@ FAR = 1 << 32
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """What one path brings to a meeting point."""
+    """What one path brings to a meeting point; ``premises`` are what it took as known, where that is written down."""
 
     changed: dict[str, Typed]
     used: list[Linear]
     gained: dict[Terms, int]
     distances: dict[str, list[tuple[int, int]]]
+    premises: Premise | None = None
 
 
 def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool:
@@ -51,6 +56,8 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
             returned = True
             scope.facts.rollback(mark)
         elif scope.facts.impossible:
+            if scope.record is not None:
+                scope.record.owe(scope, formula=False, claim=claims.UNREACHABLE)
             scope.facts.rollback(mark)
         else:
             changed = scope.changed(here)
@@ -58,7 +65,9 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
             arrivals.append(_arrive(scope, changed, mark))
         scope.rollback(here)
         scope.used = list(used)
-    if arrivals:
+    if arrivals and scope.record is not None:
+        scope.record.meet(scope, before, arrivals, _meet)
+    elif arrivals:
         _meet(scope, before, arrivals)
     elif not returned:
         scope.facts.assume(formula=False)
@@ -72,7 +81,8 @@ def _arrive(scope: Scope, before: dict[str, Typed], mark: int) -> Arrival:
     for name, now in changed.items():
         if _is_number(now):
             distances[name] = _distances(scope, linear(now[1]), anchors(scope, before[name]))
-    return Arrival(changed, list(scope.used), scope.facts.rollback(mark), distances)
+    premises = None if scope.record is None else scope.record.premises()
+    return Arrival(changed, list(scope.used), scope.facts.rollback(mark), distances, premises)
 
 
 def anchors(scope: Scope, old: Typed) -> list[Linear]:
@@ -139,7 +149,7 @@ def _met(scope: Scope, old: Typed, arrivals: list[Arrival], name: str) -> Typed:
 def learn_distance(scope: Scope, distance: Linear, least: int) -> None:
     """Keep a lower bound of a distance, if it says anything."""
     if least > -FAR or len(distance.terms) == 1:
-        scope.facts.assume(shifted(distance, -least))
+        scope.facts.derive(shifted(distance, -least))
 
 
 # --- unknowns ----------------------------------------------------------------------------------------------------------
@@ -150,8 +160,8 @@ def variable(scope: Scope, type_: Scalar, *, relative: bool) -> Linear:
     low, high = limits(type_)
     if not relative:
         return scope.facts.fresh(low, high)
-    value = plus(linear(scope.locals["begin"][1]), scope.facts.fresh(low, high))
-    scope.facts.assume(shifted(times(value, -1), high))
+    value = plus(linear(scope.locals["begin"][1]), scope.facts.fresh(low - MAX_POSITION, high))
+    scope.facts.assume(All((shifted(value, -low), shifted(times(value, -1), high))))
     return value
 
 

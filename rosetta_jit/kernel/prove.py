@@ -1,10 +1,7 @@
 r"""What is known at one place of a kernel, and what follows from it.
 
-    Formula = True | False | None | Linear | All(Formula*) | Any(Formula*)
-
-A `Linear` as a formula says that it is >= 0; None says nothing. `Facts` keeps, for each sum of atoms, the greatest lower bound that
-is known. Most questions are answered by a look at that table or by the bounds of single atoms; the rest by
-Fourier-Motzkin elimination on the facts around the question, within a budget. A No means "not proven".
+`Facts` keeps, for each sum of atoms, the greatest lower bound that is known. Most questions are answered by a look at that table or by the
+bounds of single atoms; the rest by Fourier-Motzkin elimination on the facts around the question, within a budget. A No means "not proven".
 
 Facts are gained along a path and given up at its end (`mark`, `rollback`), so that the two branches of an If share one table.
 """
@@ -13,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import field
-from typing import assert_never
+from typing import Literal, assert_never
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel.linear import Linear, Terms, contradict, minus, replaced, shifted, tightened, times
+from rosetta_jit.kernel.formula import All, Any, Formula, equal, is_vague, negated, said
+from rosetta_jit.kernel.linear import Linear, Terms, contradict, replaced, shifted, tightened, times
 
 FIRST = (6, 40)
 GLANCE, QUICK, THOROUGH = (0, 0), (32, 300), (96, 4000)
@@ -24,83 +22,10 @@ GLANCE, QUICK, THOROUGH = (0, 0), (32, 300), (96, 4000)
 
 CASE_DEPTH = 2
 MAX_PROPAGATED = 4
-MAX_FORMULA = 64
 
-
-@dataclass(frozen=True, slots=True)
-class All:
-    """Every part holds."""
-
-    parts: tuple[Formula, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Any:
-    """One part at least holds."""
-
-    parts: tuple[Formula, ...]
-
-
-Formula = bool | None | Linear | All | Any
-
-
-def said(formula: Formula) -> Formula:
-    """What a formula says without its parts of which nothing is known: those of two formulas look alike, and are not."""
-    match formula:
-        case All(parts):
-            return All(tuple(part for each in parts if (part := said(each)) is not None))
-        case Any(parts):
-            found = tuple(map(said, parts))
-            return None if None in found else Any(found)
-        case _:
-            return formula
-
-
-def negated(formula: Formula) -> Formula:
-    """The opposite; over integers ``not (l >= 0)`` is ``-l - 1 >= 0``."""
-    match formula:
-        case bool():
-            return not formula
-        case None:
-            return None
-        case Linear():
-            return shifted(times(formula, -1), -1)
-        case All(parts):
-            return Any(tuple(map(negated, parts)))
-        case Any(parts):
-            return All(tuple(map(negated, parts)))
-        case _:
-            assert_never(formula)
-
-
-def bounded(formula: Formula) -> Formula:
-    """The formula, or None where it is so large that taking it apart again and again would cost too much."""
-    return formula if _size(formula) <= MAX_FORMULA else None
-
-
-def is_vague(formula: Formula) -> bool:
-    """Whether a formula says less than what it stands for."""
-    match formula:
-        case None:
-            return True
-        case All(parts) | Any(parts):
-            return any(map(is_vague, parts))
-        case _:
-            return False
-
-
-def _size(formula: Formula) -> int:
-    match formula:
-        case All(parts) | Any(parts):
-            return sum(map(_size, parts))
-        case _:
-            return 1
-
-
-def equal(left: Linear, right: Linear) -> Formula:
-    """``left == right``."""
-    difference = minus(left, right)
-    return All((difference, times(difference, -1)))
+Procedure = Literal["constants", "unreachable", "bounds", "elimination", "cases", "operations", "paths"]
+"""Who proves: a look at constants, the contradiction of what a path takes as known, the table of bounds, Fourier-Motzkin elimination, or
+that in each case of a choice. What the proof infers comes from the rules of operations (`integers`) and from where paths meet (`paths`)."""
 
 
 def _shares_atom(fact: Any, goal: Linear) -> bool:
@@ -157,8 +82,8 @@ class Facts:
         low, high = min(low for low, _ in widest), max(high for _, high in widest)
         atom = self.fresh(low, high) if any(is_vague(condition) for condition, _ in cases) else self.named(cases, low, high)
         self._cases[atom.terms[0][0]] = cases
-        self.assume(shifted(atom, -min(self.lower(value) for _, value in cases)))
-        self.assume(shifted(times(atom, -1), max(self.upper(value) for _, value in cases)))
+        self._take(shifted(atom, -min(self.lower(value) for _, value in cases)))
+        self._take(shifted(times(atom, -1), max(self.upper(value) for _, value in cases)))
         return atom
 
     def widest(self, linear: Linear) -> tuple[int, int]:
@@ -169,23 +94,29 @@ class Facts:
             low, high = low + min(ends), high + max(ends)
         return low, high
 
+    def abbreviated(self, value: Linear, low: int, high: int) -> Linear:
+        """A new atom that stands for a sum of which the bounds are known."""
+        atom = self.fresh(low, high)
+        self._take(equal(atom, value))
+        return atom
+
     # --- learning ----------------------------------------------------------------------------------------------------
 
-    def assume(self, formula: Formula) -> None:
+    def _take(self, formula: Formula) -> None:
         """Take a formula as known."""
         match formula:
             case Linear():
                 self._learn(formula)
             case All(parts):
                 for part in parts:
-                    self.assume(part)
+                    self._take(part)
             case Any() if is_vague(formula):
-                self.assume(said(formula))
+                self._take(said(formula))
             case Any(parts):
                 # Without looking at cases: a case may have alternatives of its own, and theirs again.
                 open_parts = [part for part in parts if not self._proves(negated(part), 0, QUICK)]
                 if len(open_parts) == 1:
-                    self.assume(open_parts[0])
+                    self._take(open_parts[0])
                 elif not open_parts:
                     self._contradiction()
                 elif formula not in self._either:
@@ -197,6 +128,11 @@ class Facts:
                 pass
             case _:
                 assert_never(formula)
+
+    assume = _take
+    """Take as known what is given: what a check has found, which branch was taken, what a loop keeps."""
+    derive = _take
+    """Take as known what follows from what is known already and from what the atoms stand for."""
 
     def _learn(self, fact: Linear) -> None:
         constant, terms = fact
@@ -307,9 +243,17 @@ class Facts:
         """Whether a formula follows from what is known: for what ought to, as a No may take long."""
         return self.proves(formula) or self._proves(formula, CASE_DEPTH, THOROUGH)
 
-    def refutes(self, formula: Formula) -> bool:
-        """Whether the opposite of a formula follows."""
-        return self.proves(negated(formula))
+    def procedure(self, formula: Formula) -> Procedure | None:
+        """The simplest procedure that proves a formula; None where it is not proven."""
+        if formula is True or (isinstance(formula, Linear) and not formula.terms and formula.constant >= 0):
+            return "constants"
+        if self.impossible:
+            return "unreachable"
+        if self._proves(formula, 0, GLANCE):
+            return "bounds"
+        if self._proves(formula, 0, THOROUGH):
+            return "elimination"
+        return "cases" if self.proves_thoroughly(formula) else None
 
     def _proves(self, formula: Formula, depth: int, effort: tuple[int, int]) -> bool:
         match formula:
@@ -336,7 +280,7 @@ class Facts:
             return False
         mark = self.mark()
         for part in parts[:-1]:
-            self.assume(negated(part))
+            self._take(negated(part))
         proven = self.impossible or self._proves(parts[-1], depth - 1, effort)
         self.rollback(mark)
         return proven
@@ -354,7 +298,7 @@ class Facts:
 
     def _in_case(self, goal: Linear, condition: Formula, depth: int, effort: tuple[int, int]) -> bool:
         mark = self.mark()
-        self.assume(condition)
+        self._take(condition)
         proven = self.impossible or self._proves(goal, depth - 1, effort)
         self.rollback(mark)
         return proven

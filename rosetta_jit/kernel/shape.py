@@ -223,6 +223,10 @@ def shape_error(kernel: Kernel) -> str | None:
     """What is wrong with a kernel's text, if anything is."""
     if not kernel.bodies:
         return "a kernel without bodies"
+    if any(stride < 0 for stride in kernel.strides):
+        return "a lane whose rows have less than no bytes"
+    if not 0 <= kernel.hidden <= len(kernel.strides):
+        return f"{kernel.hidden} of {len(kernel.strides)} lanes are hidden"
     for number, routine in enumerate(kernel.routines):
         problem = _routine_error(routine, kernel.routines[:number])
         if problem is not None:

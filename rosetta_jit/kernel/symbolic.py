@@ -6,13 +6,12 @@ whoever has a value has the proof too.
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel import integers
+from rosetta_jit.kernel import claims, integers
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
 from rosetta_jit.kernel.decimals import MAX_PLACES, MAX_SCALE, MOST_DIGITS
+from rosetta_jit.kernel.formula import All, Any, bounded, equal, negated
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Binary,
@@ -37,100 +36,18 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.linear import Linear, minus, plus, shifted, times
-from rosetta_jit.kernel.prove import All, Any, Facts, bounded, equal, negated
+from rosetta_jit.kernel.obligations import UnprovenError, certify, demand, oblige
 
 if TYPE_CHECKING:
+    from rosetta_jit.kernel.formula import Formula
     from rosetta_jit.kernel.ir import Address, Arithmetic, Comparison, Expr, Scalar
-    from rosetta_jit.kernel.prove import Formula
-
-MAX_POSITION = 1 << 60
-"""The end of any buffer: a quarter of all memory that 64 bits can address, and more than any machine has."""
-
-MAX_ROWS = 1 << 48
-"""The capacity of any lane."""
+    from rosetta_jit.kernel.prove import Facts
+    from rosetta_jit.kernel.scope import Scope, Typed, Value
 
 ROUNDING = frozenset(("sqrt", "floor", "ceil", "trunc", "rint"))
 """Functions that a float32 has too."""
 
-Value = Linear | bool | None | All | Any
-"""An integer, or a formula for a bool; None is a value of which nothing is known (every float)."""
-
-Typed = tuple["Scalar", Value]
-
-
-class UnprovenError(AssertionError):
-    """An obligation that does not follow from what is known."""
-
-
-@dataclass(slots=True)
-class Scope:
-    """What a place of a kernel can see: its locals, the lanes, and the facts about them.
-
-    Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
-    """
-
-    strides: tuple[int, ...]
-    facts: Facts = field(default_factory=Facts)
-    locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
-    used: list[Linear] = field(default_factory=list[Linear])
-    capacity: list[Linear] = field(default_factory=list[Linear])
-    _trail: list[tuple[str, Typed | None]] = field(default_factory=list[tuple[str, "Typed | None"]])
-
-    def bind(self, name: str, typed: Typed) -> None:
-        """Give a local a value."""
-        self._trail.append((name, self.locals.get(name)))
-        self.locals[name] = typed
-
-    def mark(self) -> int:
-        """A point to roll back to."""
-        return len(self._trail)
-
-    def changed(self, mark: int) -> dict[str, Typed]:
-        """The locals that were there at a mark and have other values now, with their values then."""
-        first: dict[str, Typed | None] = {}
-        for name, old in self._trail[mark:]:
-            first.setdefault(name, old)
-        return {name: old for name, old in first.items() if old is not None and self.locals[name] is not old}
-
-    def rollback(self, mark: int) -> None:
-        """Give locals the values that they had at a mark."""
-        while len(self._trail) > mark:
-            name, old = self._trail.pop()
-            if old is None:
-                del self.locals[name]
-            else:
-                self.locals[name] = old
-
-
-def entry(strides: tuple[int, ...]) -> Scope:
-    """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
-    scope = Scope(strides)
-    facts = scope.facts
-    begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
-    end = plus(begin, length)
-    facts.assume(shifted(times(end, -1), MAX_POSITION))
-    scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
-    for _ in strides:
-        capacity, used = facts.fresh(0, MAX_ROWS), facts.fresh(0, MAX_ROWS)
-        facts.assume(minus(capacity, used))
-        scope.capacity.append(capacity)
-        scope.used.append(used)
-    return scope
-
-
-# --- obligations -------------------------------------------------------------------------------------------------------
-
-
-def oblige(scope: Scope, formula: Formula, otherwise: str) -> None:
-    """Demand a proof."""
-    if not scope.facts.proves_thoroughly(formula):
-        raise UnprovenError(otherwise)
-
-
-def demand(holds: bool, otherwise: str) -> None:
-    """Demand what shows without a proof."""
-    if not holds:
-        raise UnprovenError(otherwise)
+# --- what is evaluated must be -----------------------------------------------------------------------------------------
 
 
 def integer(scope: Scope, expr: Expr, type_: Scalar = "i64") -> Linear:
@@ -157,7 +74,7 @@ def condition(scope: Scope, expr: Expr) -> Formula:
 
 def check_extent(scope: Scope, address: Address, size: Linear) -> Linear:
     """``size >= 0`` bytes from an address lie in the message, or in a lane; returns the first byte's offset there."""
-    oblige(scope, size, "a size that may be negative")
+    oblige(scope, size, claims.SIZE)
     match address:
         case Wire(at):
             start = integer(scope, at)
@@ -167,7 +84,7 @@ def check_extent(scope: Scope, address: Address, size: Linear) -> Linear:
             row = _row(scope, address)
             stride = scope.strides[address.lane]
             start = shifted(times(row, stride), address.offset)
-            oblige(scope, minus(minus(times(scope.capacity[address.lane], stride), start), size), "bytes outside the lane")
+            oblige(scope, minus(minus(times(scope.capacity[address.lane], stride), start), size), claims.WITHIN_LANE)
             return start
         case _:
             assert_never(address)
@@ -176,37 +93,37 @@ def check_extent(scope: Scope, address: Address, size: Linear) -> Linear:
 def check_wire(scope: Scope, start: Linear, size: Linear) -> None:
     """``size`` bytes from ``start`` lie in the message."""
     begin, end = linear(scope.locals["begin"][1]), linear(scope.locals["end"][1])
-    oblige(scope, minus(minus(end, start), size), "bytes beyond the end of the message")
-    oblige(scope, minus(start, begin), "bytes before the begin of the message")
+    oblige(scope, minus(minus(end, start), size), claims.BEFORE_END)
+    oblige(scope, minus(start, begin), claims.AFTER_BEGIN)
 
 
 def check_field(scope: Scope, place: Place, type_: Scalar) -> None:
     """A scalar lies in a row of a lane, aligned."""
     row = _row(scope, place)
     width, stride = WIDTH[type_], scope.strides[place.lane]
-    demand(place.offset + width <= stride, "a field outside its row")
-    demand(place.offset % width == 0 and stride % width == 0, "a field that is not aligned")
-    oblige(scope, shifted(minus(scope.capacity[place.lane], row), -1), "a row outside its lane")
+    certify(scope, place.offset + width <= stride, claims.WITHIN_ROW)
+    certify(scope, place.offset % width == 0 and stride % width == 0, claims.ALIGNED)
+    oblige(scope, shifted(minus(scope.capacity[place.lane], row), -1), claims.BELOW_CAPACITY)
 
 
 def _row(scope: Scope, place: Place) -> Linear:
     check_lane(scope, place.lane)
-    demand(place.offset >= 0, "a negative offset")
+    certify(scope, place.offset >= 0, claims.OFFSET)
     row = integer(scope, place.row)
-    oblige(scope, row, "a row that may be negative")
+    oblige(scope, row, claims.ROW_NUMBER)
     return row
 
 
 def check_lane(scope: Scope, lane: int) -> None:
     """The lane exists."""
-    demand(0 <= lane < len(scope.strides), "no such lane")
+    certify(scope, 0 <= lane < len(scope.strides), claims.LANE)
 
 
 def in_range(scope: Scope, value: Linear, type_: Scalar) -> Linear:
     """``value``, proven to be in its type's range: the operation that made it did not wrap."""
     low, high = limits(type_)
-    oblige(scope, shifted(times(value, -1), high), f"{type_} arithmetic that may wrap")
-    oblige(scope, shifted(value, -low), f"{type_} arithmetic that may wrap")
+    oblige(scope, shifted(times(value, -1), high), claims.no_wrap(type_))
+    oblige(scope, shifted(value, -low), claims.no_wrap(type_))
     return value
 
 
@@ -330,12 +247,12 @@ def _checked_binary(scope: Scope, op: Arithmetic, type_: Scalar, left: Linear, r
         case "add" | "sub" | "mul":
             return in_range(scope, _integer_binary(scope, op, type_, left, right), type_)
         case "div" | "rem":
-            oblige(scope, negated(equal(right, Linear(0))), "a division that may be by zero")
+            oblige(scope, negated(equal(right, Linear(0))), claims.DIVISOR)
             low = limits(type_)[0]
             overflows = All((equal(left, Linear(low)), equal(right, Linear(-1))))
-            demand(low == 0 or scope.facts.refutes(overflows), "a division that may overflow")
+            oblige(scope, low == 0 or negated(overflows), claims.QUOTIENT)
         case "shl" | "shr":
-            oblige(scope, All((right, shifted(times(right, -1), 8 * WIDTH[type_] - 1))), "a shift by the width or more")
+            oblige(scope, All((right, shifted(times(right, -1), 8 * WIDTH[type_] - 1))), claims.SHIFT)
         case _:
             pass
     return _integer_binary(scope, op, type_, left, right)
@@ -375,7 +292,7 @@ def _extreme(facts: Facts, left: Linear, right: Linear, sign: int) -> Linear:
     """The greater of two, or with ``sign`` -1 the lesser."""
     above = times(minus(left, right), sign)
     result = facts.chosen(((above, left), (negated(above), right)))
-    facts.assume(All((times(minus(result, left), sign), times(minus(result, right), sign))))
+    facts.derive(All((times(minus(result, left), sign), times(minus(result, right), sign))))
     return result
 
 

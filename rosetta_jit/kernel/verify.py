@@ -11,9 +11,10 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.dataclass import dataclass
-from rosetta_jit.kernel import contracts, paths
+from rosetta_jit.kernel import claims, contracts, effects, paths
+from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.formula import All, equal, negated
 from rosetta_jit.kernel.ir import (
-    WIDTH,
     Advance,
     Assign,
     Call,
@@ -24,7 +25,6 @@ from rosetta_jit.kernel.ir import (
     HostCall,
     If,
     Let,
-    Place,
     Require,
     Reserve,
     Return,
@@ -33,47 +33,29 @@ from rosetta_jit.kernel.ir import (
     Switch,
     Var,
     While,
-    Wire,
 )
 from rosetta_jit.kernel.linear import Linear, minus, plus, shifted
-from rosetta_jit.kernel.loops import Loop, is_bounded, walk_rounds
+from rosetta_jit.kernel.loops import Loop, bounds, walk_rounds
+from rosetta_jit.kernel.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.printer import statement_text
-from rosetta_jit.kernel.prove import All, Any, equal, negated
+from rosetta_jit.kernel.scope import entry
 from rosetta_jit.kernel.shape import shape_error
-from rosetta_jit.kernel.symbolic import (
-    MAX_ROWS,
-    Scope,
-    UnprovenError,
-    check_extent,
-    check_field,
-    check_lane,
-    check_wire,
-    condition,
-    demand,
-    entry,
-    evaluate,
-    integer,
-    linear,
-    oblige,
-    unknown,
-)
+from rosetta_jit.kernel.symbolic import condition, evaluate, integer, linear
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.kernel.ir import Block, Expr, Failure, Kernel, Routine, Stmt
+    from rosetta_jit.kernel.formula import Formula
+    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Routine, Stmt
     from rosetta_jit.kernel.loops import Guess
-    from rosetta_jit.kernel.prove import Formula
-    from rosetta_jit.kernel.symbolic import Typed
+    from rosetta_jit.kernel.record import Record
+    from rosetta_jit.kernel.scope import Scope, Typed
 
 MAX_PROOFS = 256
 """Routines of which it is remembered that they were proven."""
 
 MAX_TERMS = 6
 """A longer sum gets a name: sums over many fields would cost more with each field."""
-
-MAX_USED_TERMS = 2
-"""A used length of more terms gets a name: what is known of it, and asked, would cost more with each text that is put together."""
 
 
 class VerificationError(AssertionError):
@@ -94,17 +76,19 @@ class _Walk:
     needed: set[int] = field(default_factory=set[int])
 
 
-def verify(kernel: Kernel) -> None:
-    """Prove a kernel.
+def verify(kernel: Kernel, record: Record | None = None) -> None:
+    """Prove a kernel, and write down what it owes in a record, if there is one.
 
     Raises
     ------
     VerificationError
         Something in it cannot be shown to be safe; the message names the statement.
     """
-    routines = _proven_routines(kernel)
-    for body in kernel.bodies:
-        _body(_Walk(entry(kernel.strides), routines), kernel, body)
+    routines = _proven_routines(kernel, record)
+    for number, body in enumerate(kernel.bodies):
+        if record is not None:
+            record.begin(f"body {number + 1}" if len(kernel.bodies) > 1 else "", kernel.sites)
+        _body(_Walk(entry(kernel.strides, record), routines), kernel, body)
 
 
 def settled(kernel: Kernel) -> frozenset[int]:
@@ -126,14 +110,18 @@ def settled(kernel: Kernel) -> frozenset[int]:
     return frozenset(found - needed)
 
 
-def _proven_routines(kernel: Kernel) -> Mapping[str, Routine]:
+def _proven_routines(kernel: Kernel, record: Record | None = None) -> Mapping[str, Routine]:
     """The routines of a kernel of sound shape, proven."""
     problem = shape_error(kernel)
     if problem is not None:
         raise VerificationError(f"kernel {kernel.name}: {problem}")
     for number, routine in enumerate(kernel.routines):
         try:
-            _prove_routine(kernel.strides, routine, kernel.routines[:number])
+            if record is None:
+                _prove_routine(kernel.strides, routine, kernel.routines[:number])
+            else:
+                record.begin(f"routine {routine.name}", routine.sites)
+                _routine(kernel.strides, routine, kernel.routines[:number], record)
         except UnprovenError as error:
             raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
     return {routine.name: routine for routine in kernel.routines}
@@ -142,7 +130,11 @@ def _proven_routines(kernel: Kernel) -> Mapping[str, Routine]:
 @lru_cache(maxsize=MAX_PROOFS)
 def _prove_routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...]) -> None:
     """Prove a routine, which calls those before it. No pass changes one, so that a proof holds for all rounds of all passes."""
-    walk = _Walk(contracts.inside(strides, routine), {each.name: each for each in before})
+    _routine(strides, routine, before, None)
+
+
+def _routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...], record: Record | None) -> None:
+    walk = _Walk(contracts.inside(strides, routine, record), {each.name: each for each in before})
     _block(walk, routine.body)
     contracts.keep(walk.scope, routine)
 
@@ -150,21 +142,26 @@ def _prove_routine(strides: tuple[int, ...], routine: Routine, before: tuple[Rou
 def _body(walk: _Walk, kernel: Kernel, body: Block) -> None:
     try:
         ended = _block(walk, body)
-        demand(ended or walk.scope.facts.impossible, "a path ends without Return")
+        if not ended:
+            oblige(walk.scope, formula=False, claim=claims.RETURNS)
     except UnprovenError as error:
         raise VerificationError(f"kernel {kernel.name}: {error}") from error
 
 
 def _block(walk: _Walk, block: Block) -> bool:
     """Walk a block; True when every path through it has returned."""
+    outer = walk.scope.at
     for number, stmt in enumerate(block):
+        walk.scope.at = stmt
         try:
             ended = _statement(walk, stmt)
         except UnprovenError as error:
             raise _named(error, stmt) from error.__cause__
         if ended:
             demand(number == len(block) - 1, "statements after the end of their path")
+            walk.scope.at = outer
             return True
+    walk.scope.at = outer
     return False
 
 
@@ -181,10 +178,10 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
     match stmt:
         case Require(at, size, failure):
             start, length = integer(scope, at), integer(scope, size)
-            _failure(scope, failure)
+            effects.failure(scope, failure)
             _check(walk, stmt, All((start, length, minus(minus(linear(scope.locals["end"][1]), start), length))))
         case Expect(expr, failure):
-            _failure(scope, failure)
+            effects.failure(scope, failure)
             _check(walk, stmt, condition(scope, expr))
         case Let(name, value) | Var(name, value):
             scope.bind(name, _value(scope, value))
@@ -196,12 +193,12 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
             scope.bind(name, new)
         case Return(position):
-            oblige(scope, integer(scope, position), "a position that may be negative")
+            oblige(scope, integer(scope, position), claims.POSITION)
             return True
         case Store() | SetField() | Copy() | Fill():
-            _effect(scope, stmt)
+            effects.move(scope, stmt)
         case Reserve() | Advance():
-            _rows(scope, stmt)
+            effects.rows(scope, stmt)
         case For() | While() | If() | Switch():
             return _nested(walk, stmt)
         case Call(routine, _, _, _, indices):
@@ -209,7 +206,7 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
                 integer(scope, position)
             contracts.bind(scope, walk.routines[routine], stmt)
         case HostCall():
-            _host_call(scope, stmt)
+            effects.host_call(scope, stmt)
         case _:
             assert_never(stmt)
     return False
@@ -234,12 +231,6 @@ def _note(walk: _Walk, stmt: Require | Expect | If, formula: Formula) -> None:
         walk.needed.add(key)
 
 
-def _failure(scope: Scope, failure: Failure) -> None:
-    integer(scope, failure.at)
-    for position in failure.indices:
-        integer(scope, position)
-
-
 def _value(scope: Scope, expr: Expr) -> Typed:
     type_, value = evaluate(scope, expr)
     if isinstance(value, Linear) and len(value.terms) > MAX_TERMS:
@@ -256,69 +247,9 @@ def _shortened(scope: Scope, value: Linear) -> Linear:
     low = facts.lower(rest)
     if low < 0 and facts.proves(rest):  # what its parts say together, which bounds of each do not
         low = 0
-    atom = facts.fresh(low, facts.upper(rest))
-    facts.assume(equal(atom, rest))
+    atom = facts.abbreviated(rest, low, facts.upper(rest))
     paths.learn_distance(scope, minus(minus(end, origin), atom), facts.lower(minus(end, value)))
     return plus(origin, atom)
-
-
-def _effect(scope: Scope, stmt: Store | SetField | Copy | Fill) -> None:
-    match stmt:
-        case Store(at, value, _):
-            type_, _ = evaluate(scope, value)
-            check_wire(scope, integer(scope, at), Linear(WIDTH[type_]))
-        case SetField(place, value):
-            check_field(scope, place, evaluate(scope, value)[0])
-        case Copy(target, source, size):
-            _copy(scope, target, source, integer(scope, size))
-        case Fill(target, size, byte):
-            demand(0 <= byte <= 255, f"{byte} is no byte")
-            check_extent(scope, target, integer(scope, size))
-        case _:
-            assert_never(stmt)
-
-
-def _copy(scope: Scope, target: Place | Wire, source: Place | Wire, size: Linear) -> None:
-    into, out_of = check_extent(scope, target, size), check_extent(scope, source, size)
-    demand(isinstance(target, Place) or isinstance(source, Place), "a copy within the message")
-    if isinstance(target, Place) and isinstance(source, Place) and target.lane == source.lane:
-        apart = Any((minus(minus(out_of, into), size), minus(minus(into, out_of), size)))
-        oblige(scope, apart, "a copy onto itself")
-
-
-def _host_call(scope: Scope, call: HostCall) -> None:
-    for argument in call.arguments:
-        evaluate(scope, argument)
-    _failure(scope, call.failure)
-    filled = None if call.target is None else check_extent(scope, call.target.address, integer(scope, call.target.size))
-    for extent in call.inputs:
-        begin, size = check_extent(scope, extent.address, integer(scope, extent.size)), integer(scope, extent.size)
-        if filled is not None and call.target is not None and _same_memory(extent.address, call.target.address):
-            apart = Any((minus(minus(filled, begin), size), minus(minus(begin, filled), integer(scope, call.target.size))))
-            oblige(scope, apart, "a function that fills what it reads")
-    scope.bind(call.result.name, (call.result.type, unknown(scope, call.result.type)))
-
-
-def _same_memory(one: Place | Wire, other: Place | Wire) -> bool:
-    return isinstance(one, Wire) == isinstance(other, Wire) and getattr(one, "lane", None) == getattr(other, "lane", None)
-
-
-def _rows(scope: Scope, stmt: Reserve | Advance) -> None:
-    check_lane(scope, stmt.lane)
-    count = integer(scope, stmt.count)
-    oblige(scope, count, "a count of rows that may be negative")
-    used, capacity = scope.used[stmt.lane], scope.capacity[stmt.lane]
-    room = minus(minus(capacity, used), count)
-    if isinstance(stmt, Reserve):
-        scope.facts.assume(room)
-        return
-    oblige(scope, room, "rows that were not reserved")
-    after = plus(used, count)
-    if len(after.terms) > MAX_USED_TERMS:
-        atom = scope.facts.fresh(scope.facts.lower(used), MAX_ROWS)
-        scope.facts.assume(All((equal(atom, after), minus(capacity, atom), minus(atom, used))))
-        after = atom
-    scope.used[stmt.lane] = after
 
 
 # --- branches and loops ------------------------------------------------------------------------------------------------
@@ -349,6 +280,8 @@ def _cases(scope: Scope, stmt: Switch) -> list[tuple[Formula, Block]]:
     type_, value = evaluate(scope, stmt.value)
     demand(type_ != "bool", "a switch on a bool")
     subject = linear(value)
+    low, high = limits(type_)
+    demand(all(low <= number <= high for number in numbers), f"a case that is no {type_}")
     others = All(tuple(negated(equal(subject, Linear(number))) for number in sorted(numbers)))
     return [*((equal(subject, Linear(number)), block) for number, block in stmt.cases), (others, stmt.default)]
 
@@ -375,16 +308,16 @@ def _while(walk: _Walk, loop: While) -> None:
         _assume_invariant(scope, loop)
         before, chosen = integer(scope, loop.measure), condition(scope, loop.condition)
         scope.facts.assume(chosen)
-        demand(is_bounded(scope, before, chosen, first_atom), "a loop that nothing bounds")
+        oblige(scope, bounds(scope, before, chosen, first_atom), claims.BOUNDED)
         at_start.append(before)
 
     def leave() -> None:
-        oblige(scope, shifted(minus(integer(scope, loop.measure), at_start[-1]), -1), "a round that makes no progress")
+        oblige(scope, shifted(minus(integer(scope, loop.measure), at_start[-1]), -1), claims.PROGRESS)
         for expr in loop.invariant:
-            oblige(scope, condition(scope, expr), "an invariant that a round breaks")
+            oblige(scope, condition(scope, expr), claims.INVARIANT_KEPT)
 
     for expr in loop.invariant:
-        oblige(scope, condition(scope, expr), "an invariant that does not hold at first")
+        oblige(scope, condition(scope, expr), claims.INVARIANT_FIRST)
     _rounds(walk, loop, enter, leave)
     _assume_invariant(scope, loop)
     scope.facts.assume(negated(condition(scope, loop.condition)))
