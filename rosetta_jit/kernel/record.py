@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Site, Stmt
     from rosetta_jit.kernel.paths import Arrival
     from rosetta_jit.kernel.prove import Procedure
-    from rosetta_jit.kernel.scope import Scope, Typed
+    from rosetta_jit.kernel.scope import Scope, Typed, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +211,9 @@ class Record:
         met = Premise(ways, self.stmt, common)
         for formula in claimed:
             self.write(met, formula, claims.ALL_PATHS, first, "paths")
+        for arrival in arrivals:
+            for formula in _unlike(scope, before, arrival, first):
+                self.write(arrival.premises, formula, claims.ALL_PATHS, first, "paths")
 
     # --- fields ------------------------------------------------------------------------------------------------------
 
@@ -261,9 +264,23 @@ def _since(premises: Premise | None, common: Premise | None) -> list[Formula]:
 
 def _values(scope: Scope, before: dict[str, Typed], arrival: Arrival) -> list[Formula]:
     """That the variables and the used lengths where paths meet are those of one of them."""
-    pairs = [(scope.locals[name][1], arrival.changed.get(name, old)[1]) for name, old in before.items()]
-    pairs += zip(scope.used, arrival.used, strict=True)
-    return [equal(here, there) for here, there in pairs if isinstance(here, Linear) and isinstance(there, Linear)]
+    return [equal(here, there) for here, there in _pairs(scope, before, arrival) if isinstance(here, Linear) and isinstance(there, Linear)]
+
+
+def _unlike(scope: Scope, before: dict[str, Typed], arrival: Arrival, first: int) -> Iterator[Formula]:
+    """Where values are kept that are no new unknowns (atoms from ``first`` on), they must be those of each path."""
+    for here, there in _pairs(scope, before, arrival):
+        if isinstance(here, Linear) and isinstance(there, Linear):
+            if here != there and all(atom < first for atom, _ in here.terms):
+                yield equal(here, there)
+        elif here is not None and here != there:
+            yield False
+
+
+def _pairs(scope: Scope, before: dict[str, Typed], arrival: Arrival) -> list[tuple[Value, Value]]:
+    """The values of variables and the used lengths where paths meet, each with that of one path."""
+    values: list[tuple[Value, Value]] = [(scope.locals[name][1], arrival.changed.get(name, old)[1]) for name, old in before.items()]
+    return [*values, *zip(scope.used, arrival.used, strict=True)]
 
 
 def _within(value: Linear, low: int, high: int) -> Formula:

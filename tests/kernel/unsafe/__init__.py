@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tests.kernel.unsafe import flow, memory, text, values
+from tests.kernel.unsafe import flow, loops, memory, relations, text, values
 
-GROUPS = memory.CASES, values.CASES, flow.CASES, text.CASES
+GROUPS = memory.CASES, values.CASES, relations.CASES, flow.CASES, loops.CASES, text.CASES
 REFUSED = {name: each for cases in GROUPS for name, each in cases.refused.items()}
 ACCEPTED = {name: each for cases in GROUPS for name, each in cases.accepted.items()}
 assert len(REFUSED) == sum(len(cases.refused) for cases in GROUPS)

@@ -263,6 +263,28 @@ CASES.add(
     (*rows(1), SetField(Place(1, sub(Used(1), 1)), index(1))),
 )
 
+SEVERAL = need(BEGIN, 4), *(Let(f"k_{k}", Convert("i64", Load("u8", add(BEGIN, k)))) for k in range(4))
+TAKEN = tuple(stmt for k in range(4) for stmt in (Reserve(1, i64(f"k_{k}")), Advance(1, i64(f"k_{k}"))))
+CASES.add(
+    "rows behind those of several counts",
+    "a row outside its lane",
+    (*SEVERAL, *TAKEN, expect(compare("ge", Used(1), 1)), SetField(Place(1, Used(1)), index(1))),
+    (*SEVERAL, *TAKEN, expect(compare("ge", Used(1), 1)), SetField(Place(1, sub(Used(1), 1)), index(1))),
+)
+CASES.add(
+    "rows of several counts that may be none",
+    "a row that may be negative",
+    (*SEVERAL, *TAKEN, SetField(Place(1, sub(Used(1), 1)), index(1))),
+    (*SEVERAL, *TAKEN, Reserve(1, index(1)), Let("c", Used(1)), Advance(1, index(1)), SetField(Place(1, sub(Used(1), 1)), index(1))),
+)
+CASES.add(
+    "rows of several counts that nobody reserved",
+    "rows that were not reserved",
+    (*SEVERAL, *TAKEN, Advance(1, index(1))),
+    (*SEVERAL, *TAKEN, Reserve(1, index(1)), Advance(1, index(1))),
+)
+CASES.accept("a copy between two lanes", (*rows(1), ROW_EXISTS, Copy(HERE, Place(1, i64("c")), index(8))))
+
 # --- functions of the host ---------------------------------------------------------------------------------------------
 
 
@@ -303,3 +325,11 @@ CASES.add(
 CASES.add("an argument of a function", "bytes beyond the end of the message", (HostCall("f", (Load("u8", BEGIN),), i64("x"), fail(1)),))
 CASES.add("where a function fails", "bytes beyond the end of the message", (HostCall("f", (), i64("x"), fail(1, Load("i64", BEGIN))),))
 CASES.add("what the host tells", "a row that may be negative", (SetField(Place(1, Told("number")), index(1)),), (Let("x", Told("number")),))
+CASES.accept(
+    "a function that fills another lane",
+    (*rows(1), ROW_EXISTS, HostCall("f", (), i64("x"), fail(1), (Extent(Place(1, i64("c")), index(8)),), Extent(HERE, index(8)))),
+)
+CASES.accept(
+    "a function that fills a lane with the message",
+    (need(BEGIN, 8), ROW_EXISTS, HostCall("f", (), i64("x"), fail(1), (Extent(Wire(BEGIN), index(8)),), Extent(HERE, index(8)))),
+)

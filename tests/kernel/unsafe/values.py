@@ -139,12 +139,15 @@ OPERATIONS = {
     "minus twice": of(times(N, -2), -10, 6, (-3, 5)),
     "product": of(times(N, M), -12, 20, (-3, 5), (2, 4)),
     "product of two below zero": of(times(N, M), 6, 20, (-5, -3), (-4, -2)),
+    "product of sums": of(times(plus(N, 2), plus(M, 3)), 12, 42, (1, 4), (1, 4)),
     "half": of(Binary("div", N, index(2)), 0, 3, (0, 7)),
     "half of what may be negative": of(Binary("div", N, index(2)), -4, 4, (-7, 7)),
     "division": of(Binary("div", N, M), 0, 20, (0, 20), (1, 4)),
     "division by what may be negative": of(Binary("div", N, M), -20, 20, (-20, 20), (-4, -1)),
     "remainder": of(Binary("rem", N, index(4)), 0, 3, (0, 100)),
     "remainder of what may be negative": of(Binary("rem", N, index(4)), -3, 3, (-100, 100)),
+    "remainder by less than nothing": of(Binary("rem", N, index(-4)), -3, 3, (-100, 100)),
+    "remainder by a sum": of(Binary("rem", N, plus(M, 2)), 0, 4, (0, 100), (1, 3)),
     "remainder by another": of(Binary("rem", N, M), 0, 4, (0, 100), (1, 5)),
     "remainder by what may be negative": of(Binary("rem", N, M), -4, 4, (-100, 100), (-5, -2)),
     "low bits": of(Binary("and", N, index(7)), 0, 7, ANY),
@@ -213,6 +216,21 @@ for what, condition, accepted in (
         CASES.accept(f"condition: {what}", body)
     else:
         CASES.add(f"condition: {what}", "a row outside its lane", body)
+
+OPAQUE = Compare("lt", Convert("f64", N), Const("f64", 1.0)), Compare("lt", Convert("f64", M), Const("f64", 2.0))
+CASES.add(
+    "two choices that look the same",
+    "a row that may be negative",
+    (*TWO, *rows(2), put(sub(Select(OPAQUE[0], index(0), index(1)), Select(OPAQUE[1], index(0), index(1))))),
+    (*TWO, *rows(2), put(Select(OPAQUE[0], index(0), index(1)))),
+)
+CASES.add(
+    "the number of a bool",
+    "a row that may be negative",
+    (*between("n", 0, 1), expect(Unary("not", Convert("bool", N))), *rows(2), put(sub(N, 1))),
+    (*between("n", 0, 1), expect(Convert("bool", N)), *rows(2), put(sub(N, 1))),
+)
+CASES.add("digits of zero", "u64 arithmetic that may wrap", (*WORD, Let("x", Binary("sub", Digits(Convert("f64", N)), Const("u64", 1)))))
 
 # --- types -------------------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,169 @@
+"""The proof of a mapping's kernels, as data: what each owes, who proved it, and what z3 says of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from itertools import repeat
+from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.cells import printable
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.errors import ReportError
+from rosetta_jit.explain.slots import slot_paths
+from rosetta_jit.kernel.ir import SetField
+from rosetta_jit.kernel.printer import statement_text
+from rosetta_jit.kernel.record import Record
+from rosetta_jit.kernel.verify import VerificationError, verify
+from rosetta_jit.pipeline import Build
+from rosetta_jit.request import Request, plain_parameters
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from rosetta_jit.kernel.ir import Kernel
+    from rosetta_jit.kernel.opinion import Opinion
+    from rosetta_jit.kernel.prove import Procedure
+    from rosetta_jit.kernel.record import Obligation
+    from rosetta_jit.model.layout import Layout
+
+    Judge = Callable[[Iterable[Obligation]], Iterator[Opinion]]
+    Known = dict[Kernel, tuple[tuple["Owed", ...], str]]
+
+Direction = Literal["decode", "encode"]
+Purpose = Literal["decode", "borrow", "encode", "size"]
+DIRECTIONS: tuple[Direction, ...] = ("decode", "encode")
+PURPOSES: dict[Direction, tuple[Purpose, ...]] = {"decode": ("decode",), "encode": ("encode", "size")}
+ABSENT = frozenset(("no-rules", "ambiguous-encoding"))
+"""Mistakes that say no more than that a mapping has no kernel of a direction, or of an encoding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Owed:
+    """One obligation: where it lies, what it claims of which field, who proved it, and the second opinion, if one was asked for."""
+
+    part: str
+    statement: str
+    path: str
+    claim: str
+    procedure: Procedure | None
+    opinion: Opinion | None = None
+
+    @property
+    def is_proved(self) -> bool:
+        """Whether it is proven, and z3 agrees where it was asked."""
+        return self.procedure is not None and (self.opinion is None or self.opinion.verdict == "proved")
+
+
+@dataclass(frozen=True, slots=True)
+class KernelProof:
+    """What one kernel owes. ``refusal`` is why it could not be proven, if it could not."""
+
+    purpose: Purpose
+    encoding: str
+    owed: tuple[Owed, ...]
+    refusal: str = ""
+
+    @property
+    def is_proved(self) -> bool:
+        """Whether all of it is."""
+        return not self.refusal and all(each.is_proved for each in self.owed)
+
+    def procedures(self) -> Counter[str]:
+        """How many obligations each procedure proved."""
+        return Counter(each.procedure or "nobody" for each in self.owed)
+
+
+@dataclass(frozen=True, slots=True)
+class MappingProof:
+    """A mapping's kernels; ``absent`` says which kernels it does not have, and why."""
+
+    mapping: str
+    kernels: tuple[KernelProof, ...]
+    absent: tuple[str, ...]
+
+    @property
+    def is_proved(self) -> bool:
+        """Whether there is something to prove, and all of it is."""
+        return bool(self.kernels) and all(each.is_proved for each in self.kernels)
+
+
+def proof(
+    mapping: str, *, encoding: str | None = None, parameters: Mapping[str, object] | None = None, judge: Judge | None = None
+) -> MappingProof:
+    """The proof of all kernels of a mapping: of both directions, and of all encodings of its wire or the one that is named.
+
+    Parameters
+    ----------
+    judge
+        Who gives a second opinion: `rosetta_jit.kernel.opinion.opinions`.
+
+    Raises
+    ------
+    MappingError
+        The mapping is wrong; all that is wrong with it.
+    """
+    given = plain_parameters(parameters or {})
+    kernels: list[KernelProof] = []
+    absent: dict[str, None] = {}
+    known: dict[Kernel, tuple[tuple[Owed, ...], str]] = {}
+    for direction in DIRECTIONS:
+        request = Request(direction, mapping, encoding=encoding, parameters=given, backend="python")
+        try:
+            encodings = (encoding,) if encoding is not None else tuple(Build(request).wire_framework.encodings)
+            for name in encodings:
+                kernels += _of_encoding(replace(request, encoding=name), absent, known, judge)
+        except ReportError as error:
+            absent[_reason(error)] = None
+    return MappingProof(mapping, tuple(kernels), tuple(absent))
+
+
+def _of_encoding(request: Request, absent: dict[str, None], known: Known, judge: Judge | None) -> Iterator[KernelProof]:
+    """The proofs of a direction's kernels in an encoding. A decoder that borrows is shown where it differs from the one that copies."""
+    assert request.encoding is not None
+    try:
+        made = list(zip(PURPOSES[request.direction], _kernels(request), strict=True))
+        if request.direction == "decode":
+            (borrowing,) = _kernels(replace(request, borrow=True))
+            made += [("borrow", borrowing)] if borrowing != made[0][1] else []
+    except ReportError as error:
+        absent[f"{request.encoding}: {_reason(error)}"] = None
+        return
+    except VerificationError as error:
+        yield KernelProof(PURPOSES[request.direction][0], request.encoding, (), str(error))
+        return
+    for purpose, kernel in made:
+        if kernel not in known:
+            known[kernel] = _proven(kernel, Build(request).layout, judge)
+        yield KernelProof(purpose, request.encoding, *known[kernel])
+
+
+def _kernels(request: Request) -> tuple[Kernel, ...]:
+    return Build(request).kernels
+
+
+def _reason(error: ReportError) -> str:
+    """Why there is no such kernel; every other mistake is the user's to see."""
+    first = error.diagnostics[0]
+    if first.code not in ABSENT:
+        raise error
+    return first.message
+
+
+def _proven(kernel: Kernel, layout: Layout, judge: Judge | None) -> tuple[tuple[Owed, ...], str]:
+    record, refusal = Record(), ""
+    try:
+        verify(kernel, record)
+    except VerificationError as error:
+        refusal = str(error)
+    paths = slot_paths(layout)
+    opinions = repeat(None) if judge is None else judge(record.obligations)
+    return tuple(_owed(each, opinion, paths) for each, opinion in zip(record.obligations, opinions, strict=False)), refusal
+
+
+def _owed(obligation: Obligation, opinion: Opinion | None, paths: Mapping[tuple[int, int], str]) -> Owed:
+    statement = "" if obligation.stmt is None else statement_text(obligation.stmt)
+    path = obligation.path
+    if isinstance(obligation.stmt, SetField):
+        path = paths.get((obligation.stmt.place.lane, obligation.stmt.place.offset), path)
+    return Owed(obligation.part, printable(statement), printable(path), obligation.claim.holds, obligation.procedure, opinion)

@@ -1,0 +1,113 @@
+"""z3's opinion on what kernels owe: it agrees with the proof, refutes what is unsafe, and does not believe wrong inferences."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import pytest
+
+from rosetta_jit.kernel import claims, integers, paths, prove
+from rosetta_jit.kernel.linear import minus, shifted
+from rosetta_jit.kernel.opinion import opinions
+from rosetta_jit.kernel.record import Record
+from rosetta_jit.kernel.verify import VerificationError, verify
+from tests.kernel import kernels
+from tests.kernel.unsafe import ACCEPTED, REFUSED
+
+
+def judged(kernel):
+    record = Record()
+    with suppress(VerificationError):
+        verify(kernel, record)
+    return list(zip(record.obligations, opinions(record.obligations), strict=True))
+
+
+def agree(kernel):
+    for obligation, opinion in judged(kernel):
+        assert obligation.procedure is not None
+        assert opinion.verdict == "proved", (obligation.claim, obligation.stmt, opinion)
+
+
+@pytest.mark.parametrize("name", kernels.ALL)
+def test_kernels_like_lowered_ones(name):
+    agree(kernels.ALL[name])
+
+
+@pytest.mark.parametrize("name", list(ACCEPTED)[::8])
+def test_safe_kernels(name):
+    agree(ACCEPTED[name])
+
+
+def refuted(name):
+    *others, (last, opinion) = judged(REFUSED[name][1])
+    assert all(each.verdict == "proved" for _, each in others)
+    assert last.procedure is None, last.claim
+    assert opinion.verdict == "refuted", last.claim
+    return opinion
+
+
+REFUTED = [
+    "load beyond the end",
+    "load far before the begin",
+    "row at the capacity",
+    "more rows than reserved",
+    "copy onto itself, to the left",
+    "a sum that wraps",
+    "div by zero",
+    "condition: le",
+    "a check in one branch",
+    "a position that both branches move",
+    "a number that a case changes",
+    "what a loop leaves",
+    "a round without progress",
+    "a promise that is broken",
+    "xor: one row too few",
+]
+
+
+@pytest.mark.parametrize("name", REFUTED)
+def test_unsafe_kernels(name):
+    refuted(name)
+
+
+def test_a_counterexample_shows_the_message():
+    values = dict(refuted("load without a check").counterexample)
+    assert values["length"] < 8
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", ACCEPTED)
+def test_every_safe_kernel(name):
+    agree(ACCEPTED[name])
+
+
+def doubted(kernel):
+    return {obligation.claim for obligation, opinion in judged(kernel) if opinion.verdict != "proved"}
+
+
+def test_what_the_proof_infers_of_operations_is_judged(monkeypatch):
+    """Were the rest of a division thought to be less than it can be, z3 would not agree."""
+    right = integers.remainder
+
+    def wrong(facts, left, divisor):
+        result = right(facts, left, divisor)
+        facts.derive(minus(shifted(divisor, -2), result))
+        return result
+
+    monkeypatch.setattr(integers, "remainder", wrong)
+    assert claims.OPERATION in doubted(REFUSED["remainder: one row too few"][1])
+
+
+def test_what_the_proof_infers_of_meeting_paths_is_judged(monkeypatch):
+    """Were one of the paths forgotten where they meet, z3 would not agree."""
+    right = paths._met
+    monkeypatch.setattr(paths, "_met", lambda scope, old, arrivals, name: right(scope, old, arrivals[:1], name))
+    assert claims.ALL_PATHS in doubted(REFUSED["a number that both branches change"][1])
+
+
+def test_what_the_proof_infers_of_loops_is_judged(monkeypatch):
+    """Were relations kept that a round breaks, z3 would not agree."""
+    right = prove.Facts.proves
+    monkeypatch.setattr(prove.Facts, "proves", lambda *_: True)
+    monkeypatch.setattr(prove.Facts, "proves_thoroughly", right)
+    assert claims.RELATION_KEPT in doubted(REFUSED["a position that a loop moves"][1])
