@@ -8,7 +8,9 @@ import re
 
 import pytest
 
-from rosetta_jit.kernel import contracts, effects, loops, paths, shape, symbolic, verify
+from rosetta_jit.kernel import claims, contracts, effects, loops, paths, shape, symbolic, verify
+from rosetta_jit.kernel.record import Record
+from tests.kernel import kernels
 from tests.kernel.unsafe import ACCEPTED, REFUSED
 
 DEMANDS = {"oblige", "certify", "demand"}
@@ -100,3 +102,12 @@ def test_words_of_two_refusals_are_told_apart():
     """Where one line gives two refusals, each of them is provoked."""
     words = {words for words, _ in REFUSED.values()}
     assert {"y is not visible here", "begin is no i32"} <= words
+
+
+def test_every_claim_is_owed_by_a_kernel():
+    """What the proof infers is written down as well, each kind of inference."""
+    record = Record()
+    for kernel in (*kernels.ALL.values(), *ACCEPTED.values()):
+        verify.verify(kernel, record)
+    every = {each for each in vars(claims).values() if isinstance(each, claims.Claim)}
+    assert every - {each.claim for each in record.obligations} <= {claims.RETURNS}

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import struct
-from random import Random
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel.ir import Const, Expect, For, If, Let, Load, Local, Place, Require, Return, SetField
+from rosetta_jit.kernel.ir import Expect, For, If, Let, Load, Local, Place, Require, Return, SetField
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
@@ -22,7 +21,8 @@ from rosetta_jit.lowering.passes.simplify import simplify
 from rosetta_jit.lowering.passes.unroll import unroll
 from tests.golden import GOLDEN, check_golden
 from tests.kernel import kernels
-from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
+from tests.kernel.kernels import ROW_EXISTS, compare, i64, kernel, need
+from tests.kernel.random_kernels import random_kernel
 
 
 def stages(original):
@@ -76,58 +76,6 @@ def test_damaged_messages(name, data):
 
 
 # --- random kernels ---
-
-
-def random_kernel(seed):
-    """A kernel of random fields, loops and branches, which the naive lowering might have made."""
-    random = Random(seed)  # no secret depends on it
-    body, at, names = [ROW_EXISTS], BEGIN, iter(range(1000))
-
-    def scalar(at, row_offset, site=1, *indices):
-        type_, width = random.choice([("u8", 1), ("i16", 2), ("f32", 4), ("f64", 8), ("i64", 8)])
-        checks = [need(at, width, site, *indices)]
-        if random.random() < 0.3:
-            value = Local(type_, f"v{next(names)}")
-            checks.append(Let(value.name, Load(type_, at)))
-            if type_ in {"u8", "i16", "i64"}:
-                checks.append(expect(kernels.Compare("ne", value, Const(type_, 7)), 2, at))
-            checks.append(SetField(Place(0, ROW, row_offset), value))
-        else:
-            checks.append(SetField(Place(0, ROW, row_offset), Load(type_, at, random.choice("<>"))))
-        return checks, width
-
-    for _ in range(random.randint(1, 8)):
-        kind = random.choice(["scalar", "scalar", "array", "branch", "skip", "fill"])
-        offset = 8 * random.randint(0, 7)
-        if kind == "scalar":
-            made, width = scalar(at, offset)
-            body += made
-            at = add(at, width)
-        elif kind == "array":
-            count, gap = random.choice([0, 1, 2, 3, 8, 20]), random.choice([0, 0, 4])
-            i, start = i64(f"i{next(names)}"), i64(f"s{next(names)}")
-            place = add(kernels.Binary("add", at, mul(i, 8 + gap)), gap) if at != index(0) else mul(i, 8 + gap)
-            loop = [need(place, 8, 4, i), SetField(Place(1, kernels.Binary("add", start, i)), Load("i64", place))]
-            body += [kernels.Reserve(1, index(count)), Let(start.name, kernels.Used(1)), kernels.Advance(1, index(count))]
-            body.append(For(i.name, index(count), tuple(loop)))
-            at = add(at, count * (8 + gap))
-            body.append(Require(BEGIN, kernels.Binary("sub", at, BEGIN), kernels.fail(1, at)))
-        elif kind == "branch":
-            flag = i64(f"f{next(names)}")
-            then, width = scalar(add(at, 1), offset)
-            body += [need(at, 1), Let(flag.name, kernels.Convert("i64", Load("u8", at)))]
-            body.append(If(compare("gt", flag, 3), tuple(then)))
-            at = add(at, 1)
-        elif kind == "skip":
-            size, place = i64(f"n{next(names)}"), i64(f"p{next(names)}")
-            body += [need(at, 1), Let(size.name, kernels.Convert("i64", Load("u8", at))), need(add(at, 1), size)]
-            body.append(Let(place.name, kernels.Binary("add", add(at, 1), size)))
-            at = place
-        else:
-            body.append(SetField(Place(0, ROW, offset), Const("i64", random.choice([0, 1, 2**40]))))
-    if random.random() < 0.3:
-        body.append(expect(kernels.Compare("eq", at, kernels.END), 3, at))
-    return kernel((*body, Return(at)))
 
 
 @settings(max_examples=30, deadline=None)

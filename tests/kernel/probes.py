@@ -1,0 +1,164 @@
+"""What the proof and the passes say of kernels and of theorems: all that a mutant may not change.
+
+A probe is a name and a result as text. The results are held by `unsafe`, for passes and theorems by a golden file, and for what kernels
+do by the interpreter.
+"""
+
+from __future__ import annotations
+
+import pickle
+from hashlib import sha256
+from itertools import product
+from random import Random
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosetta_jit.kernel.formula import All, Any, negated
+from rosetta_jit.kernel.linear import Linear, plus, times
+from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.prove import Facts
+from rosetta_jit.kernel.record import Record
+from rosetta_jit.kernel.verify import VerificationError, verify
+from rosetta_jit.lowering import passes
+from tests.kernel import kernels
+from tests.kernel.unsafe import ACCEPTED, REFUSED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+THEOREMS, ATOMS, LEAST, MOST = 200, 3, -3, 3
+Probe = tuple[str, str]
+
+
+def digest(text: str) -> str:
+    return sha256(text.encode()).hexdigest()[:16]
+
+
+def refusals() -> Iterator[Probe]:
+    """What the proof says of each kernel by hand."""
+    for name, (words, kernel) in REFUSED.items():
+        yield f"unsafe: {name}", words if _verdict(kernel).endswith(words) else "another verdict"
+    for name, kernel in ACCEPTED.items():
+        yield f"safe: {name}", _verdict(kernel)
+
+
+def _verdict(kernel) -> str:
+    try:
+        verify(kernel)
+    except VerificationError as error:
+        return str(error).splitlines()[0]
+    return "accepted"
+
+
+def expected_refusals() -> dict[str, str]:
+    return {f"unsafe: {name}": words for name, (words, _) in REFUSED.items()} | {f"safe: {name}": "accepted" for name in ACCEPTED}
+
+
+# --- theorems ----------------------------------------------------------------------------------------------------------
+
+
+def theorems() -> Iterator[Probe]:
+    """Whether random formulas are proven of numbers from -3 to 3; those that are proven must be true of all of them."""
+    values = np.array(list(product(range(LEAST, MOST + 1), repeat=ATOMS)), dtype=np.int64)
+    for seed in range(THEOREMS):
+        random = Random(seed)
+        facts = Facts()
+        atoms = [facts.fresh(LEAST, MOST) for _ in range(ATOMS)]
+        true = np.ones(len(values), dtype=bool)
+        for _ in range(random.randint(1, 5)):
+            given = _formula(random, atoms, 2)
+            mark = facts.mark()
+            facts.assume(given)
+            if random.random() < 0.2:
+                facts.rollback(mark)
+            else:
+                true &= _truth(given, values)
+        goals = [_formula(random, atoms, 2) for _ in range(4)]
+        said = []
+        for goal in goals:
+            proven = facts.proves_thoroughly(goal), facts.shows(goal), facts.proves(negated(goal))
+            wrong = (any(proven[:2]) and not _truth(goal, values)[true].all()) or (proven[2] and _truth(goal, values)[true].any())
+            said.append("unsound" if wrong else f"{facts.procedure(goal)}{''.join(map(str, map(int, proven)))}")
+        bounds = [(facts.lower(atom), facts.upper(atom)) for atom in atoms]
+        found = values[true]
+        for k, (low, high) in enumerate(bounds):
+            if len(found) and not (low <= found[:, k].min() and found[:, k].max() <= high):
+                said.append("unsound bounds")
+        yield f"theorem {seed}", " ".join((*said, str(bounds), "impossible" if facts.impossible else ""))
+
+
+def _formula(random, atoms, depth):
+    kind = random.choice(("sum", "sum", "sum", "all", "any", "not")) if depth else "sum"
+    if kind == "sum":
+        total = Linear(random.randint(-6, 6))
+        for atom in random.sample(atoms, random.randint(1, len(atoms))):
+            total = plus(total, times(atom, random.choice((-3, -2, -1, 1, 1, 2, 3))))
+        return total
+    parts = tuple(_formula(random, atoms, depth - 1) for _ in range(random.randint(1, 3)))
+    return {"all": All(parts), "any": Any(parts), "not": negated(parts[0])}[kind]
+
+
+def _truth(formula, values):
+    match formula:
+        case Linear(constant, terms):
+            return constant + sum((c * values[:, a] for a, c in terms), np.zeros(len(values), np.int64)) >= 0
+        case All(parts):
+            return np.all([_truth(part, values) for part in parts], axis=0)
+        case Any(parts):
+            return np.any([_truth(part, values) for part in parts], axis=0)
+
+
+def owed() -> Iterator[Probe]:
+    """What kernels owe, and who proves it."""
+    for name, kernel in kernels.ALL.items():
+        record = Record()
+        verify(kernel, record)
+        said = [f"{each.claim.holds} {each.formula} {each.procedure} {each.path}" for each in record.obligations]
+        yield f"owed: {name}", digest("\n".join(said))
+
+
+# --- passes ------------------------------------------------------------------------------------------------------------
+
+
+def texts() -> Iterator[Probe]:
+    """What each pass makes of small kernels."""
+    from tests.kernel.random_kernels import PASSED, random_kernel
+
+    made = {**kernels.ALL, **PASSED, **{f"random {seed}": random_kernel(seed) for seed in range(30)}}
+    for name, kernel in made.items():
+        try:
+            current, said = kernel, []
+            for transform in passes.PASSES:
+                current = transform(current)
+                said.append(to_text(current))
+            last = to_text(passes.run(kernel))
+        except VerificationError:
+            last, said = "refused", []
+        yield f"passes: {name}", digest("\n".join((*said, last)))
+
+
+def outcomes() -> Iterator[Probe]:
+    """What kernels do when all passes are over, against what they did before."""
+    from tests.kernel.random_kernels import random_kernel
+
+    for seed in range(12):
+        kernel, random = random_kernel(seed), Random(seed)
+        optimised = passes.run(kernel)
+        for _ in range(6):
+            message = random.randbytes(random.randint(0, 80))
+            same = kernels.outcome(kernel, message, rows=64) == kernels.outcome(optimised, message, rows=64)
+            if not same:
+                yield f"outcome {seed}", "differs"
+        yield f"outcome {seed}", "same"
+
+
+def corpus(pickled: bytes) -> Iterator[Probe]:
+    """What the passes make of kernels of shipped mappings, each proven."""
+    for name, kernel in pickle.loads(pickled).items():  # noqa: S301 - made by the campaign itself
+        yield f"corpus: {name}", digest(to_text(passes.run(kernel)))
+
+
+def golden_text() -> str:
+    """The probes of which a golden file holds the results."""
+    return "".join(f"{name}: {result}\n" for name, result in (*theorems(), *owed(), *texts()))

@@ -1,0 +1,146 @@
+"""Kernels for the passes: random ones, which the naive lowering might have made, and one for each thing that a pass does."""
+
+from __future__ import annotations
+
+from random import Random
+
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Fill,
+    Fits,
+    For,
+    Get,
+    If,
+    Let,
+    Load,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Used,
+)
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
+from tests.kernel import kernels
+from tests.kernel.kernels import ROW_EXISTS, compare, expect, fail, i64, kernel, need
+
+
+def random_kernel(seed):
+    """A kernel of random fields, loops and branches, which the naive lowering might have made."""
+    random = Random(seed)  # no secret depends on it
+    body, at, names = [ROW_EXISTS], BEGIN, iter(range(1000))
+
+    def scalar(at, row_offset, site=1, *indices):
+        type_, width = random.choice([("u8", 1), ("i16", 2), ("f32", 4), ("f64", 8), ("i64", 8)])
+        checks = [need(at, width, site, *indices)]
+        if random.random() < 0.3:
+            value = Local(type_, f"v{next(names)}")
+            checks.append(Let(value.name, Load(type_, at)))
+            if type_ in {"u8", "i16", "i64"}:
+                checks.append(expect(kernels.Compare("ne", value, Const(type_, 7)), 2, at))
+            checks.append(SetField(Place(0, ROW, row_offset), value))
+        else:
+            checks.append(SetField(Place(0, ROW, row_offset), Load(type_, at, random.choice("<>"))))
+        return checks, width
+
+    for _ in range(random.randint(1, 8)):
+        kind = random.choice(["scalar", "scalar", "array", "branch", "skip", "fill"])
+        offset = 8 * random.randint(0, 7)
+        if kind == "scalar":
+            made, width = scalar(at, offset)
+            body += made
+            at = add(at, width)
+        elif kind == "array":
+            count, gap = random.choice([0, 1, 2, 3, 8, 20]), random.choice([0, 0, 4])
+            i, start = i64(f"i{next(names)}"), i64(f"s{next(names)}")
+            place = add(kernels.Binary("add", at, mul(i, 8 + gap)), gap) if at != index(0) else mul(i, 8 + gap)
+            loop = [need(place, 8, 4, i), SetField(Place(1, kernels.Binary("add", start, i)), Load("i64", place))]
+            body += [kernels.Reserve(1, index(count)), Let(start.name, kernels.Used(1)), kernels.Advance(1, index(count))]
+            body.append(For(i.name, index(count), tuple(loop)))
+            at = add(at, count * (8 + gap))
+            body.append(Require(BEGIN, kernels.Binary("sub", at, BEGIN), kernels.fail(1, at)))
+        elif kind == "branch":
+            flag = i64(f"f{next(names)}")
+            then, width = scalar(add(at, 1), offset)
+            body += [need(at, 1), Let(flag.name, kernels.Convert("i64", Load("u8", at)))]
+            body.append(If(compare("gt", flag, 3), tuple(then)))
+            at = add(at, 1)
+        elif kind == "skip":
+            size, place = i64(f"n{next(names)}"), i64(f"p{next(names)}")
+            body += [need(at, 1), Let(size.name, kernels.Convert("i64", Load("u8", at))), need(add(at, 1), size)]
+            body.append(Let(place.name, kernels.Binary("add", add(at, 1), size)))
+            at = place
+        else:
+            body.append(SetField(Place(0, ROW, offset), Const("i64", random.choice([0, 1, 2**40]))))
+    if random.random() < 0.3:
+        body.append(expect(kernels.Compare("eq", at, kernels.END), 3, at))
+    return kernel((*body, Return(at)))
+
+
+def each_round(*body, strides=(64, 8), count=8):
+    """A loop over so many rows of lane 1, and one of lane 2 where there is one."""
+    rows = [stmt for lane in range(1, len(strides)) for stmt in _rows(lane, count)]
+    return kernel((ROW_EXISTS, *rows, For("i", index(count), body), Return(BEGIN)), strides=strides)
+
+
+def _rows(lane, count):
+    return Reserve(lane, index(count)), Let(f"start_{lane}", Used(lane)), Advance(lane, index(count))
+
+
+I8 = mul(i64("i"), 8)
+THERE = Binary("add", BEGIN, I8)
+ELEMENT = Binary("add", i64("start_1"), i64("i"))
+PASSED = {
+    "a check that no round changes, reported of the first": each_round(
+        Require(BEGIN, index(64), fail(4, THERE, i64("i"))), SetField(Place(1, ELEMENT), Load("i64", THERE))
+    ),
+    "a check whose last index is none of the loop": each_round(
+        need(THERE, 8, 4, i64("i"), index(3)), SetField(Place(1, ELEMENT), Load("i64", THERE))
+    ),
+    "two lanes that are no one place": each_round(
+        need(mul(i64("i"), 16), 0),
+        need(Binary("add", BEGIN, mul(i64("i"), 16)), 16, 4, i64("i")),
+        SetField(Place(1, ELEMENT), Load("i64", Binary("add", BEGIN, mul(i64("i"), 16)))),
+        SetField(Place(2, Binary("add", i64("start_2"), i64("i")), 8), Load("i64", add(Binary("add", BEGIN, mul(i64("i"), 16)), 8))),
+        strides=(64, 16, 16),
+    ),
+    "rows emptied, and set one by one": kernel(
+        (
+            ROW_EXISTS,
+            need(BEGIN, 1),
+            Let("n", Convert("i64", Load("u8", BEGIN))),
+            Reserve(1, i64("n")),
+            Let("start_1", Used(1)),
+            Advance(1, i64("n")),
+            Fill(Place(1, i64("start_1")), mul(i64("n"), 8)),
+            For("i", i64("n"), (need(THERE, 8, 4, i64("i")), SetField(Place(1, ELEMENT), Load("i64", THERE)))),
+            Return(BEGIN),
+        )
+    ),
+    "comparisons of what grows": each_round(
+        expect(compare("lt", THERE, 1 << 40), 4, THERE, i64("i")),
+        expect(Compare("ge", index(1 << 20), I8), 4, BEGIN, i64("i")),
+        expect(Fits("add", BEGIN, I8), 4, BEGIN, i64("i")),
+        expect(Compare("gt", END, BEGIN), 3),
+        need(THERE, 8, 4, i64("i")),
+        SetField(Place(1, ELEMENT), Load("i64", THERE)),
+    ),
+    "what is read twice": kernel(
+        (
+            ROW_EXISTS,
+            need(BEGIN, 16),
+            SetField(Place(0, ROW), Load("i64", BEGIN)),
+            SetField(Place(0, ROW, 8), Load("i64", BEGIN)),
+            SetField(Place(0, ROW, 16), Binary("xor", Get("i64", Place(0, ROW)), Load("i64", add(BEGIN, 8)))),
+            SetField(Place(0, ROW), Get("i64", Place(0, ROW, 16))),
+            SetField(Place(0, ROW, 24), Get("i64", Place(0, ROW))),
+            Return(BEGIN),
+        )
+    ),
+}
+"""What a pass does, or must not do."""
