@@ -122,17 +122,18 @@ def _of_encoding(request: Request, absent: dict[str, None], known: Known, judge:
     """The proofs of a direction's kernels in an encoding. A decoder that borrows is shown where it differs from the one that copies."""
     assert request.encoding is not None
     try:
-        made = list(zip(PURPOSES[request.direction], _kernels(request), strict=True))
+        made = dict(zip(PURPOSES[request.direction], _kernels(request), strict=True))
         if request.direction == "decode":
             (borrowing,) = _kernels(replace(request, borrow=True))
-            made += [("borrow", borrowing)] if borrowing != made[0][1] else []
+            if borrowing != made["decode"]:
+                made["borrow"] = borrowing
     except ReportError as error:
         absent[f"{request.encoding}: {_reason(error)}"] = None
         return
     except VerificationError as error:
         yield KernelProof(PURPOSES[request.direction][0], request.encoding, (), str(error))
         return
-    for purpose, kernel in made:
+    for purpose, kernel in made.items():
         if kernel not in known:
             known[kernel] = _proven(kernel, Build(request).layout, judge)
         yield KernelProof(purpose, request.encoding, *known[kernel])

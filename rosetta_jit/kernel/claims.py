@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.kernel.ir import WIDTH
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +48,5 @@ OPERATION = Claim("what is known of the operation holds", "a fact that an operat
 BOUNDS = Claim("the bounds of the sum hold", "a sum beyond its bounds")
 """The last six are claims of the proof itself: it proves what it infers, or leaves it out."""
 
-
-def no_wrap(type_: str) -> Claim:
-    """That arithmetic of a type stays within its range."""
-    return Claim(f"the {type_} arithmetic does not wrap", f"{type_} arithmetic that may wrap")
+NO_WRAP = {type_: Claim(f"the {type_} arithmetic does not wrap", f"{type_} arithmetic that may wrap") for type_ in WIDTH}
+"""That arithmetic of a type stays within its range."""

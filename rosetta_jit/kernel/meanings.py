@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, assert_never, cast
 
 import z3
 
@@ -12,6 +12,7 @@ from rosetta_jit.kernel.linear import Linear
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.formula import Formula
+    from rosetta_jit.kernel.ir import Scalar
     from rosetta_jit.kernel.record import RecordedFacts
 
 BITS = 160
@@ -33,7 +34,7 @@ def atoms_in(formula: object) -> set[int]:
         case ("mul", int(a), int(b)):
             return {a, b}
         case tuple():
-            return set[int]().union(*map(atoms_in, formula))
+            return set[int]().union(*map(atoms_in, cast("tuple[object, ...]", formula)))
         case _:
             return set()
 
@@ -114,38 +115,38 @@ class Terms:
     def meaning(self, number: int) -> z3.BoolRef:
         """What an atom stands for; nothing, where it is any value of a range."""
         it = self.atom(number)
+        if number in self._facts.choices:
+            return z3.Or([z3.And(self.said(condition), it == self.sum(value)) for condition, value in self._facts.choices[number]])
         match self._facts.meanings.get(number):
             case ("mul", int(a), int(b)):
                 return it == self.atom(a) * self.atom(b)
-            case ((_, Linear()), *_) as cases:
-                return z3.Or([z3.And(self.said(condition), it == self.sum(value)) for condition, value in cases])
             case ("and" | "or" | "xor" as op, Linear() as left, Linear() as right, _) if self._as_bits:
                 a, b = self.sum(left), self.sum(right)
                 return it == (a & b if op == "and" else a | b if op == "or" else a ^ b)
-            case (str(op), Linear() as left, right, *ends) if not self._as_bits:
-                return self._operation(number, op, self.sum(left), right, *ends)
+            case (str(op), Linear() as left, Linear() | int() as right, *ends) if not self._as_bits:
+                return self._operation(number, op, self.sum(left), right, cast("list[tuple[int, int]]", ends))
             case ("low bits", str(type_), Linear() as value) if not self._as_bits:
-                return _low_bits(self.sum(value), it, limits(type_), z3.Int(f"turns{number}"))
+                return _low_bits(self.sum(value), it, limits(cast("Scalar", type_)), z3.Int(f"turns{number}"))
             case ("told", str()):
                 return self.range(number)
             case _:
                 return z3.BoolVal(val=True)
 
-    def _operation(self, number: int, op: str, left: z3.ExprRef, right: object, ends: tuple[int, int] = (0, 0)) -> z3.BoolRef:
+    def _operation(self, number: int, op: str, left: z3.ExprRef, right: Linear | int, ends: list[tuple[int, int]]) -> z3.BoolRef:
         """Operations of integers: what else they have is an unknown that must exist."""
         it, other = self.atom(number), z3.Int(f"other{number}")
         match op, right:
-            case "div", Linear() | int():
+            case "div", _:
                 return _divided(left, self._divisor(right), it, other)
-            case "rem", Linear() | int():
+            case "rem", _:
                 return _divided(left, self._divisor(right), other, it)
             case "shl", Linear(by, ()):
-                return _low_bits(left * (1 << by), it, ends, other)
+                return _low_bits(left * (1 << by), it, ends[0], other)
             case "shr", Linear(by, ()):
                 return _rounded_down(left, z3.IntVal(1 << by), it, other)
             case "shl" | "shr", Linear():
                 power = z3.Int(f"power{number}")
-                shifted = _low_bits(left * power, it, ends, other) if op == "shl" else _rounded_down(left, power, it, other)
+                shifted = _low_bits(left * power, it, ends[0], other) if op == "shl" else _rounded_down(left, power, it, other)
                 return z3.And(power >= 1, shifted)
             case _:
                 return z3.BoolVal(val=True)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.formula import Formula
     from rosetta_jit.kernel.record import Obligation, Premise, RecordedFacts
 
-MOST_MS = 10_000
-"""No question may take longer."""
+MOST_STEPS = 20_000_000
+"""No question may take z3 more of its steps: some seconds, but the same answer on a machine that has other work."""
 
 Verdict = Literal["proved", "refuted", "unknown"]
 
@@ -108,22 +108,26 @@ class _Judge:
         return new
 
     def _afresh(self, obligation: Obligation, terms: Terms) -> Opinion:
-        """The opinion of a solver that is given what the atoms in a claim stand for, the premises about them, and so on."""
+        """The opinion of a solver that is told ever more: what the atoms in a claim stand for, the premises about them, and so on."""
         solver = _solver()
+        solver.add(z3.Not(terms.claimed(obligation.formula)))
         premises = [(premise, atoms_in(premise.formula)) for premise in chain(obligation.premises)]
         waiting, told = atoms_in(obligation.formula), set[int]()
-        while waiting:
+        while True:
             told |= waiting
             solver.add(*map(terms.meaning, sorted(waiting)))
             solver.add(*(terms.range(atom) for atom in sorted(waiting) if atom < obligation.claimed_atoms))
             near = [(premise, atoms) for premise, atoms in premises if not atoms.isdisjoint(waiting)]
             premises = [(premise, atoms) for premise, atoms in premises if atoms.isdisjoint(waiting)]
             solver.add(*(terms.said(premise.formula) for premise, _ in near))
+            found = solver.check()
             waiting = set[int]().union(*(atoms for _, atoms in near), *map(terms.operands, waiting)) - told
-        solver.add(z3.Not(terms.claimed(obligation.formula)))
-        found = solver.check()
+            if found == z3.unsat:
+                return Opinion("proved")
+            if not waiting:
+                break
         if found != z3.sat:
-            return Opinion("proved" if found == z3.unsat else "unknown")
+            return Opinion("unknown")
         model = solver.model()
         atoms = [terms.atom(atom) for atom in sorted(atoms_in(obligation.formula))]
         return Opinion("refuted", tuple((str(atom), _integer(model.eval(atom, model_completion=True))) for atom in atoms))
@@ -135,5 +139,5 @@ def _integer(value: z3.ExprRef) -> int:
 
 def _solver() -> z3.Solver:
     solver = z3.Solver()
-    solver.set("timeout", MOST_MS)
+    solver.set("rlimit", MOST_STEPS)
     return solver

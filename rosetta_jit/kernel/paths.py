@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import claims
 from rosetta_jit.kernel.arithmetic import limits
-from rosetta_jit.kernel.formula import All
 from rosetta_jit.kernel.linear import Linear, coefficient_of, minus, plus, shifted, times
 from rosetta_jit.kernel.scope import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.symbolic import linear
@@ -161,7 +160,7 @@ def variable(scope: Scope, type_: Scalar, *, relative: bool) -> Linear:
     if not relative:
         return scope.facts.fresh(low, high)
     value = plus(linear(scope.locals["begin"][1]), scope.facts.fresh(low - MAX_POSITION, high))
-    scope.facts.assume(All((shifted(value, -low), shifted(times(value, -1), high))))
+    scope.facts.assume(shifted(times(value, -1), high))
     return value
 
 

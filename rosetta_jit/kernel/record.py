@@ -17,7 +17,7 @@ from rosetta_jit.kernel.linear import Linear, minus, shifted, times
 from rosetta_jit.kernel.prove import Facts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterator
+    from collections.abc import Callable, Hashable, Iterable, Iterator
 
     from rosetta_jit.kernel.claims import Claim
     from rosetta_jit.kernel.formula import Formula
@@ -62,7 +62,8 @@ class RecordedFacts(Facts):
         super().__init__()
         self._record = record
         self.premises: Premise | None = None
-        self.meanings: dict[int, Hashable] = {}
+        self.meanings: dict[int, tuple[object, ...]] = {}
+        self.choices: dict[int, tuple[tuple[Formula, Linear], ...]] = {}
         self._meeting: list[Formula] | None = None
 
     def fresh(self, low: int, high: int) -> Linear:
@@ -78,14 +79,14 @@ class RecordedFacts(Facts):
         atom = super().named(key, low, high)
         if is_new:
             number = atom.terms[0][0]
-            self.meanings[number] = key
+            self.meanings[number] = key if isinstance(key, tuple) else (key,)
             self._record.write(None, _within(atom, low, high), claims.OPERATION, number, "operations")
         return atom
 
     def chosen(self, cases: tuple[tuple[Formula, Linear], ...]) -> Linear:
         """As `Facts.chosen`."""
         atom = super().chosen(cases)
-        self.meanings[atom.terms[0][0]] = cases
+        self.meanings[atom.terms[0][0]] = self.choices[atom.terms[0][0]] = cases
         for bound in (
             shifted(atom, -min(self.lower(value) for _, value in cases)),
             shifted(times(atom, -1), max(self.upper(value) for _, value in cases)),
@@ -176,7 +177,7 @@ class Record:
         """Write an obligation down."""
         self.write(self._facts.premises, formula, claim, len(self._facts.lows))
 
-    def owe_all(self, scope: Scope, formulas: list[Formula], claim: Claim) -> None:
+    def owe_all(self, scope: Scope, formulas: Iterable[Formula], claim: Claim) -> None:
         """Write several down."""
         for formula in formulas:
             self.owe(scope, formula, claim)

@@ -121,9 +121,9 @@ def check_lane(scope: Scope, lane: int) -> None:
 
 def in_range(scope: Scope, value: Linear, type_: Scalar) -> Linear:
     """``value``, proven to be in its type's range: the operation that made it did not wrap."""
-    low, high = limits(type_)
-    oblige(scope, shifted(times(value, -1), high), claims.no_wrap(type_))
-    oblige(scope, shifted(value, -low), claims.no_wrap(type_))
+    (low, high), wraps = limits(type_), claims.NO_WRAP[type_]
+    oblige(scope, shifted(times(value, -1), high), wraps)
+    oblige(scope, shifted(value, -low), wraps)
     return value
 
 

@@ -10,6 +10,7 @@ from rosetta_jit.kernel.ir import (
     Compare,
     Const,
     Convert,
+    Copy,
     Fill,
     Fits,
     For,
@@ -24,6 +25,7 @@ from rosetta_jit.kernel.ir import (
     Return,
     SetField,
     Used,
+    Wire,
 )
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from tests.kernel import kernels
@@ -94,6 +96,7 @@ def _rows(lane, count):
 
 I8 = mul(i64("i"), 8)
 THERE = Binary("add", BEGIN, I8)
+WIDE = Binary("add", BEGIN, mul(i64("i"), 16))
 ELEMENT = Binary("add", i64("start_1"), i64("i"))
 PASSED = {
     "a check that no round changes, reported of the first": each_round(
@@ -141,6 +144,59 @@ PASSED = {
             SetField(Place(0, ROW, 24), Get("i64", Place(0, ROW))),
             Return(BEGIN),
         )
+    ),
+    "fields that lie end to end on both sides": each_round(
+        need(WIDE, 16, 4, i64("i")),
+        SetField(Place(1, ELEMENT), Load("i64", WIDE)),
+        SetField(Place(1, ELEMENT, 8), Load("i64", add(WIDE, 8))),
+        strides=(64, 16),
+    ),
+    "fields that lie the other way round": each_round(
+        need(WIDE, 16, 4, i64("i")),
+        SetField(Place(1, ELEMENT), Load("i64", add(WIDE, 8))),
+        SetField(Place(1, ELEMENT, 8), Load("i64", WIDE)),
+        strides=(64, 16),
+    ),
+    "fields with a gap between them": each_round(
+        need(WIDE, 16, 4, i64("i")),
+        SetField(Place(1, ELEMENT), Load("i32", WIDE)),
+        SetField(Place(1, ELEMENT, 8), Load("i32", add(WIDE, 8))),
+        strides=(64, 16),
+    ),
+    "what a branch has found out": kernel(
+        (
+            ROW_EXISTS,
+            need(BEGIN, 2),
+            Let("n", Convert("i64", Load("u8", BEGIN))),
+            Let("m", Convert("i64", Load("u8", add(BEGIN, 1)))),
+            If(compare("gt", i64("m"), 7), (expect(compare("eq", i64("n"), 3)), SetField(Place(0, ROW), i64("n")))),
+            SetField(Place(0, ROW, 8), i64("n")),
+            Return(BEGIN),
+        )
+    ),
+    "lines with padding": kernel(
+        (
+            ROW_EXISTS,
+            need(BEGIN, 12),
+            *(Let(name, Convert("i64", Load("i32", add(BEGIN, at)))) for name, at in (("w", 0), ("h", 4), ("pad", 8))),
+            *(expect(Binary("and", compare("ge", i64(name), 0), compare("le", i64(name), 999)), 3) for name in ("w", "h", "pad")),
+            Let("step", Binary("add", i64("w"), i64("pad"))),
+            Reserve(1, mul(i64("h"), i64("w"))),
+            Let("start", Used(1)),
+            Advance(1, mul(i64("h"), i64("w"))),
+            For(
+                "y",
+                i64("h"),
+                (
+                    Let("line", Binary("add", add(BEGIN, 12), mul(i64("y"), i64("step")))),
+                    expect(Compare("lt", i64("line"), index(1 << 50)), 3),
+                    need(i64("line"), i64("w"), 4, i64("y")),
+                    Copy(Place(1, Binary("add", i64("start"), mul(i64("y"), i64("w")))), Wire(i64("line")), i64("w")),
+                ),
+            ),
+            Return(BEGIN),
+        ),
+        strides=(8, 1),
     ),
 }
 """What a pass does, or must not do."""

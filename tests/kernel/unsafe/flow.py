@@ -167,6 +167,13 @@ CASES.add(
     (Var("k", index(0)), *BYTE, *rows(4), Switch(N, ((1, ()), (2, (Assign("k", index(4)),))), ()), put(i64("k"))),
     (Var("k", index(0)), *BYTE, *rows(4), Switch(N, ((1, ()), (2, (Assign("k", index(3)),))), ()), put(i64("k"))),
 )
+FAR = 1 << 40
+CASES.add(
+    "a far number that one branch changes",
+    "i64 arithmetic that may wrap",
+    (Var("k", index(-FAR)), *BYTE, If(BRANCH, (Assign("k", index(-(1 << 63))),)), Let("x", sub(i64("k"), 1))),
+    (Var("k", index(-FAR)), *BYTE, If(BRANCH, (Assign("k", index(FAR)),)), Let("x", sub(i64("k"), 1)), Let("y", plus(i64("k"), 1))),
+)
 OK, SMALL = Local("bool", "ok"), both(compare("ge", N, 0), compare("le", N, 99))
 CASES.add(
     "a bool that one branch changes",

@@ -60,3 +60,14 @@ CASES.add(
     (*LONG_WAY, expect(compare("ge", BEGIN, 1)), Fill(Wire(sub(AT, 1)), index(1))),
     (*LONG_WAY, expect(Compare("gt", total(), index(0))), Fill(Wire(sub(AT, 1)), index(1))),
 )
+HALVES = (
+    plus(plus(i64("part_0"), i64("part_1")), i64("part_2")),
+    plus(plus(i64("part_3"), i64("part_4")), plus(i64("part_5"), i64("part_6"))),
+)
+SUM_OF_TWO = *LONG, *(expect(Compare("ge", half, index(0))) for half in HALVES), Let("n", plus(*HALVES))
+CASES.add(
+    "a long sum of two that are not negative",
+    "a row that may be negative",
+    (*SUM_OF_TWO, *rows(999), put(sub(N, 1))),
+    (*SUM_OF_TWO, *rows(999), put(N)),
+)
