@@ -125,7 +125,12 @@ def texts() -> Iterator[Probe]:
     """What each pass makes of small kernels."""
     from tests.kernel.random_kernels import PASSED, random_kernel
 
-    made = {**kernels.ALL, **PASSED, **{f"random {seed}": random_kernel(seed) for seed in range(30)}}
+    made = {
+        **kernels.ALL,
+        **PASSED,
+        **{f"random {seed}": random_kernel(seed) for seed in range(30)},
+        "unsafe": REFUSED["load without a check"][1],
+    }
     for name, kernel in made.items():
         try:
             current, said = kernel, []
@@ -142,6 +147,12 @@ def outcomes() -> Iterator[Probe]:
     """What kernels do when all passes are over, against what they did before."""
     from tests.kernel.random_kernels import random_kernel
 
+    try:
+        passes.run(REFUSED["row at the capacity"][1])
+    except VerificationError:
+        pass
+    else:
+        yield "passes refuse what is unsafe", "differs"
     for seed in range(12):
         kernel, random = random_kernel(seed), Random(seed)
         optimised = passes.run(kernel)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 
 from rosetta_jit.kernel.ir import (
     Advance,
+    Assign,
     Binary,
+    Call,
     Compare,
     Const,
     Convert,
@@ -23,13 +26,15 @@ from rosetta_jit.kernel.ir import (
     Require,
     Reserve,
     Return,
+    Routine,
     SetField,
     Used,
+    Var,
     Wire,
 )
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from tests.kernel import kernels
-from tests.kernel.kernels import ROW_EXISTS, compare, expect, fail, i64, kernel, need
+from tests.kernel.kernels import ROW_EXISTS, SITES, compare, expect, fail, i64, kernel, need
 
 
 def random_kernel(seed):
@@ -98,6 +103,20 @@ I8 = mul(i64("i"), 8)
 THERE = Binary("add", BEGIN, I8)
 WIDE = Binary("add", BEGIN, mul(i64("i"), 16))
 ELEMENT = Binary("add", i64("start_1"), i64("i"))
+COUNTED = (
+    ROW_EXISTS,
+    need(BEGIN, 1),
+    Let("n", Convert("i64", Load("u8", BEGIN))),
+    Reserve(1, i64("n")),
+    Let("start_1", Used(1)),
+    Advance(1, i64("n")),
+)
+
+
+def _written(name):
+    return ROW_EXISTS, SetField(Place(0, ROW), i64(name)), SetField(Place(0, ROW, 8), i64(name))
+
+
 PASSED = {
     "a check that no round changes, reported of the first": each_round(
         Require(BEGIN, index(64), fail(4, THERE, i64("i"))), SetField(Place(1, ELEMENT), Load("i64", THERE))
@@ -106,10 +125,9 @@ PASSED = {
         need(THERE, 8, 4, i64("i"), index(3)), SetField(Place(1, ELEMENT), Load("i64", THERE))
     ),
     "two lanes that are no one place": each_round(
-        need(mul(i64("i"), 16), 0),
-        need(Binary("add", BEGIN, mul(i64("i"), 16)), 16, 4, i64("i")),
-        SetField(Place(1, ELEMENT), Load("i64", Binary("add", BEGIN, mul(i64("i"), 16)))),
-        SetField(Place(2, Binary("add", i64("start_2"), i64("i")), 8), Load("i64", add(Binary("add", BEGIN, mul(i64("i"), 16)), 8))),
+        need(WIDE, 16, 4, i64("i")),
+        SetField(Place(1, i64("i")), Load("i64", WIDE)),
+        SetField(Place(2, i64("i"), 8), Load("i64", add(WIDE, 8))),
         strides=(64, 16, 16),
     ),
     "rows emptied, and set one by one": kernel(
@@ -121,7 +139,7 @@ PASSED = {
             Let("start_1", Used(1)),
             Advance(1, i64("n")),
             Fill(Place(1, i64("start_1")), mul(i64("n"), 8)),
-            For("i", i64("n"), (need(THERE, 8, 4, i64("i")), SetField(Place(1, ELEMENT), Load("i64", THERE)))),
+            For("i", i64("n"), (need(THERE, 8, 4, i64("i")), SetField(Place(1, ELEMENT), Load("i64", THERE, ">")))),
             Return(BEGIN),
         )
     ),
@@ -131,7 +149,7 @@ PASSED = {
         expect(Fits("add", BEGIN, I8), 4, BEGIN, i64("i")),
         expect(Compare("gt", END, BEGIN), 3),
         need(THERE, 8, 4, i64("i")),
-        SetField(Place(1, ELEMENT), Load("i64", THERE)),
+        SetField(Place(1, ELEMENT), Load("i64", THERE, ">")),
     ),
     "what is read twice": kernel(
         (
@@ -181,6 +199,7 @@ PASSED = {
             *(Let(name, Convert("i64", Load("i32", add(BEGIN, at)))) for name, at in (("w", 0), ("h", 4), ("pad", 8))),
             *(expect(Binary("and", compare("ge", i64(name), 0), compare("le", i64(name), 999)), 3) for name in ("w", "h", "pad")),
             Let("step", Binary("add", i64("w"), i64("pad"))),
+            need(add(BEGIN, 12), mul(i64("h"), i64("step"))),
             Reserve(1, mul(i64("h"), i64("w"))),
             Let("start", Used(1)),
             Advance(1, mul(i64("h"), i64("w"))),
@@ -190,13 +209,71 @@ PASSED = {
                 (
                     Let("line", Binary("add", add(BEGIN, 12), mul(i64("y"), i64("step")))),
                     expect(Compare("lt", i64("line"), index(1 << 50)), 3),
-                    need(i64("line"), i64("w"), 4, i64("y")),
                     Copy(Place(1, Binary("add", i64("start"), mul(i64("y"), i64("w")))), Wire(i64("line")), i64("w")),
                 ),
             ),
             Return(BEGIN),
         ),
         strides=(8, 1),
+    ),
+    "fewer rows emptied than set": kernel(
+        (
+            *COUNTED,
+            Fill(Place(1, i64("start_1")), mul(i64("n"), 4)),
+            For("i", i64("n"), (need(THERE, 8, 4, i64("i")), SetField(Place(1, ELEMENT), Load("i64", THERE, ">")))),
+            Return(BEGIN),
+        )
+    ),
+    "checks before a loop of which the count is read": kernel(
+        (
+            *COUNTED,
+            need(BEGIN, 24),
+            Let("b", Load("i64", BEGIN)),
+            Let("m", Load("i64", add(BEGIN, 8))),
+            For(
+                "i",
+                i64("n"),
+                (
+                    expect(Fits("add", i64("b"), I8), 4, BEGIN, i64("i")),
+                    expect(Binary("and", Compare("lt", i64("i"), i64("m")), Compare("le", I8, i64("b"))), 4, BEGIN, i64("i")),
+                    SetField(Place(1, ELEMENT), Binary("add", i64("b"), I8)),
+                ),
+            ),
+            Return(BEGIN),
+        )
+    ),
+    "a check behind a branch that returns": kernel(
+        (need(BEGIN, 1), If(compare("gt", END, 99), (Return(BEGIN),)), need(add(BEGIN, 1), 8), Return(BEGIN))
+    ),
+    "what a loop writes and reads": kernel(
+        (
+            ROW_EXISTS,
+            Let("old", Get("i64", Place(0, ROW))),
+            For("i", index(99), (SetField(Place(0, ROW, 8), Get("i64", Place(0, ROW))), SetField(Place(0, ROW), i64("i")))),
+            SetField(Place(0, ROW, 16), i64("old")),
+            Return(BEGIN),
+        )
+    ),
+    "a copy of what a routine gives": replace(
+        kernel((Call("same", (BEGIN,), (i64("after"),), ()), Let("copy", i64("after")), *_written("copy"), Return(BEGIN))),
+        routines=(Routine("same", (i64("at"),), (i64("next"),), (Let("next", i64("at")),), (), (), SITES[:1]),),
+    ),
+    "rows emptied from a place that the loop changes": kernel(
+        (
+            *COUNTED,
+            Var("s", i64("start_1")),
+            Fill(Place(1, i64("s")), mul(i64("n"), 8)),
+            For(
+                "i",
+                i64("n"),
+                (
+                    expect(Compare("le", i64("s"), i64("start_1")), 3),
+                    SetField(Place(1, Binary("add", i64("s"), i64("i"))), i64("i")),
+                    Assign("s", i64("start_1")),
+                ),
+            ),
+            Return(BEGIN),
+        )
     ),
 }
 """What a pass does, or must not do."""
