@@ -6,6 +6,7 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 from __future__ import annotations
 
 import json
+from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -23,24 +24,28 @@ from rosetta_jit.garbage import imported
 from rosetta_jit.given import called_functions, check_compiled, check_given
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.shape import is_told, our_functions
+from rosetta_jit.kernel.verify import VerificationError
 from rosetta_jit.lowering import passes
 from rosetta_jit.lowering.check import Checked, check
 from rosetta_jit.lowering.lower import Mapped, lower
 from rosetta_jit.lowering.writer import TooManyStatementsError
+from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Schema, Struct, same_name
+from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
+from rosetta_jit.request import Backend, ByteOrder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Generator, Iterable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.lowering.functions import Signature
     from rosetta_jit.lowering.typed import Rule
-    from rosetta_jit.request import Backend, GivenFunction, Request
+    from rosetta_jit.request import GivenFunction, Request
+    from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Encoding
 
 Stage = Literal["model", "codec", "kernel", "python", "llvm", "asm"]
@@ -76,7 +81,7 @@ class Build:
 
     @cached_property
     def types(self) -> Types:
-        types = _mapped_types(self) if self.request.mapping is not None else _own_types(self)
+        types = _mapped_types(self) if self.request.mapping is not None else _of_a_size(self.request, _own_types(self))
         check_given(self.request, types.functions)
         return types
 
@@ -105,7 +110,13 @@ class Build:
     def kernels(self) -> tuple[Kernel, ...]:
         """Proven kernels: the decoder, or the encoder and what measures for it."""
         directions = ("decode",) if self.request.direction == "decode" else ("encode", "size")
-        return tuple(passes.run(self._lowered(direction)) for direction in directions)
+        return tuple(self._proven(self._lowered(direction)) for direction in directions)
+
+    def _proven(self, kernel: Kernel) -> Kernel:
+        try:
+            return passes.run(kernel)
+        except VerificationError as error:
+            raise _report(self.request, words.unproven(self._span, str(error))) from error
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types = self.types
@@ -113,8 +124,12 @@ class Build:
         try:
             return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
         except TooManyStatementsError as error:
-            span = types.wire.span if mapped is None else self.checked.mapping.wire_span
-            raise _report(self.request, words.too_many_statements(span, str(error))) from error
+            raise _report(self.request, words.too_many_statements(self._span, str(error))) from error
+
+    @property
+    def _span(self) -> Span | None:
+        """Where the program as a whole is to be blamed."""
+        return self.types.wire.span if self.types.rules is None else self.checked.mapping.wire_span
 
     def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
         types = self.types
@@ -123,6 +138,8 @@ class Build:
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """What the request says about the encoding, if the encoding leaves it to say."""
         request = self.request
+        if request.byte_order not in (None, *get_args(ByteOrder)):
+            raise _report(request, words.unknown_byte_order(request.byte_order))
         if request.byte_order is not None and encoding not in framework.byte_orders:
             raise _report(request, words.fixed_byte_order(encoding))
         known = tuple(framework.leniencies.get(encoding, ()))
@@ -153,7 +170,10 @@ class Build:
     @cached_property
     def backend(self) -> Backend:
         """The one that was asked for, or LLVM: what numba adds, a type for users' own functions, `Decoder.kernel` has in any case."""
-        return self.request.backend or "llvm"
+        asked = self.request.backend or "llvm"
+        if asked not in get_args(Backend):
+            raise _report(self.request, words.unknown_backend(asked, get_args(Backend)))
+        return asked
 
     @cached_property
     def functions(self) -> tuple[UserFunction, ...]:
@@ -245,6 +265,22 @@ class Build:
         return found
 
 
+@contextmanager
+def within_stack() -> Generator[None]:
+    """Around work on texts and types: what nests within the limits may still be too deep for a caller who has little stack left.
+
+    Raises
+    ------
+    SchemaError
+        It is.
+    """
+    try:
+        yield
+    except RecursionError as error:
+        raise SchemaError((words.too_deep(),)) from error
+
+
+@within_stack()
 def check_mapping(path: str, folders: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
     """What is known of a mapping; raises MappingError with all that is wrong."""
     search, reading = SearchPath.of(folders), Reading()
@@ -282,6 +318,14 @@ def _own_types(build: Build) -> Types:
         why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
         raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", tuple(schema.types)),))
     return Types(found[0], found[0], schema, None)
+
+
+def _of_a_size(request: Request, types: Types) -> Types:
+    """Types that can be laid out and compiled; those of a mapping are checked with it."""
+    why = excess(types.holder, types.schema)
+    if why:
+        raise _report(request, words.too_large(types.holder.name, types.holder.span, why))
+    return types
 
 
 def _named_files(request: Request) -> dict[str, str]:

@@ -27,6 +27,7 @@ from rosetta_jit.runtime.program import Loaded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+    from contextlib import AbstractContextManager
 
     from rosetta_jit.checked import CheckedMapping
     from rosetta_jit.pipeline import Build, Stage
@@ -241,17 +242,26 @@ def _build(request: Request) -> Build:
     return Build(request)
 
 
+def _within_stack() -> AbstractContextManager[None]:
+    from rosetta_jit.pipeline import within_stack
+
+    return within_stack()
+
+
 def _loaded(request: Request) -> Loaded:
     """The program that answers a request, compiled at most once a machine if all is identified that it depends on."""
     if request.backend in _PYTHON:
-        return _interpreted(_build(request))
+        build = _build(request)
+        with _within_stack():
+            return _interpreted(build)
     cache = Cache.default()
     name = cache.get_manifest(request_name(request.key())) if request.is_identified() else None
     if name is not None:
         with suppress(KeyError):
             return _shared(name, cache)
-    with seldom_collected():
-        return _compiled(_build(request), cache)
+    build = _build(request)
+    with seldom_collected(), _within_stack():
+        return _compiled(build, cache)
 
 
 def _compiled(build: Build, cache: Cache) -> Loaded:

@@ -87,7 +87,15 @@ class Request:
         """The request as plain data, with the surroundings that relative names depend on."""
         functions = [[each.name, each.identity.digest] for each in self.functions]
         plain: dict[str, Any] = {name: getattr(self, name) for name in self.__match_args__}
-        return {**plain, "functions": functions, "cwd": os.getcwd(), "path": environment.get("ROSETTA_JIT_PATH", "")}  # noqa: PTH109 - Path.cwd() imports no less and says no more
+        return {**plain, "functions": functions, "cwd": _here(), "path": environment.get("ROSETTA_JIT_PATH", "")}
+
+
+def _here() -> str:
+    """The folder that relative names start from; empty where it was removed."""
+    try:
+        return os.getcwd()  # noqa: PTH109 - Path.cwd() imports no less and says no more
+    except OSError:
+        return ""
 
 
 def plain_parameters(parameters: Mapping[str, object]) -> str:

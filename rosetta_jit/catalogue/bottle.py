@@ -9,7 +9,7 @@ from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from rosetta_jit.source import Span
 
@@ -270,6 +270,11 @@ def undescribable_message(number: int, path: str, first: str, second: str) -> Di
 def no_messages() -> Diagnostic:
     """Nothing to infer from."""
     return _error("no-messages", "there is no message to draft a schema from", None, "")
+
+
+def unknown_dialect(name: str, known: Sequence[str]) -> Diagnostic:
+    """An encoding that bottles do not have."""
+    return _error("unknown-dialect", f"there is no dialect `{name}`", None, "", help_=f"there are {', '.join(known)}")
 
 
 def no_such_tag(span: Span | None, unit: str, dialect: str) -> Diagnostic:

@@ -220,6 +220,11 @@ def file_too_large(name: str, limit: int) -> Diagnostic:
     return error("file-too-large", f"{name} is larger than {limit >> 20} MiB", None)
 
 
+def texts_too_large(name: str, limit: int) -> Diagnostic:
+    """Files that together are beyond the size limit."""
+    return error("file-too-large", f"{name} and the files read before it are larger than {limit >> 20} MiB", None)
+
+
 def too_many(span: Span | None, what: str, most: int) -> Diagnostic:
     """More of something than any mapping needs."""
     return error("too-many", f"a mapping has at most {most} {what}", span, "one too many", help_="split the mapping")

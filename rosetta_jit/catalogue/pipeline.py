@@ -34,6 +34,16 @@ def fixed_byte_order(name: str) -> Diagnostic:
     return Diagnostic("error", "fixed-byte-order", f"`{name}` has one byte order only", help="leave out byte_order=")
 
 
+def unknown_byte_order(name: str) -> Diagnostic:
+    """A byte order that does not exist."""
+    return Diagnostic("error", "unknown-byte-order", f"there is no byte order `{name}`", help="it is little or big")
+
+
+def unknown_backend(name: str, known: Sequence[str]) -> Diagnostic:
+    """A backend that does not exist."""
+    return Diagnostic("error", "unknown-backend", f"there is no backend `{name}`", help=f"there are {', '.join(known)}")
+
+
 def unknown_leniency(name: str, encoding: str, known: Sequence[str]) -> Diagnostic:
     """Something that an encoding cannot be asked to forgive."""
     help_ = f"it can forgive {', '.join(known)}" if known else "leave out lenient="
@@ -84,6 +94,19 @@ def too_many_statements(span: Span | None, most: str) -> Diagnostic:
     """A program that would take minutes and much memory to compile."""
     title = f"the program that this becomes has more than {most} statements"
     return Diagnostic("error", "too-large", title, span, help="map less at once: fewer fields, rules or cases in each of several mappings")
+
+
+def too_deep() -> Diagnostic:
+    """Types within types, or texts within texts, that Python's stack does not take."""
+    return Diagnostic("error", "nesting", "this nests deeper than Python's stack has room for", help="nest less, or call from less deep")
+
+
+def unproven(span: Span | None, why: str) -> Diagnostic:
+    """A kernel that the proof refuses: deeper than it looks, or a fault of ours."""
+    title = "the program that this becomes could not be shown to read and write within its buffers, and is not compiled"
+    return Diagnostic(
+        "error", "unproven", title, span, notes=tuple(why.split("\n")), help="nest less, or map less at once; report it if that is little"
+    )
 
 
 def endless_copy(span: Span | None) -> Diagnostic:

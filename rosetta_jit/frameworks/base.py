@@ -172,6 +172,8 @@ class Readers:
     @staticmethod
     def _files(type_: str, frameworks: tuple[Framework, ...]) -> Iterator[str]:
         parts = name_parts(type_)
+        if not parts:
+            return
         names = ("/".join((*parts[:-1], "msg", parts[-1])), "/".join(parts)) if len(parts) > 1 else parts
         for framework in sorted(frameworks, key=lambda each: not any(each.claims(type_ + suffix) for suffix in each.idl)):
             for folder in ("", f"{framework.name}/"):

@@ -7,7 +7,7 @@ variable ROSETTA_JIT_PATH), and what is shipped with the package.
 from __future__ import annotations
 
 import os
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from rosetta_jit.frontend.idl import Load
 
 MAX_FILE_BYTES = 4 << 20
+MAX_TEXT_BYTES = 64 << 20
+"""Of all files that one program is made from."""
 ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
 
 
@@ -41,9 +43,14 @@ class Reading:
     """Collects what was read to make a program, for the key of the kernel cache."""
 
     lookups: list[Lookup] = field(default_factory=list[Lookup])
+    size_bytes: int = 0
 
     def record(self, asked: str, importer: Source | None, found: Source) -> None:
-        digest = sha256(found.text.encode()).hexdigest()
+        data = found.text.encode()
+        self.size_bytes += len(data)
+        if self.size_bytes > MAX_TEXT_BYTES:
+            raise SchemaError((words.texts_too_large(found.name, MAX_TEXT_BYTES),))
+        digest = sha256(data).hexdigest()
         self.lookups.append(Lookup(asked, importer.name if importer else None, found.name, digest))
 
 
@@ -81,14 +88,14 @@ class SearchPath:
         Raises
         ------
         SchemaError
-            The name leaves the search path, or the file is too large or not text.
+            The name leaves the search path, or the file or text is too large or no text.
         """
         why = refusal(name)
         if why:
             raise SchemaError((words.import_name(None, name, why),))
         texts = dict(self.files)
         if name in texts:
-            return Source(name, texts[name])
+            return _given(name, texts[name])
         beside = (Path(importer.name).parent,) if importer and importer.name not in texts else ()
         candidates = (folder / name for folder in (*beside, *self.folders))
         return next((_read(path) for path in candidates if _is_file(path)), None)
@@ -111,9 +118,9 @@ class SearchPath:
         """
         name = os.fspath(path)
         texts = dict(self.files)
-        if name in texts:
-            return Source(name, texts[name])
         try:
+            if name in texts:
+                return _given(name, texts[name])
             found = _read(Path(name)) if _is_file(Path(name)) else None if refusal(name) else self.find(name)
         except SchemaError as error:
             raise MappingError(error.diagnostics) from error
@@ -167,6 +174,19 @@ def _read(path: Path) -> Source:
     except OSError as error:
         why = error.strerror or "unknown reason"
         raise SchemaError((words.file_unreadable(name, why),)) from error
+    return _text(name, data)
+
+
+def _given(name: str, text: str) -> Source:
+    """A text that the caller gave, which Python may have let him make of halves of characters."""
+    try:
+        data = text[: MAX_FILE_BYTES + 1].encode()
+    except UnicodeEncodeError as error:
+        raise SchemaError((words.file_not_text(name),)) from error
+    return replace(_text(name, data), text=text)
+
+
+def _text(name: str, data: bytes) -> Source:
     if len(data) > MAX_FILE_BYTES:
         raise SchemaError((words.file_too_large(name, MAX_FILE_BYTES),))
     try:

@@ -63,6 +63,9 @@ LONG = 128
 LARGE = 4_000
 """Statements of a kernel from which on work that is done twice takes seconds."""
 
+VAST = 12_000
+"""Statements of kernels, each counted once for every block that it stands in, from which on work that grows faster takes minutes."""
+
 
 def blocks_of(stmt: Stmt) -> tuple[Block, ...]:
     """The blocks inside a statement."""
@@ -93,6 +96,11 @@ def statements(block: Block) -> Iterator[tuple[Stmt, int]]:
 def is_large(kernel: Kernel) -> bool:
     """Whether a kernel is so large that it is not worth while to improve it again and again."""
     return sum(1 for body in kernel.bodies for _ in statements(body)) > LARGE
+
+
+def are_vast(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels are so large, or nested so deep, that only work in proportion to their size is done on them."""
+    return sum(depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)) > VAST
 
 
 def are_long_and_straight(kernels: Iterable[Kernel]) -> bool:

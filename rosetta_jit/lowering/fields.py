@@ -336,7 +336,7 @@ def member_of(slot: Slot, name: str) -> Member:
         case Row(unknown=Span() as unknown) if name == UNKNOWN:
             return Member(UNKNOWN, unknown)
         case Row(members=members) | Variant(members=members):
-            return next(member for member in members if member.name == name)
+            return members.named[name]
         case _:
             raise AssertionError(name)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import layouts, texts
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.lowering.conversions import convert, describe, other_way, same, widens, word_for
 from rosetta_jit.lowering.decisions import type_condition
@@ -52,6 +53,7 @@ from rosetta_jit.lowering.unit_changes import change_within
 from rosetta_jit.lowering.units import in_unit
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union, same_name
 
 if TYPE_CHECKING:
@@ -120,7 +122,9 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
     found = schema.types.get(name) or next((type_ for known, type_ in schema.types.items() if same_name(known, name)), None)
     if isinstance(found, Struct):
-        return Message(found, schema)
+        why = excess(found, schema)
+        problems += [too_large(found.name, span, why)] if why else []
+        return None if why else Message(found, schema)
     if found is None:
         problems.append(words.unknown_type(span, name, [known for known, type_ in schema.types.items() if isinstance(type_, Struct)]))
     else:

@@ -155,7 +155,7 @@ def _known_fields(message: Message) -> Iterator[Case]:
     entries = message.tagged.entries
     # The proof does not follow where groups and recursive messages end.
     guesses = message.tagged.group is None and message.depth == index(0)
-    for entry, following in zip(entries, (*entries[1:], None), strict=True):
+    for entry, following in zip(entries, (*entries[1:], None), strict=False):
         next_tag = _likely_tag(message.tagged, following)
         for wire in _wires(entry):
             tag, packed = entry.number << 3 | wire, wire == 2 and entry.wire != 2

@@ -45,8 +45,9 @@ MAX_SIZE = 1 << 56
 """No message that fits in memory is larger, so sums of sizes below this cannot wrap."""
 
 
-MAX_STATEMENTS = 200_000
-"""Statements of one program: some thirteen a field of a bottle, of other wires fewer. So many take minutes and a gigabyte to compile."""
+MAX_STATEMENTS = 20_000
+"""Statements of one program: some thirteen a field of a bottle, of other wires fewer. So many take half a minute to compile, more of them
+longer in proportion. protobuf's FileDescriptorSet, the largest type that is in wide use, comes to 12,000."""
 
 
 class TooManyStatementsError(Exception):

@@ -16,6 +16,7 @@ such a lane end with hidden words (`LINK_WORDS`) in which kernels keep their wor
 from __future__ import annotations
 
 from dataclasses import field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.dataclass import dataclass
@@ -44,8 +45,10 @@ SPAN_BYTES = 16
 LINK_WORDS = 6
 UNKNOWN = "(unknown)"
 """The name of the lane of unknown fields; no IDL can give it to a field."""
-MAX_ROW_BYTES, MAX_SLOTS = 1 << 20, 1 << 16
+MAX_ROW_BYTES, MAX_SLOTS = 1 << 20, 20_000
 """Larger rows, and types that unfold to more fields, are refused: no schema of people comes near, hostile ones double at each level."""
+WIDTH = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i64": 8, "u64": 8, "f32": 4, "f64": 8}
+"""Bytes of a scalar in a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,15 @@ class Member:
     presence: int | None = None
 
 
+class Members(tuple["Member", ...]):  # noqa: SLOT001 - its names are made when they are first asked for
+    """The fields of a row or the cases of a union, in order and by name."""
+
+    @cached_property
+    def named(self) -> dict[str, Member]:
+        """Each by its name: of thousands, all are looked for."""
+        return {member.name: member for member in self}
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """A struct. Its presence words (64 bits each) lie at its start. Offsets of members count from the start of the lane's row.
@@ -83,7 +95,7 @@ class Row:
     offset: int
     struct: str
     presence_words: int
-    members: tuple[Member, ...]
+    members: Members
     unknown: Span | None = None
 
     @property
@@ -93,7 +105,7 @@ class Row:
 
     def member(self, name: str) -> Member:
         """The member of that name."""
-        return next(member for member in self.members if member.name == name)
+        return self.members.named[name]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +113,7 @@ class Variant:
     """A union: its case (i64) at the offset, then room for every case."""
 
     offset: int
-    members: tuple[Member, ...]
+    members: Members
 
 
 Slot = Number | Span | Row | Variant
@@ -159,9 +171,9 @@ def _moved(slot: Slot, by: int) -> Slot:
             return replace(slot, lane=lane + by)
         case Row(members=members, unknown=unknown):
             kept = None if unknown is None else replace(unknown, lane=unknown.lane + by)
-            return replace(slot, members=tuple(replace(each, slot=_moved(each.slot, by)) for each in members), unknown=kept)
+            return replace(slot, members=Members(replace(each, slot=_moved(each.slot, by)) for each in members), unknown=kept)
         case Variant(members=members):
-            return replace(slot, members=tuple(replace(each, slot=_moved(each.slot, by)) for each in members))
+            return replace(slot, members=Members(replace(each, slot=_moved(each.slot, by)) for each in members))
         case _:
             assert_never(slot)
 
@@ -296,8 +308,8 @@ class _Building:
         match type_:
             case Bool() | Int() | Float() | Enum():
                 scalar = scalar_of(type_)
-                at = _align(offset, _SIZE[scalar])
-                return Number(at, scalar), at + _SIZE[scalar]
+                at = _align(offset, WIDTH[scalar])
+                return Number(at, scalar), at + WIDTH[scalar]
             case String(encoding):
                 return self.span(Int(16 if encoding == "utf-16" else 8, signed=False), offset, name, key)
             case Bytes():
@@ -339,7 +351,7 @@ class _Building:
             slot, behind = self.slot(each.type, behind, _join(name, each.name), _join(start_of_key, each.name))
             members.append(Member(each.name, slot, presence if isinstance(each.type, Optional) else None))
             presence += isinstance(each.type, Optional)
-        return Row(start, struct.name, words, tuple(members), unknown), behind
+        return Row(start, struct.name, words, Members(members), unknown), behind
 
     def variant(self, cases: tuple[Field, ...], offset: int, name: str, key: str) -> tuple[Variant, int]:
         start = _align(offset, 8)
@@ -348,7 +360,7 @@ class _Building:
         for case in cases:
             slot, behind = self.slot(case.type, behind, _join(name, case.name), _join(key, case.name))
             members.append(Member(case.name, slot))
-        return Variant(start, tuple(members)), behind
+        return Variant(start, Members(members)), behind
 
 
 def map_entry(key: Type, value: Type) -> Struct:
@@ -358,11 +370,8 @@ def map_entry(key: Type, value: Type) -> Struct:
     return Struct("", (Field("key", key), Field("value", value)))
 
 
-_SIZE = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i64": 8, "u64": 8, "f32": 4, "f64": 8}
-
-
 def _alignment(slot: Slot) -> int:
-    return _SIZE[slot.scalar] if isinstance(slot, Number) else 8
+    return WIDTH[slot.scalar] if isinstance(slot, Number) else 8
 
 
 def _align(offset: int, alignment: int) -> int:

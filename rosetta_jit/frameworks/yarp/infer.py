@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.yarp.shape import Shape
     from rosetta_jit.frameworks.yarp.tree import List
 
+ANY = "yarp"
+"""The encoding that is any of the dialects."""
+
 MAX_PLACES = 64
 """A message of more elements of one type is a list: nobody would name them one by one."""
 
@@ -48,6 +51,8 @@ def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> st
     """
     if not TYPE_NAME.fullmatch(name):
         raise SchemaError((catalogue.invalid_name(None, name),))
+    if encoding != ANY and encoding not in DIALECTS:
+        raise SchemaError((catalogue.unknown_dialect(encoding, (ANY, *DIALECTS)),))
     number = 0
     common: _Common | None = None
     for number, message in enumerate(messages, 1):
@@ -68,7 +73,7 @@ class _Common:
 
 def _read(message: bytes, encoding: str, number: int) -> List:
     try:
-        return read_any(message)[1] if encoding == "yarp" else read(message, DIALECTS[encoding])
+        return read_any(message)[1] if encoding == ANY else read(message, DIALECTS[encoding])
     except DecodeError as error:
         raise DecodeError(error.kind, error.path, f"message {number}: {error.detail}", error.offset) from None
 

@@ -7,7 +7,7 @@ reported by the attempt whose format it has.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.dataclass import dataclass
@@ -35,6 +35,34 @@ class _Group:
     parts: list[Part]
 
 
+@dataclass(slots=True)
+class _Open:
+    """The groups that the next Require may join, and which of them read a local: of thousands, a statement ends few."""
+
+    by_key: dict[_Key, _Group] = field(default_factory=dict["_Key", "_Group"])
+    readers: dict[str, list[_Key]] = field(default_factory=dict[str, "list[_Key]"])
+
+    def open(self, key: _Key, group: _Group) -> None:
+        """Start a group, in place of one that has the same in common."""
+        if key not in self.by_key:
+            for name in {name for expr in (key[0], *key[1]) for name in locals_in(expr)}:
+                self.readers.setdefault(name, []).append(key)
+        self.by_key[key] = group
+
+    def clear(self) -> None:
+        """End all."""
+        self.by_key.clear()
+        self.readers.clear()
+
+    def close_behind(self, stmt: Stmt) -> None:
+        """End the groups that may not reach beyond a statement."""
+        if any(map(may_return, blocks_of(stmt))):
+            self.clear()
+        for name in changed_names((stmt,)):
+            for key in self.readers.pop(name, ()):
+                self.by_key.pop(key, None)
+
+
 def merge(kernel: Kernel) -> Kernel:
     """The kernel with fewer Requires."""
     sites = list(kernel.sites)
@@ -44,7 +72,7 @@ def merge(kernel: Kernel) -> Kernel:
 
 def _block(block: Block, sites: list[Site], *, is_attempt: bool = False) -> Block:
     result: list[Stmt] = []
-    groups: dict[_Key, _Group] = {}
+    groups = _Open()
     made: list[_Group] = []
     for stmt in block:
         match stmt:
@@ -52,28 +80,20 @@ def _block(block: Block, sites: list[Site], *, is_attempt: bool = False) -> Bloc
                 base, offset = split(at)
                 site = sites[failure.site]
                 key = base, failure.indices, site.kind
-                if key in groups and _joins(groups[key], offset, int(size), site):
+                group = groups.by_key.get(key)
+                if group is not None and _joins(group, offset, int(size), site):
                     continue
-                groups[key] = _Group(stmt, len(result), offset, offset + int(size), _parts(site, int(size), 0))
-                made.append(groups[key])
-            case Expect() if is_attempt and groups:
+                made.append(_Group(stmt, len(result), offset, offset + int(size), _parts(site, int(size), 0)))
+                groups.open(key, made[-1])
+            case Expect() if is_attempt and groups.by_key:
                 groups.clear()
                 is_attempt = False
             case _:
-                _close(groups, stmt)
+                groups.close_behind(stmt)
         result.append(with_blocks(stmt, lambda inner: _block(inner, sites)))
     for group in made:
         result[group.number] = _whole(group, sites)
     return tuple(result)
-
-
-def _close(groups: dict[_Key, _Group], stmt: Stmt) -> None:
-    """End the groups that may not reach beyond a statement."""
-    if any(map(may_return, blocks_of(stmt))):
-        groups.clear()
-    changed = changed_names((stmt,))
-    for key in [key for key in groups if any(not changed.isdisjoint(locals_in(expr)) for expr in (key[0], *key[1]))]:
-        del groups[key]
 
 
 def _joins(group: _Group, offset: int, size: int, site: Site) -> bool:
