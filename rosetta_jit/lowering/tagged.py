@@ -41,7 +41,7 @@ from rosetta_jit.kernel.terms import BEGIN, add, index, mul
 from rosetta_jit.lowering.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.fields import Cell, HolderFields, converted, scalar_name, span_of
 from rosetta_jit.lowering.unknown import skip_unknown
-from rosetta_jit.lowering.varint import from_varint, read_tag, read_varint, varint_bytes
+from rosetta_jit.lowering.varint import from_varint, read_size, read_tag, read_varint, varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
@@ -276,7 +276,7 @@ def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where
 
 def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
     """A length of bytes that follow, and are there."""
-    size = writer.let("length", Convert("i64", read_varint(writer, where)))
+    size = writer.let("length", Convert("i64", read_size(writer, where)))
     here = writer.position
     fits = Binary("and", Compare("ge", size, index(0)), Compare("le", size, Binary("sub", stop, here)))
     writer.expect(fits, "truncated", where, "longer than what is left of the message")

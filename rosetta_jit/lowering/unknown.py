@@ -24,7 +24,7 @@ from rosetta_jit.kernel.ir import (
     While,
 )
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
-from rosetta_jit.lowering.varint import read_varint
+from rosetta_jit.lowering.varint import read_tag, read_varint
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def _skip(writer: Writer, scratch: int) -> Contract:
         with writer.nested() as inner:
             writer.assign(last_tag, at)
             writer.position = at
-            writer.assign(current, Convert("i64", read_varint(writer, where)))
+            writer.assign(current, Convert("i64", read_tag(writer, where)))
             writer.assign(at, writer.position)
         writer.emit(If(Compare("gt", depth, index(0)), block(inner), (Assign(goes_on.name, Const("bool", value=False)),)))
         writer.assign(rounds, add(rounds, 1))

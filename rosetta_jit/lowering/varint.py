@@ -18,7 +18,9 @@ ONE, ZERO = Const("u64", 1), Const("u64", 0)
 MAX_BYTES = 10
 """Of a varint."""
 GUESSED = 5
-"""Bytes of a varint up to which it is read and written byte by byte."""
+"""Bytes of a varint up to which it is read and written byte by byte: those that 32 bits take."""
+MAX_TAG, MAX_LENGTH = (1 << 32) - 1, (1 << 31) - 1
+"""Of 29 bits for a field's number and three for how its value is written; and of protobuf's messages."""
 
 
 def read_varint(writer: Writer, where: Where) -> Local:
@@ -33,6 +35,33 @@ def read_tag(writer: Writer, where: Where) -> Local:
     return value
 
 
+def read_size(writer: Writer, where: Where) -> Local:
+    """A number of bytes as a u64: below 2 GiB, as no message is larger, and of five bytes at most, as upb has it."""
+    value, writer.position = writer.call("read_size", _read_size, (writer.position,), where)
+    return value
+
+
+def _read_size(writer: Writer) -> Contract:
+    return _first_byte(writer, lambda _, at: writer.call("read_long_size", _read_long_size, (at,), MESSAGE))
+
+
+def _read_long_size(writer: Writer) -> Contract:
+    return _short(writer, MAX_LENGTH, "length", "a length of more than five bytes, or of 2 GiB and more")
+
+
+def _read_long_tag(writer: Writer) -> Contract:
+    return _short(writer, MAX_TAG, "tag", "a tag of more than five bytes, or beyond 32 bits")
+
+
+def _short(writer: Writer, most: int, kind: str, detail: str) -> Contract:
+    """A varint of several bytes that has 32 bits, and is no longer than those take."""
+    at = writer.parameter("at", "i64")
+    value, after = writer.call("read_long_varint", _read_long, (at,), MESSAGE)
+    is_short = Compare("le", Binary("sub", after, at), index(GUESSED))
+    writer.expect(Binary("and", is_short, Compare("le", value, Const("u64", most))), kind, MESSAGE, detail, at=at)
+    return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
+
+
 def _read(writer: Writer) -> Contract:
     """One byte is the common case, which costs no call: what reads more is a routine of its own."""
     return _first_byte(writer, lambda _, at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
@@ -44,7 +73,7 @@ def _read_tag(writer: Writer) -> Contract:
         low = Binary("and", Convert("u64", first), SEVEN_BITS)
         value = writer.var("varint", Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
         after = writer.var("next", writer.position)
-        _if_more(writer, byte, lambda: writer.call("read_long_varint", _read_long, (at,), MESSAGE), value, after)
+        _if_more(writer, byte, lambda: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE), value, after)
         return value, after
 
     return _first_byte(writer, second)
