@@ -35,6 +35,8 @@ from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
 from rosetta_jit.request import Backend, ByteOrder
+from rosetta_jit.runtime import images
+from rosetta_jit.runtime.run import GRACE_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
@@ -192,7 +194,7 @@ class Build:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
-        return "\n".join([self.backend, self.entry, self.manners, holder, *kernels, *digests])
+        return "\n".join([self.backend, self.entry, self.manners, str(self.limit), holder, *kernels, *digests])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:
@@ -210,7 +212,16 @@ class Build:
             "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
             "host": our_functions(self.kernels),
+            "limit": self.limit,
         }
+
+    @property
+    def limit(self) -> int:
+        """The bytes of a lane that a message may ask for, whatever its own size."""
+        said = None if self.types.rules is None else self.checked.mapping.limit
+        if said is not None:
+            return said
+        return images.MAX_BYTES if our_functions(self.kernels) else GRACE_BYTES
 
     def check_functions(self) -> tuple[str, ...]:
         """The names of the user's functions whose code has addresses of this process. MappingError where one is not what is declared."""

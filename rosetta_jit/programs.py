@@ -314,6 +314,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         library=library,
         borrow=header["entry"] == "borrow",
         told=header["told"],
+        limit=header["limit"],
     )
 
 
@@ -339,6 +340,7 @@ def _interpreted(build: Build) -> Loaded:
         size_sites=_sites(build.header, 1),
         borrow=build.request.borrow,
         told=build.header["told"],
+        limit=build.header["limit"],
     )
 
 

@@ -134,6 +134,11 @@ def picked(span: Span | None) -> Diagnostic:
     )
 
 
+def limit_too_large(span: Span, most: int) -> Diagnostic:
+    """Bytes that no machine has."""
+    return error("number", f"a limit is at most {most} bytes", span, "too large", help_="write how many bytes a field may have in a holder")
+
+
 def missing_statement(span: Span, keyword: str) -> Diagnostic:
     """No `data-holder:` or no `wire-schema:`."""
     return error("missing-statement", f"the mapping has no `{keyword}:`", span, help_=f"add `{keyword}: type.name`")

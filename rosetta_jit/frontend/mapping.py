@@ -33,6 +33,8 @@ MAX_TOKENS = 50_000
 MAX_IMPORTS = 200
 
 MAX_NESTING = 64
+MAX_LIMIT, MAX_LIMIT_DIGITS = 1 << 40, 20
+"""What a mapping's `limit` is at most, and what is read of it before it is one: Python refuses to read numbers of thousands of digits."""
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
 NESTING = frozenset(
@@ -83,7 +85,7 @@ def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "PARAMETER", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = ("IMPORT", "PARAMETER", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "LIMIT", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
 
@@ -138,6 +140,7 @@ class _Reader:
                 for child in statements
                 if child.data == "parameter"
             ),
+            self._limit(statements),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
@@ -173,6 +176,16 @@ class _Reader:
         if tokens[0].type == "STRING":
             return read_string(tokens[0], self.source, self.problems), span
         return "".join(tokens), span
+
+    def _limit(self, statements: list[Tree]) -> int | None:
+        found = self._only(statements, "limit", "limit")
+        if found is None:
+            return None
+        token = next(child for child in found.children if isinstance(child, Token) and child.type == "INTEGER")
+        if len(token) > MAX_LIMIT_DIGITS or int(token, 0) > MAX_LIMIT:
+            self.problems.append(words.limit_too_large(self._token_span(token), MAX_LIMIT))
+            return None
+        return int(token, 0)
 
     def _rules(self, statements: list[Tree], direction: str, context: Context) -> tuple[Rule, ...] | None:
         block = self._only(statements, f"{direction}_rules".lstrip("_"), f"{direction}-rules".lstrip("-"))

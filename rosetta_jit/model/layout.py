@@ -121,12 +121,16 @@ Slot = Number | Span | Row | Variant
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """Elements of one array, or bytes of one string field. ``links`` is the offset of a recursive row's hidden words."""
+    """Elements of one array, or bytes of one string field. ``links`` is the offset of a recursive row's hidden words.
+
+    ``within`` is how many elements arrays of fixed length around them, and they themselves, make of one.
+    """
 
     name: str
     stride: int
     element: Slot
     links: int | None = None
+    within: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,6 +272,7 @@ class _Building:
     slots: int = 0
     by_key: dict[str, int] = field(default_factory=dict[str, int])
     linked: list[tuple[int, str]] = field(default_factory=list[tuple[int, str]])
+    within: int = 1
 
     def lane(self, element: Type, name: str, key: str) -> int:
         """The lane for elements of a type: a new one, or that of a recursive struct which is reached through the same field.
@@ -290,7 +295,7 @@ class _Building:
         stride = _align(size, _alignment(slot))
         if stride > MAX_ROW_BYTES:
             raise ValueError(f"a row of {name or 'the message'} would take {stride} bytes")
-        self.lanes[index] = Lane(name, max(stride, 1), slot, links)
+        self.lanes[index] = Lane(name, max(stride, 1), slot, links, self.within)
         return index
 
     def element(self, type_: Type, name: str, key: str) -> tuple[Slot, int]:
@@ -312,10 +317,10 @@ class _Building:
                 return Number(at, scalar), at + WIDTH[scalar]
             case String(encoding):
                 return self.span(Int(16 if encoding == "utf-16" else 8, signed=False), offset, name, key)
-            case Bytes():
-                return self.span(Int(8, signed=False), offset, name, key)
-            case Array(element):
-                return self.span(element, offset, name, key)
+            case Bytes(_, length):
+                return self.span(Int(8, signed=False), offset, name, key, length)
+            case Array(element, length):
+                return self.span(element, offset, name, key, length)
             case Map(of, value):
                 return self.span(map_entry(of, value), offset, name, key)
             case Struct():
@@ -331,9 +336,12 @@ class _Building:
             case _:
                 assert_never(type_)
 
-    def span(self, element: Type, offset: int, name: str, key: str) -> tuple[Span, int]:
-        at = _align(offset, 8)
-        return Span(at, self.lane(element, name, key)), at + SPAN_BYTES
+    def span(self, element: Type, offset: int, name: str, key: str, length: object = None) -> tuple[Span, int]:
+        at, around = _align(offset, 8), self.within
+        self.within *= max(length, 1) if isinstance(length, int) else 1
+        lane = self.lane(element, name, key)
+        self.within = around
+        return Span(at, lane), at + SPAN_BYTES
 
     def row(self, struct: Struct, offset: int, name: str, key: str) -> tuple[Row, int]:
         bits = sum(isinstance(each.type, Optional) for each in struct.fields)

@@ -181,7 +181,10 @@ Rule = Assign | SetLength | For | When | Reject | Relation | Ignore | Default | 
 
 @dataclass(frozen=True, slots=True)
 class Mapping:
-    """What a mapping file says. None as rules means that the block is missing, ``()`` that it is empty."""
+    """What a mapping file says. None as rules means that the block is missing, ``()`` that it is empty.
+
+    ``limit`` is how many bytes of a holder's lane a message may ask for whatever its own size, where the mapping says so.
+    """
 
     source: Source
     imports: tuple[Import, ...]
@@ -194,3 +197,4 @@ class Mapping:
     wire_span: Span | None = field(default=None, compare=False, repr=False)
     functions: tuple[Function, ...] = ()
     parameters: tuple[Parameter, ...] = ()
+    limit: int | None = None

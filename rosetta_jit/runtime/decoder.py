@@ -95,10 +95,19 @@ class DecoderBase(Program):
             if result != run.GROW:
                 raise self._many_error(result, data, places, done, lanes)
             with run.decoding():
-                run.limit(lanes, data.size)
+                self._limit(lanes, places, done)
                 _grow_for_all(lanes, done, count)
             done = self._many(data, places, done, lanes)
         lanes.words[VALID] = CLEAN
+
+    def _limit(self, lanes: Lanes, offsets: NDArray[np.int64], done: int) -> None:
+        """As `run.limit`, of the message behind those that the lanes hold."""
+        lane, _ = run.missing(lanes)
+        used = lanes.words[lane_word(lane, USED)] if lane < len(lanes.buffers) else 0
+        try:
+            run.limit(lanes, int(offsets[done + 1] - offsets[done]), self._loaded.limit, used)
+        except DecodeError as error:
+            raise DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset) from None
 
     def _many(self, data: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, lanes: Lanes) -> int:
         """Decode from one message on; the first that could not be."""
@@ -127,7 +136,7 @@ class DecoderBase(Program):
         with holder.lanes_ as lanes, self._told(lanes):
             lanes.begin_filling()
             with run.decoding():
-                result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0)
+                result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
             if result < 0:
                 raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
             self._plan = roomier(self._plan, lanes)

@@ -46,6 +46,8 @@ class Loaded:
         Whether bytes fields of decoded holders are views into the message.
     told
         Whether the kernels ask for the time or the number of a message.
+    limit
+        How many bytes of a lane a message may ask for, whatever its own size.
     """
 
     holder_type: type[Holder]
@@ -56,6 +58,7 @@ class Loaded:
     library: Library | None = None
     borrow: bool = False
     told: bool = False
+    limit: int = 0
 
 
 class Program:

@@ -54,12 +54,14 @@ def python_run(kernel: Callable[..., int]) -> Run:
     return run
 
 
-def run_growing(run: Run, buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
-    """Run until no lane is too small. A message is what a buffer holds; where there is none, nobody asks for too much."""
+def run_growing(
+    run: Run, buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int, *, message_limit: int | None = None
+) -> int:
+    """Run until no lane is too small; ``message_limit`` is the program's, where the buffer is a message that somebody sent."""
     result = run(buffer, begin, end, lanes, row)
     while result == GROW:
-        if buffer is not None:
-            limit(lanes, end - begin)
+        if message_limit is not None:
+            limit(lanes, end - begin, message_limit)
         grow(lanes)
         result = run(buffer, begin, end, lanes, row)
     return result
@@ -76,26 +78,49 @@ def grow(lanes: Lanes) -> None:
     lanes.grow(*missing(lanes))
 
 
-MOST_BYTES = 1 << 28
-"""What a message may ask for at once beyond what its bytes can fill."""
+GRACE_BYTES = 1 << 20
+"""What any message may ask for in a lane, unless its mapping says otherwise."""
 
-WIDEST = 1 << 12
-"""Bytes of a hidden lane that one byte of a message can fill."""
+ELEMENTS_A_BYTE = 64
+"""How many elements of each lane one byte of a message may make: a number of eight bytes becomes a text of three hundred at most."""
+
+HIDDEN_BYTES_A_BYTE = 1 << 12
+"""The same of hidden lanes, in bytes: a text may be put in place of each character of another."""
 
 
-def limit(lanes: Lanes, size: int) -> None:
+def limit(lanes: Lanes, size: int, most: int, used: int = 0) -> None:
     """Refuse a message of so many bytes that asks for far more room than they can fill: rules may take a length from what it says.
+
+    Parameters
+    ----------
+    most
+        The bytes of a lane that any message may ask for.
+    used
+        How many rows of the lane are those of messages before it.
 
     Raises
     ------
-    MemoryError
+    DecodeError
         It does.
     """
     lane, rows = missing(lanes)
-    each, most = (lanes.plan.strides[lane], size) if lane < len(lanes.buffers) else (1, size * WIDEST)
-    if rows * each > MOST_BYTES + most * each:
-        raise MemoryError(f"{rows} rows of {each} bytes for a message of {size}")
+    if lane >= len(lanes.buffers):
+        if rows > max(most, GRACE_BYTES) + size * HIDDEN_BYTES_A_BYTE:
+            raise DecodeError("count", "", NO_MEMORY, 0)
+        return
+    plan = lanes.plan
+    described = plan.layout.lanes[lane] if lane < len(plan.layout.lanes) else None
+    each, within = plan.strides[lane], 1 if described is None else described.within
+    wanted = lanes.capacity(lane) + rows - used
+    if (wanted - ELEMENTS_A_BYTE * size * within) * each > most * within:
+        path = f".{described.name}" if described is not None and described.name else ""
+        raise DecodeError("count", path, TOO_MUCH.format(wanted=wanted, size=size, most=most, each=ELEMENTS_A_BYTE), 0)
 
+
+TOO_MUCH = (
+    "{wanted} elements out of a message of {size} bytes, more than {each} for each of them and {most} bytes besides; "
+    "a mapping that means this says so with `limit:`"
+)
 
 NO_MEMORY = "it asks for more elements than there may be, or than there is memory for"
 """A mapping may take a length from what a message says, and not from how much it holds."""
@@ -103,7 +128,7 @@ NO_MEMORY = "it asks for more elements than there may be, or than there is memor
 
 @contextmanager
 def decoding() -> Generator[None]:
-    """Around what makes room for a message: none may ask for more than there is, or than `limit` allows."""
+    """Around what makes room for a message: none may ask for more than there is."""
     try:
         yield
     except MemoryError as error:

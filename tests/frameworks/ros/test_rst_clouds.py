@@ -128,7 +128,12 @@ def test_clouds_without_points(backend):
         ({"point_step": 20}, "rejected"),
         ({"row_step": 1 << 31}, "index"),
         ({"width": 5}, "rejected"),
-        ({"data": np.zeros(0, np.uint8)}, "index"),
+        ({"data": np.zeros(0, np.uint8)}, "rejected"),
+        ({"point_step": 0}, "rejected"),
+        ({"point_step": 0, "row_step": 0, "width": 1 << 20}, "rejected"),
+        ({"width": 0, "row_step": 0, "height": (1 << 32) - 1}, "rejected"),
+        ({"width": 0, "height": (1 << 32) - 1}, "rejected"),
+        ({"point_step": 1, "row_step": 1 << 20, "width": 1 << 20}, "count"),
     ],
     ids=lambda value: str(value)[:20],
 )
