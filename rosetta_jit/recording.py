@@ -50,18 +50,38 @@ def read_messages(path: Path) -> Iterator[Message]:
     Raises
     ------
     RecordingError
-        After the last whole message, if the recording is cut short or damaged.
-    OSError
-        If the file cannot be read.
+        The file cannot be read; or, after the last whole message, the recording is cut short or damaged.
     """
     if not is_recording(path):
-        yield Message(0.0, path.read_bytes())
+        yield Message(0.0, read_file(path))
         return
-    with _open(path, "rb") as file:
-        try:
+    try:
+        if path.exists() and not path.is_file():  # a device has no end, and this one is read to its end
+            raise RecordingError((words.no_recording(str(path)),))
+        with _open(path, "rb") as file:
             yield from _messages(file, str(path))
-        except (EOFError, lzma.LZMAError) as error:
-            raise RecordingError((words.damaged(str(path), str(error)),)) from error
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    except (EOFError, lzma.LZMAError) as error:
+        raise RecordingError((words.damaged(str(path), str(error)),)) from error
+
+
+def read_file(path: Path) -> bytes:
+    """All of a file, or of a pipe.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, or has more than `MAX_MESSAGE_BYTES`: a device may have no end.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_MESSAGE_BYTES + 1)
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
+    if len(data) > MAX_MESSAGE_BYTES:
+        raise RecordingError((words.too_large(str(path), MAX_MESSAGE_BYTES),))
+    return data
 
 
 def write_recording(path: Path, messages: Iterable[Message]) -> None:
@@ -69,6 +89,11 @@ def write_recording(path: Path, messages: Iterable[Message]) -> None:
     with named(path), _open(path, "wb") as file:
         for message in messages:
             file.write(_HEAD.pack(message.time_s, len(message.data)) + message.data)
+
+
+def _unreadable(path: Path, error: Exception) -> RecordingError:
+    why = (error.strerror if isinstance(error, OSError) else None) or "its name cannot be that of a file"
+    return RecordingError((words.unreadable(str(path), why),))
 
 
 def _open(path: Path, mode: str) -> BinaryIO:

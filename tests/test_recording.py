@@ -6,6 +6,7 @@ import struct
 
 import pytest
 
+from rosetta_jit import recording
 from rosetta_jit.recording import MAX_MESSAGE_BYTES, Message, RecordingError, read_messages, write_recording
 
 MESSAGES = [Message(1.5, b"one"), Message(2.25, b""), Message(3.0, b"three")]
@@ -51,4 +52,20 @@ def test_what_xz_did_not_write(tmp_path):
     path = tmp_path / "a.rec.xz"
     path.write_bytes(b"not xz at all")
     with pytest.raises(RecordingError, match="recording-damaged"):
+        list(read_messages(path))
+
+
+@pytest.mark.parametrize("name", ["a.rec", "a.rec.xz", "a.bin"])
+@pytest.mark.parametrize("kind", ["nothing", "folder", "device", "circle"])
+def test_files_that_cannot_be_read_to_an_end(tmp_path, monkeypatch, name, kind):
+    monkeypatch.setattr(recording, "MAX_MESSAGE_BYTES", 1 << 20)
+    path = tmp_path / name
+    match kind:
+        case "folder":
+            path.mkdir()
+        case "device":
+            path.symlink_to("/dev/zero")
+        case "circle":
+            path.symlink_to(name)
+    with pytest.raises(RecordingError, match="file-"):
         list(read_messages(path))

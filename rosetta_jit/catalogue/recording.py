@@ -20,6 +20,21 @@ def too_long(name: str, index: int, size_bytes: int, limit_bytes: int) -> Diagno
     )
 
 
+def too_large(name: str, limit_bytes: int) -> Diagnostic:
+    """A file that is larger than any message, or has no end."""
+    return Diagnostic("error", "file-too-large", f"{name} is larger than {limit_bytes >> 20} MiB", help="several messages are a recording")
+
+
+def no_recording(name: str) -> Diagnostic:
+    """A folder, a device or a pipe."""
+    return Diagnostic("error", "file-unreadable", f"{name} is no file", help="recordings are files that end")
+
+
+def unreadable(name: str, why: str) -> Diagnostic:
+    """A file that the system does not let us read."""
+    return Diagnostic("error", "file-unreadable", f"{name} cannot be read: {why}")
+
+
 def damaged(name: str, reason: str) -> Diagnostic:
     """Not what xz wrote."""
     return Diagnostic("error", "recording-damaged", f"{name}: {reason}", help="the messages before the damage were read")

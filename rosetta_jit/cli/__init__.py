@@ -7,6 +7,8 @@ by a command when it runs, so that help costs nothing.
 from __future__ import annotations
 
 import argparse
+import codecs
+import io
 import os
 import sys
 from typing import TYPE_CHECKING, cast
@@ -24,6 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; gives the exit code."""
     from rosetta_jit.errors import RosettaError
 
+    _write_whatever_comes()
     chosen = parser().parse_args(arguments)
     run = cast("Callable[[argparse.Namespace], int]", chosen.run)
     try:
@@ -36,6 +39,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f"error: {error}", file=sys.stderr)
     return 1
+
+
+def _write_whatever_comes() -> None:
+    """Texts hold what robots sent and what users typed, which need not be UTF-8: bytes are written as they came, the rest as an escape."""
+    codecs.register_error("as-it-came", _as_it_came)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="as-it-came")
+
+
+def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
+    try:
+        return codecs.lookup_error("surrogateescape")(error)
+    except UnicodeError:
+        return codecs.lookup_error("backslashreplace")(error)
 
 
 def parser() -> argparse.ArgumentParser:

@@ -10,7 +10,7 @@ from rosetta_jit.catalogue import values as words
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
 from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
-from rosetta_jit.recording import Message, is_recording, write_recording
+from rosetta_jit.recording import Message, is_recording, read_file, write_recording
 from rosetta_jit.written import named
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _values(path: Path) -> Iterator[dict[str, object]]:
-    text = path.read_text("utf-8", "surrogateescape")
+    text = read_file(path).decode("utf-8", "surrogateescape")
     for number, line in _documents(text):
         try:
             value = load(line)

@@ -169,3 +169,15 @@ def test_a_reader_that_has_seen_enough_is_no_error():
     assert process.stderr.read() == b""
     process.stderr.close()
     assert process.wait() == 1
+
+
+@pytest.mark.parametrize("name", ["none.json", ".", "deep.json", "digits.json", "zero.json"])
+def test_values_that_cannot_be_read(name, tmp_path, monkeypatch, capsys):
+    """One sentence and exit code 1, whatever the file is."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("rosetta_jit.recording.MAX_MESSAGE_BYTES", 1 << 20)
+    (tmp_path / "deep.json").write_text("[" * 100_000)
+    (tmp_path / "digits.json").write_text('{"angles": [' + "9" * 5_000 + "]}")
+    (tmp_path / "zero.json").symlink_to("/dev/zero")
+    assert main(["encode", "yarp/icub/torso_state.mapping", "--encoding", "yarp4", name]) == 1
+    assert capsys.readouterr().err.startswith("error[")

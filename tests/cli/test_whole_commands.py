@@ -94,3 +94,12 @@ def test_cache_commands(command):
     command("compile", TORSO, "--encoding", "yarp3")
     assert "kernel" in command("cache", "info").stdout.lower() or command("cache", "info").stdout
     command("cache", "verify")
+
+
+def test_texts_that_are_no_utf_8_are_written_as_they_came(environment, tmp_path):
+    (tmp_path / "a.mapping").write_text('import "a.bottle-schema"\ndata-holder: a\nwire-schema: a\nrules:\n.s <-> .s\n')
+    (tmp_path / "a.bottle-schema").write_text('"a" (("s" :string))')
+    (tmp_path / "a.bin").write_bytes(struct.pack("<4i", 256, 1, 4, 1) + b"\xff")
+    arguments = [sys.executable, "-m", "rosetta_jit", "decode", "a.mapping", "a.bin", "--json"]
+    ran = subprocess.run(arguments, env={**environment, "PYTHONUTF8": "1"}, cwd=tmp_path, capture_output=True, check=False)
+    assert (ran.returncode, ran.stdout) == (0, b'{"s": "\xff"}\n'), ran.stderr

@@ -152,10 +152,11 @@ def tokens_of(node: Node) -> list[Token]:
 
 
 def ends(node: Node) -> tuple[Token, Token]:
-    """The first and the last token under a node."""
-    first, last = node.children[0], node.children[-1]
-    while isinstance(first, Tree):
-        first = first.children[0]
-    while isinstance(last, Tree):
-        last = last.children[-1]
-    return first, last
+    """The first and the last token under a node. Rules that matched nothing, such as an empty list, have none."""
+    tokens: list[Token] = []
+    for step in (1, -1):
+        pending: list[Node | Token] = [node]
+        while isinstance(top := pending.pop(), Tree):
+            pending += top.children[::-step]
+        tokens.append(top)
+    return tokens[0], tokens[1]
