@@ -11,6 +11,7 @@ from rosetta_jit.lowering.writer import MESSAGE, Contract, Where, Writer, block
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.errors import Kind
     from rosetta_jit.wire.codec import Varint
 
 SEVEN_BITS = Const("u64", 0x7F)
@@ -46,19 +47,19 @@ def _read_size(writer: Writer) -> Contract:
 
 
 def _read_long_size(writer: Writer) -> Contract:
-    return _short(writer, MAX_LENGTH, "length", "a length of more than five bytes, or of 2 GiB and more")
+    return _short(writer, MAX_LENGTH, "a length", "truncated", "length")
 
 
 def _read_long_tag(writer: Writer) -> Contract:
-    return _short(writer, MAX_TAG, "tag", "a tag of more than five bytes, or beyond 32 bits")
+    return _short(writer, MAX_TAG, "a tag", "tag", "tag")
 
 
-def _short(writer: Writer, most: int, kind: str, detail: str) -> Contract:
-    """A varint of several bytes that has 32 bits, and is no longer than those take."""
+def _short(writer: Writer, most: int, what: str, too_large: Kind, too_long: Kind) -> Contract:
+    """A varint of several bytes that is at most a number of 32 bits, and no longer than those take."""
     at = writer.parameter("at", "i64")
     value, after = writer.call("read_long_varint", _read_long, (at,), MESSAGE)
-    is_short = Compare("le", Binary("sub", after, at), index(GUESSED))
-    writer.expect(Binary("and", is_short, Compare("le", value, Const("u64", most))), kind, MESSAGE, detail, at=at)
+    writer.expect(Compare("le", value, Const("u64", most)), too_large, MESSAGE, f"{what} of more than {most}", at=at)
+    writer.expect(Compare("le", Binary("sub", after, at), index(GUESSED)), too_long, MESSAGE, f"{what} of more than five bytes", at=at)
     return Contract((at,), (value, after), writer.within(at), writer.behind(at, after))
 
 
