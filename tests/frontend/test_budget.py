@@ -11,9 +11,13 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.frontend import search
-from rosetta_jit.model.expansion import MAX_LINKS, MAX_NESTED, excess
+from rosetta_jit.lowering.writer import MAX_STATEMENTS
+from rosetta_jit.model.births import MAX_BORN_BYTES
+from rosetta_jit.model.expansion import MAX_BYTES, MAX_LINKS, MAX_NESTED, excess
 from rosetta_jit.model.layout import MAX_SLOTS
 from rosetta_jit.model.types import Array, Field, Int, Ref, Schema, Struct
+from rosetta_jit.recording import MAX_MESSAGE_BYTES
+from rosetta_jit.runtime.run import ELEMENTS_A_BYTE, GRACE_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -155,6 +159,23 @@ def test_thousands_of_texts_are_compiled_one_by_one():
     start = time.process_time()
     assert rj.Decoder.of("p/A", schema={"p/A.msg": lines}, encoding="ros1").holder_type
     assert time.process_time() - start < 2 * SECONDS
+
+
+def test_the_page_states_the_budget():
+    page = (Path(__file__).resolve().parents[2] / "docs" / "security.md").read_text()
+    for stated in (
+        f"fields that a type unfolds to | {MAX_SLOTS:,}",
+        f"protobuf | {MAX_STATEMENTS:,}",
+        f"bound of an array or text | 2{str(MAX_BYTES.bit_length() - 1).translate(str.maketrans('0123456789', '⁰¹²³⁴⁵⁶⁷⁸⁹'))}",
+        f"recursion not counted | {MAX_NESTED}",
+        f"recursive structs refer to recursive structs | {MAX_LINKS}",
+        f"one file or text | {search.MAX_FILE_BYTES >> 20} MiB",
+        f"one program is made from | {search.MAX_TEXT_BYTES >> 20} MiB",
+        f"message in a recording | {MAX_MESSAGE_BYTES >> 20} MiB",
+        f"arrays of fixed length | {MAX_BORN_BYTES >> 20} MiB",
+        f"at most {ELEMENTS_A_BYTE} *n* elements of each field, and {GRACE_BYTES >> 20} MiB",
+    ):
+        assert stated in page
 
 
 # --- names and files -----------------------------------------------------------------------------------------------------

@@ -95,6 +95,14 @@ def test_lists_of_nothing():
     one(".proto", text, random.Random(0))
 
 
+def test_digits_that_are_no_number():
+    """A run of digits is looked at once, not once for each place where it could end."""
+    start = time.process_time()
+    with pytest.raises(rj.SchemaError):
+        rj.Decoder.of("A", schema={"A.bottle-schema": '"A" (("a" ' + ("9" * 100_000 + ":") * 10 + "))"})
+    assert time.process_time() - start < SECONDS
+
+
 def one(suffix: str, text: str, random_: random.Random) -> None:
     make = (lambda: rule(text, random_)) if suffix == ".mapping" else (lambda: read(suffix, text, random_))
     bounded(make, text)

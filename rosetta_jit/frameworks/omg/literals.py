@@ -9,7 +9,7 @@ MAX_DIGITS = 400
 """Longer numbers are refused unread; the longest finite `double` without an exponent has 309 digits."""
 
 FLOATING = re.compile(r"(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[0-9]+[eE][+-]?[0-9]+")
-FIXED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)[dD]")
+FIXED = re.compile(r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[dD]")
 INTEGER = re.compile(r"0[xX][0-9A-Fa-f]+|0[0-7]*|[1-9][0-9]*")
 ESCAPE = re.compile(
     r"\\(?:(?P<octal>[0-7]{1,3})|x(?P<hex>[0-9A-Fa-f]{1,2})|u(?P<unicode>[0-9A-Fa-f]{1,4})|(?P<letter>[ntvbrfa\\?'\"]))|\\(?P<wrong>.)"

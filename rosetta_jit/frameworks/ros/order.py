@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import ros as say
+from rosetta_jit.model.layout import MAX_SLOTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -14,8 +15,6 @@ if TYPE_CHECKING:
 
 MAX_DEPTH = 64
 """Messages within messages."""
-MAX_FIELDS = 1 << 16
-"""Fields of a message together with those of the messages in it."""
 
 
 def dependencies_first(found: Mapping[str, Definition], problems: list[Diagnostic]) -> tuple[Definition, ...]:
@@ -63,6 +62,6 @@ def _measure(ordered: tuple[Definition, ...], problems: list[Diagnostic]) -> Non
         inner = [field.type.base for field in _nested(each) if field.type.base in depths]
         depths[each.name] = 1 + max((depths[name] for name in inner), default=0)
         sizes[each.name] = len(each.fields) - len(inner) + sum(sizes[name] for name in inner)
-        if depths[each.name] > MAX_DEPTH or sizes[each.name] > MAX_FIELDS:
-            problems.append(say.too_deep(each.span, each.name, MAX_DEPTH, MAX_FIELDS))
+        if depths[each.name] > MAX_DEPTH or sizes[each.name] > MAX_SLOTS:
+            problems.append(say.too_deep(each.span, each.name, MAX_DEPTH, MAX_SLOTS))
             return

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     Value = bool | int | float | str
 
-FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
+FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
 PYTHON_INTEGER, ZERO = re.compile(r"[+-]?(?:0+|[1-9][0-9]*)"), re.compile(r"[+-]?0+")
 MAX_DIGITS = 80
 """Of an integer, in whatever base it is written."""

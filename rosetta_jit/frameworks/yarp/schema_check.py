@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
 from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
+from rosetta_jit.model.layout import MAX_SLOTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Field, Type
     from rosetta_jit.source import Span
-
-MAX_FIELDS = 1 << 16
-"""Fields of a type with all that it contains; kernels grow with it, and declarations can double it line by line."""
 
 MAX_TERMS = 256
 """Terms of a computed value with all that it is computed from; fields can double them line by line."""
@@ -101,8 +99,8 @@ def _check_bounds(structs: Mapping[str, Struct]) -> list[Diagnostic]:
         depth, size = extents[name] = _extent(structs[name], extents)
         if depth - 1 > MAX_NESTING:
             return [catalogue.nesting_too_deep(structs[name].span, MAX_NESTING)]
-        if size > MAX_FIELDS:
-            return [catalogue.too_many_fields(structs[name].span, name, MAX_FIELDS)]
+        if size > MAX_SLOTS:
+            return [catalogue.too_many_fields(structs[name].span, name, MAX_SLOTS)]
     return []
 
 
