@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 _PYTHON = ("python", "interpreter")
 """Backends that compile nothing."""
 
+RECENT = 8
+"""How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""
+
 
 class _Made:
     """How a program is made, and what it became."""
@@ -287,7 +290,7 @@ def _answered(build: Build, cache: Cache, name: str, loaded: Loaded) -> Loaded:
     return loaded
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=RECENT)
 def _shared(name: str, cache: Cache) -> Loaded:
     """A cached program: its code is loaded once, however many decoders it serves. KeyError if the cache has none that can be used."""
     entry = cache.get(name)
@@ -379,13 +382,12 @@ class Serialising:
 
     def __init__(self, framework: str, encoding: str) -> None:
         self._framework, self._encoding = framework, encoding
-        self._made: dict[str, OwnPrograms] = {}
 
     def __get__(self, holder: Holder | None, holder_type: type[Holder]) -> OwnPrograms:
-        text = holder_type.family_.text
-        if text not in self._made:
-            self._made[text] = OwnPrograms(Request("decode", encoding=self._encoding, plain=text, framework=self._framework))
-        return self._made[text]
+        family = holder_type.family_
+        if family.programs is None:
+            family.programs = OwnPrograms(Request("decode", encoding=self._encoding, plain=family.text, framework=self._framework))
+        return family.programs
 
 
 class OwnPrograms:

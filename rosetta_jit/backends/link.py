@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from llvmlite import binding, ir
+from llvmlite.binding.newpassmanagers import NewPassManager
 
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
@@ -22,7 +23,7 @@ from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import are_long_and_straight, are_vast, calls_to_host, is_large, is_short_and_straight, is_told, our_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from rosetta_jit.kernel.entries import EntryName
     from rosetta_jit.kernel.host import UserFunction
@@ -96,27 +97,49 @@ def optimised(
     They are those of O3. Where nothing loops, those of O1 find the same, vectors included, and O3's look at every store for every load.
     Vast kernels get the few passes that take time in proportion to their size.
     """
-    typed = with_numba and not is_large(kernels[0]) and not calls_to_host(kernels)
-    module = _typed(kernels[0]) if typed else _emitted(kernels[0], FUNCTIONS[0])
-    for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False):
-        module.link_in(_emitted(kernel, name))
-    for function in functions:
-        from rosetta_jit.backends.functions import compile_function
-
-        module.link_in(compile_function(function))
-    if our_functions(kernels):
-        module.link_in(binding.parse_assembly(table_text(kernels)))
-    module.link_in(binding.parse_assembly(_entries(kernels, entry)))
+    module = _linked(_parts(kernels, entry, with_numba=with_numba, functions=functions))
     _make_private(module, (*SYMBOLS[entry], TABLE))
     if are_vast(kernels):
-        passes = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0))
-        _few_passes().run(module, passes)
+        builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0))
+        _run(_few_passes(), module, builder)
         return module
     options = binding.create_pipeline_tuning_options(speed_level=1 if are_long_and_straight(kernels) else 3)
     options.loop_vectorization, options.slp_vectorization = True, True
-    passes = binding.create_pass_builder(machine, options)
-    passes.getModulePassManager().run(module, passes)
+    builder = binding.create_pass_builder(machine, options)
+    _run(builder.getModulePassManager(), module, builder)
     return module
+
+
+def _run(passes: binding.ModulePassManager, module: binding.ModuleRef, builder: binding.PassBuilder) -> None:
+    """Run passes, and free them: llvmlite 0.50 does not, because its class inherits from another one first that frees nothing."""
+    passes.run(module, builder)
+    NewPassManager._dispose(passes)  # noqa: SLF001 - see above
+    passes.detach()
+
+
+def _parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction]) -> Iterator[str]:
+    """The modules that a program is linked from, as LLVM text."""
+    if with_numba and not is_large(kernels[0]) and not calls_to_host(kernels):
+        yield from _typed(kernels[0])
+    else:
+        yield _emitted(kernels[0], FUNCTIONS[0])
+    yield from (_emitted(kernel, name) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+    for function in functions:
+        from rosetta_jit.backends.functions import compile_function
+
+        yield str(compile_function(function))
+    if our_functions(kernels):
+        yield table_text(kernels)
+    yield _entries(kernels, entry)
+
+
+def _linked(parts: Iterable[str]) -> binding.ModuleRef:
+    """One module in a context of its own: what LLVM makes for a module, types and constants above all, it keeps as long as the context."""
+    context = binding.create_context()
+    first, *others = (binding.parse_assembly(part, context) for part in parts)
+    for module in others:
+        first.link_in(module)
+    return first
 
 
 def _few_passes() -> binding.ModulePassManager:
@@ -128,20 +151,18 @@ def _few_passes() -> binding.ModulePassManager:
     return few
 
 
-def _emitted(kernel: Kernel, name: str) -> binding.ModuleRef:
+def _emitted(kernel: Kernel, name: str) -> str:
     module = ir.Module(name)
     llvm.emit(module, kernel, name)
-    return binding.parse_assembly(str(module))
+    return str(module)
 
 
-def _typed(kernel: Kernel) -> binding.ModuleRef:
+def _typed(kernel: Kernel) -> tuple[str, str]:
     """The library of the typed function, and `kernel` as an adapter to numba's calling convention."""
     from rosetta_jit.backends.numba import library, typed
 
     text, name = library(typed(kernel))
-    module = binding.parse_assembly(text)
-    module.link_in(binding.parse_assembly(_template("numba.ll").replace("@typed", f'@"{name}"')))
-    return module
+    return text, _template("numba.ll").replace("@typed", f'@"{name}"')
 
 
 def _entries(kernels: Sequence[Kernel], entry: EntryName) -> str:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from functools import cache
 from typing import TYPE_CHECKING, Any, cast
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -87,6 +87,7 @@ class Family:
         self._views: dict[str, type[View]] = {}
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
+        self.programs: Any = None  # what serialises the holders, when somebody has asked for it: it ends with them
 
     @property
     def holder(self) -> type[Holder]:
@@ -197,14 +198,15 @@ def holder_class_of(plain: Mapping[str, Any], manners: Manners = PLAIN) -> type[
 
 
 def family_of(text: str, manners: Manners) -> Family:
-    """The family of a type as text; the same one for the same text, for threads that ask at once too."""
+    """The family of a type as text: one for the same text as long as any of its holders or programs lives, whatever threads ask at once."""
     with _ONE_AT_A_TIME:
-        return _family_of(text, manners)
+        family = _FAMILIES.get((text, manners))
+        if family is None:
+            family = _FAMILIES[text, manners] = Family(text, manners)
+        return family
 
 
-@cache
-def _family_of(text: str, manners: Manners) -> Family:
-    return Family(text, manners)
+_FAMILIES: WeakValueDictionary[tuple[str, Manners], Family] = WeakValueDictionary()
 
 
 def revived(text: str, manners: Manners, plain: dict[str, Any]) -> Holder:
