@@ -71,12 +71,15 @@ class DecoderBase(Program):
         InUse
             Another thread is filling, changing or encoding the batch.
         """
-        data, places = run.readable(buffer), _offsets(offsets)
+        source, places = _source(buffer), _offsets(offsets)
+        data = run.readable(source)
         batch = self._batch(len(places) - 1) if into is None else into
         lanes = self._lanes_of(batch)
+        before = lanes.source[0]
         with lanes:
             self._fill(lanes, data, places)
-            lanes.source[0] = buffer if self._loaded.borrow else None
+            lanes.source[0] = source if self._loaded.borrow else None
+        del before  # outside: what ends with it may run any code
         return batch
 
     def _batch(self, count: int) -> Batch:
@@ -132,7 +135,8 @@ class DecoderBase(Program):
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
-        data = run.readable(message)
+        source, before = _source(message), holder.lanes_.source[0]
+        data = run.readable(source)
         with holder.lanes_ as lanes, self._told(lanes):
             lanes.begin_filling()
             with run.decoding():
@@ -140,8 +144,9 @@ class DecoderBase(Program):
             if result < 0:
                 raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
             self._plan = roomier(self._plan, lanes)
-            lanes.source[0] = (message if isinstance(message, bytes) else memoryview(message)) if self._loaded.borrow else None
+            lanes.source[0] = source if self._loaded.borrow else None
             lanes.words[VALID] = CLEAN
+        del before  # outside: what ends with it may run any code
         return holder
 
     def _becomes_mine(self) -> bool:
@@ -158,6 +163,11 @@ class DecoderBase(Program):
         if not hasattr(holders, "own"):
             holders.own = self.new()
         return holders.own
+
+
+def _source(message: Any) -> bytes | memoryview:
+    """What has the bytes of a message: asked once, because an object need not give out the same memory twice."""
+    return message if isinstance(message, bytes) else memoryview(message)
 
 
 def _make_rows(lanes: Lanes, count: int) -> None:

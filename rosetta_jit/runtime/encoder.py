@@ -132,9 +132,10 @@ class EncoderBase(Program):
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
         holder = self._checked(arguments[0])
+        target = None if len(arguments) == 1 else run.writable(arguments[1])
         with holder.lanes_ as lanes, self._told(lanes):
             self._make_usable(holder)
-            return self._bytes(lanes) if len(arguments) == 1 else self._put(lanes, arguments[1], arguments[2])
+            return self._bytes(lanes) if target is None else self._put(lanes, target, arguments[2])
 
     def _bytes(self, lanes: Lanes) -> bytes:
         size = self._measured(lanes)
@@ -143,8 +144,8 @@ class EncoderBase(Program):
         self._write(lanes, written, 0, size)
         return written.tobytes()
 
-    def _put(self, lanes: Lanes, buffer: object, offset: object) -> int:
-        size, target = self._measured(lanes), run.writable(buffer)
+    def _put(self, lanes: Lanes, target: NDArray[np.uint8], offset: object) -> int:
+        size = self._measured(lanes)
         if not isinstance(offset, int):
             raise TypeError(f"an offset is an int, not {type(offset).__name__}")
         if not 0 <= offset <= target.size - size:

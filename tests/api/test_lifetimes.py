@@ -12,6 +12,7 @@ import sys
 import threading
 import weakref
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -237,12 +238,14 @@ def test_a_buffer_may_use_the_decoder_that_asks_for_it(borrow):
             return memoryview(sent)
 
         def __release_buffer__(self, view):
-            decode(message(7))
-            holder.__init__()
+            with suppress(rj.InUse):
+                decode(message(7))
+                holder.__init__()
 
     holder = decode.new()
     assert len(decode(Rude(), holder).d) in (0, 3)
     assert len(decode(Rude()).d) in (3, 7)
+    decode(sent)  # gives back the buffer, where it was borrowed
     assert decode(sent).s == "text"
 
 
