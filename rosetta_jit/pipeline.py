@@ -33,7 +33,7 @@ from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Schema, Struct, name_parts, same_name
+from rosetta_jit.model.types import Ref, Schema, Struct, same_name
 from rosetta_jit.request import Backend, ByteOrder
 from rosetta_jit.runtime import images
 from rosetta_jit.runtime.run import GRACE_BYTES
