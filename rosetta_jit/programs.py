@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from rosetta_jit import certainty
 from rosetta_jit.cached import cached_property
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.garbage import imported, seldom_collected
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.request import GivenFunction, Request, plain_parameters
+from rosetta_jit.options import request_of, type_request
+from rosetta_jit.request import Request
 from rosetta_jit.runtime import native, run
 from rosetta_jit.runtime.allowed import ForeignCodeError
 from rosetta_jit.runtime.cache import Cache
@@ -26,12 +26,12 @@ from rosetta_jit.runtime.holder import holder_class_of
 from rosetta_jit.runtime.program import Loaded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from contextlib import AbstractContextManager
 
     from rosetta_jit.checked import CheckedMapping
+    from rosetta_jit.options import Options
     from rosetta_jit.pipeline import Build, Stage
-    from rosetta_jit.request import Backend, ByteOrder, Direction
     from rosetta_jit.runtime.holder import Holder
 
 _PYTHON = ("python", "interpreter")
@@ -73,50 +73,6 @@ class _Made:
         return _of_request, (public_class(self), self._request)
 
 
-class Options(TypedDict, total=False):
-    """What can be said about a program besides its mapping or type.
-
-    Attributes
-    ----------
-    encoding : str
-        How messages are encoded; the usual way of the wire's framework by default (``yarp``: any of YARP's dialects).
-    framework : str
-        Whose type it is, where neither its name nor its file nor ``encoding`` tells: ``sensor_msgs/Imu`` is one of ROS 1 and of ROS 2.
-    imports : iterable of str
-        For a type without a mapping: the files that declare it, by their names on the search path; by default those in ``schema``, or
-        what the name suggests.
-    schema : mapping of str to str, str, or bytes
-        File names and texts, as if they lay on the search path. Without a mapping also the one text that declares the type, such as a
-        bag or an MCAP file carries (``encoding`` or ``framework`` say in which language), or a serialised ``FileDescriptorSet``.
-    search_path : iterable of paths
-        Folders to search before all others.
-    byte_order : {"little", "big"}
-        Of what is written, or of what is read where messages do not tell.
-    lenient : iterable of str
-        What to forgive, by name: ``rosetta-jit frameworks`` lists what each encoding can be asked for.
-    parameters : mapping of str to value
-        What the mapping's parameters are: bools, numbers, texts, and lists of these. They are compiled into the program.
-    borrow : bool
-        Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
-    functions : mapping of str to callable
-        The functions that the mapping declares, by name: Python functions of numbers, or numba's. They are compiled into the kernel.
-    backend : {"numba", "llvm", "python", "interpreter"}
-        What runs the kernel; LLVM by default. numba types it on its way to LLVM, which takes longer and gives the same code.
-    """
-
-    encoding: str | None
-    framework: str | None
-    imports: Iterable[str]
-    schema: Mapping[str, str] | str | bytes | None
-    search_path: Iterable[str | os.PathLike[str]]
-    byte_order: ByteOrder | None
-    lenient: Iterable[str]
-    parameters: Mapping[str, object]
-    borrow: bool
-    functions: Mapping[str, Callable[..., Any]]
-    backend: Backend | None
-
-
 class Decoder(_Made, DecoderBase):
     """Decodes messages into holders: ``decode(message)`` fills and returns the decoder's own holder.
 
@@ -134,7 +90,7 @@ class Decoder(_Made, DecoderBase):
     """
 
     def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
-        self.make(_request("decode", options, mapping=os.fspath(mapping)))
+        self.make(request_of("decode", options, mapping=os.fspath(mapping)))
 
     @classmethod
     def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
@@ -147,7 +103,7 @@ class Decoder(_Made, DecoderBase):
         **options
             See `Options`.
         """
-        return _of_request(cls, _type_request("decode", type_, options))
+        return _of_request(cls, type_request("decode", type_, options))
 
     def make(self, request: Request) -> None:
         """Become the program that answers a request."""
@@ -162,80 +118,17 @@ class Encoder(_Made, EncoderBase):
     """
 
     def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
-        self.make(_request("encode", options, mapping=os.fspath(mapping)))
+        self.make(request_of("encode", options, mapping=os.fspath(mapping)))
 
     @classmethod
     def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
         """An encoder of a type from its own holder; parameters as of `Decoder.of`."""
-        return _of_request(cls, _type_request("encode", type_, options))
+        return _of_request(cls, type_request("encode", type_, options))
 
     def make(self, request: Request) -> None:
         """Become the program that answers a request."""
         self._request = request
         self._start(_loaded(request))
-
-
-_KNOWN = {"decode": frozenset(Options.__annotations__), "encode": frozenset(Options.__annotations__) - {"borrow"}}
-
-
-def _request(direction: Direction, options: Options, *, mapping: str | None = None, type_: str | None = None) -> Request:
-    unknown = sorted(set(options) - _KNOWN[direction])
-    if unknown:
-        raise TypeError(f"unknown option {unknown[0]!r}; there are {', '.join(sorted(_KNOWN[direction]))}")
-    schema = options.get("schema")
-    return Request(
-        direction,
-        mapping=mapping,
-        type=type_,
-        encoding=options.get("encoding"),
-        framework=options.get("framework"),
-        imports=tuple(options.get("imports", ())),
-        files=(("", schema),) if isinstance(schema, str) else () if schema is None or isinstance(schema, bytes) else tuple(schema.items()),
-        folders=tuple(os.fspath(folder) for folder in options.get("search_path", ())),
-        borrow=options.get("borrow", False),
-        byte_order=options.get("byte_order"),
-        lenient=tuple(sorted(options.get("lenient", ()))),
-        parameters=plain_parameters(options.get("parameters", {})),
-        functions=_given(options.get("functions", {})),
-        backend=options.get("backend"),
-    )
-
-
-def _given(functions: Mapping[str, Callable[..., Any]]) -> tuple[GivenFunction, ...]:
-    if not functions:
-        return ()
-    from rosetta_jit.runtime.functions.identity import identify
-
-    return tuple(GivenFunction(name, each, identify(each, name)) for name, each in sorted(functions.items()))
-
-
-def _type_request(direction: Direction, type_: str | type, options: Options) -> Request:
-    request = _request(direction, options, type_=type_ if isinstance(type_, str) else None)
-    schema = options.get("schema")
-    if isinstance(type_, str) and not isinstance(schema, bytes):
-        return request
-    descriptors = _from_descriptors(type_, schema if isinstance(schema, bytes) else None)
-    return replace(request, plain=descriptors, framework="protobuf")
-
-
-def _from_descriptors(type_: str | type, schema: bytes | None) -> str:
-    """A type that comes as protobuf's own descriptors, as text."""
-    from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set, from_message_class
-    from rosetta_jit.model.serial import to_plain
-    from rosetta_jit.model.types import Ref
-
-    if schema is not None:
-        declared = from_file_descriptor_set(schema)
-        name = type_ if isinstance(type_, str) else type_.__name__
-    else:
-        message: Any = type_
-        declared, name = from_message_class(message), message.DESCRIPTOR.full_name
-    if name not in declared.types:
-        from rosetta_jit.catalogue.pipeline import unknown_type
-        from rosetta_jit.errors import SchemaError
-
-        raise SchemaError((unknown_type(name, tuple(declared.types)),))
-    return json.dumps(to_plain(Ref(name), declared), sort_keys=True)
 
 
 def _build(request: Request) -> Build:

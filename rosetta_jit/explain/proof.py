@@ -34,6 +34,9 @@ Direction = Literal["decode", "encode"]
 Purpose = Literal["decode", "borrow", "encode", "size"]
 DIRECTIONS: tuple[Direction, ...] = ("decode", "encode")
 PURPOSES: dict[Direction, tuple[Purpose, ...]] = {"decode": ("decode",), "encode": ("encode", "size")}
+UNPROVEN = "unproven"
+"""The code of the report that a kernel could not be proven."""
+
 ABSENT = frozenset(("no-rules", "ambiguous-encoding"))
 """Mistakes that say no more than that a mapping has no kernel of a direction, or of an encoding."""
 
@@ -128,10 +131,11 @@ def _of_encoding(request: Request, absent: dict[str, None], known: Known, judge:
             if borrowing != made["decode"]:
                 made["borrow"] = borrowing
     except ReportError as error:
-        absent[f"{request.encoding}: {_reason(error)}"] = None
-        return
-    except VerificationError as error:
-        yield KernelProof(PURPOSES[request.direction][0], request.encoding, (), str(error))
+        first = error.diagnostics[0]
+        if first.code == UNPROVEN:
+            yield KernelProof(PURPOSES[request.direction][0], request.encoding, (), "\n".join(first.notes))
+        else:
+            absent[f"{request.encoding}: {_reason(error)}"] = None
         return
     for purpose, kernel in made.items():
         if kernel not in known:

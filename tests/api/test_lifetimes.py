@@ -299,7 +299,7 @@ def test_a_process_may_end_while_its_threads_decode():
 
 
 FORKS = """
-import os, struct, sys, threading, warnings
+import faulthandler, os, struct, sys, threading, warnings
 import numpy as np
 import rosetta_jit as rj
 
@@ -310,6 +310,7 @@ MESSAGE = struct.pack("<I3d", 3, 1, 2, 3)
 data, offsets = MESSAGE * 200_000, np.arange(200_001) * len(MESSAGE)
 batch = decode.many(data, offsets)
 over = threading.Event()
+rj.Decoder.of("std_msgs/String", encoding="ros1", backend="python")  # imports what is needed: CPython's locks of modules survive no fork
 
 def fill():
     while not over.is_set():
@@ -322,6 +323,7 @@ def make():
         rj.Decoder.of("p/A", schema={"p/A.msg": f"float64[] d{number}\\n"}, encoding="ros1", imports=["p/A.msg"], backend="python")
 
 def child():
+    faulthandler.dump_traceback_later(60, exit=True)
     refused = 0
     try:
         decode.many(data[:56], offsets[:3], into=batch)

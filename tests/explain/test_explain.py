@@ -163,9 +163,9 @@ def test_hostile_texts_are_escaped(mapping, tmp_path):
 
 
 def test_a_type_within_itself_and_a_huge_one_are_bounded(mapping, tmp_path):
-    levels = " ".join(f"message L{n} {{ {' '.join(f'optional L{n + 1} f{k} = {k + 1};' for k in range(9))} }}" for n in range(12))
+    levels = " ".join(f"message L{n} {{ {' '.join(f'optional L{n + 1} f{k} = {k + 1};' for k in range(9))} }}" for n in range(7))
     name = mapping(HEAD.replace("h.H", "h.L0") + "unpack-rules:\n  default .f0\n")
-    (tmp_path / "h.proto").write_text(f'syntax = "proto2"; package h; {levels} message L12 {{ optional L0 again = 1; }}')
+    (tmp_path / "h.proto").write_text(f'syntax = "proto2"; package h; {levels} message L7 {{ optional L0 again = 1; }}')
     found = explanation(name)
     assert found.holder.more
     assert "and more fields" in as_text(found)

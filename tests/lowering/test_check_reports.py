@@ -60,8 +60,8 @@ CATALOGUE = (
     number_bytes_words,
 )
 MAKERS = ("error", "warning", "placed", "in_one_way")
-OF_FILES = ("file_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
-"""What takes files: tests/frontend/test_search.py has it."""
+OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
+"""What takes files: tests/frontend/test_search.py and test_budget.py have it."""
 
 OF_BOTH_WAYS = ("alike_blocks", "too_complex", "too_many_blocks", "unknown_condition")
 """What rules for both directions cannot decide: test_both_ways.py and test_hostile_mappings.py have it."""
