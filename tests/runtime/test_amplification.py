@@ -97,7 +97,7 @@ def test_many_messages_are_measured_one_by_one():
     assert error.value.path == "[20].a"
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", [each for each in BACKENDS if each != "interpreter"])  # which takes a minute for a megabyte of text
 def test_elements_that_come_one_by_one(backend):
     """Each asks for little; together they are as much."""
     text = FILES["m.mapping"].replace(
