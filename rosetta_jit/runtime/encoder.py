@@ -132,10 +132,10 @@ class EncoderBase(Program):
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
         holder = self._checked(arguments[0])
-        target = None if len(arguments) == 1 else run.writable(arguments[1])
+        target, offset = (None, 0) if len(arguments) == 1 else (run.writable(arguments[1]), arguments[2])
         with holder.lanes_ as lanes, self._told(lanes):
             self._make_usable(holder)
-            return self._bytes(lanes) if target is None else self._put(lanes, target, arguments[2])
+            return self._bytes(lanes) if target is None else self._put(lanes, target, offset)
 
     def _bytes(self, lanes: Lanes) -> bytes:
         size = self._measured(lanes)
