@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
+from tests.api.exporters import exporter
 
 SCHEMA = {
     "p/A.msg": "float64[] d\nstring s\n",
@@ -225,44 +226,54 @@ def test_numbers_of_messages_are_taken_once():
 # --- code of others in the middle of a call ---
 
 
-@pytest.mark.skipif(sys.version_info < (3, 12), reason="only C code could export buffers")
 @pytest.mark.parametrize("borrow", [False, True])
 def test_a_buffer_may_use_the_decoder_that_asks_for_it(borrow):
     decode = of(rj.Decoder, borrow=borrow)
-    sent = message(3, b"text")
-
-    class Rude:
-        def __buffer__(self, flags):
-            for use in (lambda: decode(message(1 << 16)), holder.__init__, gc.collect):
-                use()
-            return memoryview(sent)
-
-        def __release_buffer__(self, view):
-            with suppress(rj.InUse):
-                decode(message(7))
-                holder.__init__()
-
     holder = decode.new()
-    assert len(decode(Rude(), holder).d) in (0, 3)
-    assert len(decode(Rude()).d) in (3, 7)
+
+    def rude():
+        with suppress(rj.InUse):
+            decode(message(1 << 16))
+            holder.__init__()
+            gc.collect()
+
+    sent = message(3, b"text")
+    assert len(decode(exporter(sent, rude, rude), holder).d) in (0, 3)
+    assert len(decode(exporter(sent, rude, rude)).d) in (3, 1 << 16)
+    batch = decode.many(exporter(sent * 5, rude, rude), np.arange(6) * len(sent))
+    assert [each.s for each in batch] == ["text"] * 5
     decode(sent)  # gives back the buffer, where it was borrowed
     assert decode(sent).s == "text"
 
 
-@pytest.mark.skipif(sys.version_info < (3, 12), reason="only C code could export buffers")
+@pytest.mark.parametrize("borrow", [False, True])
+def test_a_buffer_may_drop_what_it_is_decoded_with(borrow):
+    kept = [of(rj.Decoder, borrow=borrow)]
+    kept.append(kept[0].new())
+    sent = message(3, b"text")
+
+    def drop():
+        kept.clear()
+        gc.collect()
+
+    decode = kept[0]
+    seen = weakref.ref(kept[1])
+    assert decode(exporter(sent, drop), kept[1]).s == "text"
+    assert seen() is None
+    built_in = [of(rj.Decoder, borrow=borrow).builtin]
+    assert built_in[0](exporter(sent, built_in.clear)).s == "text"
+
+
 def test_a_buffer_may_change_the_holder_that_is_written_to_it(encode):
     holder = of(rj.Decoder)(message(3, b"text"))
 
-    class Rude(bytearray):
-        def __buffer__(self, flags):
-            holder.s = "a longer text than before"
-            holder.d = np.zeros(5000)
-            return super().__buffer__(flags)
+    def lengthen():
+        holder.s = "a longer text than before"
+        holder.d = np.zeros(5000)
 
     with pytest.raises(BufferError, match="takes 40033 bytes"):
-        encode(holder, Rude(100), 0)
-    room = Rude(50_000)
-    assert encode(holder, room, 0) == 40_033
+        encode(holder, exporter(100, lengthen), 0)
+    assert encode(holder, exporter(50_000, lengthen), 0) == 40_033
 
 
 # --- the end of a process, and its children ---
