@@ -62,7 +62,7 @@ def _compiled(function: UserFunction, declared: Signature) -> Diagnostic | str:
     if find_spec("numba") is None:
         return words.no_compiler(declared.span)
     from rosetta_jit.backends.functions import FunctionTypeError, compile_function, has_addresses
-    from rosetta_jit.backends.link import target_machine
+    from rosetta_jit.runtime.assembler import target_machine
 
     try:
         module = compile_function(function)

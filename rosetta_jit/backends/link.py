@@ -14,16 +14,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from llvmlite import binding, ir
-from llvmlite.binding.newpassmanagers import NewPassManager
 
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
-from rosetta_jit.backends.prelink import prelinked
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import are_long_and_straight, are_vast, calls_to_host, is_large, is_short_and_straight, is_told, our_functions
+from rosetta_jit.runtime.assembler import linked, make_private, run_passes, target_machine
+from rosetta_jit.runtime.prelink import prelinked
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from rosetta_jit.kernel.entries import EntryName
     from rosetta_jit.kernel.host import UserFunction
@@ -71,19 +71,6 @@ def assembly(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, f
     return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
 
 
-def target_machine(*, hurried: bool = False) -> binding.TargetMachine:
-    """The machine that we run on, with all that its CPU can do.
-
-    ``hurried`` is for vast kernels: code of twice the size, in a tenth of the time.
-    """
-    binding.initialize_native_target()
-    binding.initialize_native_asmprinter()
-    features = binding.get_host_cpu_features().flatten()
-    target = binding.Target.from_default_triple()
-    opt = 0 if hurried else 3
-    return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=opt, reloc="pic", codemodel="small")
-
-
 def optimised(
     kernels: Sequence[Kernel],
     entry: EntryName,
@@ -97,24 +84,17 @@ def optimised(
     They are those of O3. Where nothing loops, those of O1 find the same, vectors included, and O3's look at every store for every load.
     Vast kernels get the few passes that take time in proportion to their size.
     """
-    module = _linked(_parts(kernels, entry, with_numba=with_numba, functions=functions))
-    _make_private(module, (*SYMBOLS[entry], TABLE))
+    module = linked(_parts(kernels, entry, with_numba=with_numba, functions=functions))
+    make_private(module, (*SYMBOLS[entry], TABLE))
     if are_vast(kernels):
         builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0))
-        _run(_few_passes(), module, builder)
+        run_passes(_few_passes(), module, builder)
         return module
     options = binding.create_pipeline_tuning_options(speed_level=1 if are_long_and_straight(kernels) else 3)
     options.loop_vectorization, options.slp_vectorization = True, True
     builder = binding.create_pass_builder(machine, options)
-    _run(builder.getModulePassManager(), module, builder)
+    run_passes(builder.getModulePassManager(), module, builder)
     return module
-
-
-def _run(passes: binding.ModulePassManager, module: binding.ModuleRef, builder: binding.PassBuilder) -> None:
-    """Run passes, and free them: llvmlite 0.50 does not, because its class inherits from another one first that frees nothing."""
-    passes.run(module, builder)
-    NewPassManager._dispose(passes)  # noqa: SLF001 - see above
-    passes.detach()
 
 
 def _parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction]) -> Iterator[str]:
@@ -131,15 +111,6 @@ def _parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, fun
     if our_functions(kernels):
         yield table_text(kernels)
     yield _entries(kernels, entry)
-
-
-def _linked(parts: Iterable[str]) -> binding.ModuleRef:
-    """One module in a context of its own: what LLVM makes for a module, types and constants above all, it keeps as long as the context."""
-    context = binding.create_context()
-    first, *others = (binding.parse_assembly(part, context) for part in parts)
-    for module in others:
-        first.link_in(module)
-    return first
 
 
 def _few_passes() -> binding.ModulePassManager:
@@ -177,12 +148,6 @@ def _entries(kernels: Sequence[Kernel], entry: EntryName) -> str:
 def _thread_template() -> str:
     """What says which thread calls: what the system's own function would do, where that is known."""
     return "thread_linux_x86_64.ll" if sys.platform == "linux" and os.uname().machine == "x86_64" else "thread.ll"
-
-
-def _make_private(module: binding.ModuleRef, exported: Sequence[str]) -> None:
-    for defined in (*module.functions, *module.global_variables):
-        if not defined.is_declaration and defined.name not in exported:
-            defined.linkage = "internal"
 
 
 def _template(file: str) -> str:

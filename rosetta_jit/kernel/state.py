@@ -3,7 +3,7 @@
     0 valid    1 epoch    2 error site    3 lane to grow    4 missing rows    5 … 8 indices of the error's path    9 result
     10 address of the hidden lanes' words    11 how many hidden lanes there are
     12 now, in ns since 1970    13 number of the message in row 0
-    14 error offset
+    14 error offset    15 about how many bytes of rows nothing refers to any more
     16 + 4 k   address, capacity, used length, stride of lane k
 
 The words of hidden lane k, 4 k words behind their address, are its address and its capacity in bytes: each kernel divides them into rows of
@@ -28,6 +28,7 @@ RESULT, GROW = 9, -1
 HIDDEN, HIDDEN_COUNT = 10, 11
 NOW, NUMBER = 12, 13
 ERROR_OFFSET = 14
+WASTED = 15
 MAX_INDICES = 4
 LANES, LANE_WORDS = 16, 4
 ADDRESS, CAPACITY, USED, STRIDE = 0, 1, 2, 3

@@ -1,9 +1,9 @@
 """Types that compiled entries know: callables whose vectorcall slot is an entry, holders with their state's address in a fixed place.
 
-Such types cannot be written in Python. They are made through CPython's stable type specifications (PEP 384) by ctypes:
+Such types cannot be written in Python (`runtime.specs`). Their objects lie in memory so:
 
     a callable    0 the instance of its Python base class    64 vectorcall    72 context
-    a holder      0 object header    16 address of the state
+    a message     0 object header    16 … 72 words of ours
 
 Where Python is not one that we know, `callable_class` gives a Python class that calls the slow path, and `holder_base` a plain one.
 """
@@ -18,9 +18,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rosetta_jit.dataclass import dataclass
+from rosetta_jit.runtime import specs
+from rosetta_jit.runtime.specs import (
+    BASETYPE,
+    DEFAULT,
+    READONLY,
+    SSIZE_T,
+    TP_CALL,
+    TP_MEMBERS,
+    Member,
+    Method,
+    address_of,
+    from_spec,
+    read_word,
+    with_attributes,
+    write_word,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable
 
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
@@ -28,12 +44,12 @@ VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
 MADE, THREAD = 5, 6
 """Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0."""
 
-STATE, HOLDER_BYTES = 16, 24
+STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
+ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
+"""No epochs: of a message whose row is fixed, and of one whose row must be looked for."""
 
-# Include/object.h and Include/typeslots.h
-_DEFAULT, _VECTORCALL, _BASETYPE = 1 << 18, 1 << 11, 1 << 10
-_TP_CALL, _TP_MEMBERS = 50, 72
-_SSIZE_T, _READONLY = 19, 1
+_WORDS = ctypes.c_int64 * 7
+
 _FASTCALL, _KEYWORDS = 0x80, 0x02  # Include/methodobject.h; the two together have the arguments of a vectorcall
 
 
@@ -92,18 +108,19 @@ def callable_class(base: type, *, native: bool | None = None) -> type:
     """
     if not _chosen(native) or base.__basicsize__ > VECTORCALL:
         return type(base.__name__, (base,), {"__call__": _call_slow, "_is_native": False, **_names(base)})
-    members = (_Member * 2)(_Member(b"__vectorcalloffset__", _SSIZE_T, VECTORCALL, _READONLY, None))
-    slots = ((_TP_MEMBERS, ctypes.addressof(members)), (_TP_CALL, _address("PyVectorcall_Call")))
-    created = _from_spec(base, CALLABLE_BYTES, _DEFAULT | _VECTORCALL | _BASETYPE, slots)
-    return _with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
+    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, VECTORCALL, READONLY, None))
+    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
+    created = from_spec(base.__name__, base, CALLABLE_BYTES, DEFAULT | specs.VECTORCALL | BASETYPE, slots)
+    return with_attributes(created, {"_is_native": True, "_members": members, **_names(base)})
 
 
-def holder_base(*, native: bool | None = None) -> type:
-    """A class to derive holders from, with room for the address of their state; see `bind_state`."""
+def message_base(*, native: bool | None = None) -> type:
+    """A class to derive messages from, with room for what compiled code must know of them (`bind_message`); ``index_`` is a part of it."""
     if not _chosen(native):
-        return type("HolderBase", (), {"_is_native": False, "__module__": __name__})
-    created = _from_spec(object, HOLDER_BYTES, _DEFAULT | _BASETYPE, ())
-    return _with_attributes(created, {"_is_native": True, "__module__": __name__, "__qualname__": "HolderBase"})
+        return type("MessageBase", (), {"_is_native": False, "__module__": __name__, "__slots__": ("index_",)})
+    members = (Member * 2)(Member(b"index_", SSIZE_T, INDEX, 0, None))
+    created = from_spec("MessageBase", object, MESSAGE_BYTES, DEFAULT | BASETYPE, ((TP_MEMBERS, ctypes.addressof(members)),))
+    return with_attributes(created, {"_is_native": True, "__module__": __name__, "__qualname__": "MessageBase", "_members": members})
 
 
 def bind_call(target: Any, entry: int | None, context: Context) -> None:
@@ -118,8 +135,8 @@ def bind_call(target: Any, entry: int | None, context: Context) -> None:
     if entry is None:
         target.__class__ = _without_entry(target.__class__)
     else:
-        _write(id(target) + CONTEXT, words.ctypes.data)
-        _write(id(target) + VECTORCALL, entry)
+        write_word(id(target) + CONTEXT, words.ctypes.data)
+        write_word(id(target) + VECTORCALL, entry)
 
 
 def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
@@ -127,20 +144,30 @@ def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
 
     Its ``__self__`` is the target, which it keeps alive; not the other way round.
     """
-    entry = _read(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
+    entry = read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
     if not entry:
         return target._context[0].slow  # noqa: SLF001 - as above
     if "_method" not in vars(target):
-        target._method = _Method(name.encode(), entry, _FASTCALL | _KEYWORDS, doc.encode())  # noqa: SLF001 - as above
+        target._method = Method(name.encode(), entry, _FASTCALL | _KEYWORDS, doc.encode())  # noqa: SLF001 - as above
     create = ctypes.pythonapi.PyCFunction_NewEx
     create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p]
     return create(ctypes.addressof(target._method), target, None)  # noqa: SLF001 - as above
 
 
 def bind_state(holder: Any, address: int) -> None:
-    """Tell the entries where the state of a holder, an instance of a subclass of a `holder_base`, lies. The holder must keep its memory."""
+    """Tell the entries where the state of a holder, an instance of a subclass of a `message_base`, lies. The holder must keep it alive."""
     if holder._is_native:  # noqa: SLF001 - the class is ours
-        _write(id(holder) + STATE, address)
+        write_word(id(holder) + STATE, address)
+
+
+def bind_message(message: Any, words: tuple[int, int, int, int, int, int, int]) -> None:
+    """Tell the compiled accessors where a message lies.
+
+    The words are: address of the state, row, epoch at which the row was found (`ALWAYS`, or `NEVER` yet), offset of the lane's words in the
+    state, address of the table of places, index, offset of the span in the parent's row.
+    """
+    if message._is_native:  # noqa: SLF001 - the class is ours
+        _WORDS.from_address(id(message) + STATE)[:] = words
 
 
 @cache
@@ -164,67 +191,3 @@ def _chosen(native: bool | None) -> bool:
 
 def _names(base: type) -> dict[str, str]:
     return {"__module__": base.__module__, "__qualname__": base.__qualname__}
-
-
-def _with_attributes(created: type, attributes: Mapping[str, object]) -> type:
-    """What the type's C structures point to lives as long as the type."""
-    for name, value in attributes.items():
-        setattr(created, name, value)
-    return created
-
-
-class _Member(ctypes.Structure):
-    """PyMemberDef of Include/structmember.h."""
-
-    _fields_ = (
-        ("name", ctypes.c_char_p),
-        ("type", ctypes.c_int),
-        ("offset", ctypes.c_ssize_t),
-        ("flags", ctypes.c_int),
-        ("doc", ctypes.c_char_p),
-    )
-
-
-class _Method(ctypes.Structure):
-    """PyMethodDef of Include/methodobject.h."""
-
-    _fields_ = (("name", ctypes.c_char_p), ("function", ctypes.c_void_p), ("flags", ctypes.c_int), ("doc", ctypes.c_char_p))
-
-
-class _Slot(ctypes.Structure):
-    """PyType_Slot of Include/object.h."""
-
-    _fields_ = (("slot", ctypes.c_int), ("function", ctypes.c_void_p))
-
-
-class _Spec(ctypes.Structure):
-    """PyType_Spec of Include/object.h."""
-
-    _fields_ = (
-        ("name", ctypes.c_char_p),
-        ("basicsize", ctypes.c_int),
-        ("itemsize", ctypes.c_int),
-        ("flags", ctypes.c_uint),
-        ("slots", ctypes.POINTER(_Slot)),
-    )
-
-
-def _from_spec(base: type, size: int, flags: int, slots: Sequence[tuple[int, int]]) -> type:
-    """A type whose instances are of a fixed size; all else, garbage collection included, comes from the base."""
-    table = (_Slot * (len(slots) + 1))(*(_Slot(number, function) for number, function in slots))
-    spec = _Spec(f"rosetta_jit.{base.__name__}".encode(), size, 0, flags, table)
-    create = ctypes.pythonapi.PyType_FromSpecWithBases
-    create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object]
-    return create(ctypes.addressof(spec), (base,))
-
-
-def _address(function: str) -> int:
-    return ctypes.cast(getattr(ctypes.pythonapi, function), ctypes.c_void_p).value or 0
-
-
-def _read(address: int) -> int:
-    return ctypes.c_uint64.from_address(address).value
-
-
-def _write(address: int, value: int) -> None:
-    ctypes.c_uint64.from_address(address).value = value

@@ -179,7 +179,6 @@ def _make_rows(lanes: Lanes, count: int) -> None:
     for lane in range(1, len(lanes.buffers)):
         lanes.words[lane_word(lane, USED)] = 0
     lanes.words[lane_word(0, USED)] = lanes.rows = count
-    lanes.moves += 1
 
 
 def _grow_for_all(lanes: Lanes, done: int, count: int) -> None:

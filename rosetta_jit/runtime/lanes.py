@@ -18,7 +18,21 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import InUse, InvalidHolder, RosettaError
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, CLEAN, EPOCH, GROW, HIDDEN, HIDDEN_COUNT, RESULT, UNSETTLED, USED, VALID, lane_word
+from rosetta_jit.kernel.state import (
+    ADDRESS,
+    CAPACITY,
+    CLEAN,
+    EPOCH,
+    GROW,
+    HIDDEN,
+    HIDDEN_COUNT,
+    RESULT,
+    UNSETTLED,
+    USED,
+    VALID,
+    WASTED,
+    lane_word,
+)
 from rosetta_jit.model.births import FirstCase, FixedArray
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
@@ -79,10 +93,6 @@ class Lanes:
         One element: the message from which spans are borrowed, or None.
     rows : int
         How many messages they hold, from row 0 of lane 0 on.
-    wasted : int
-        About how many bytes of rows nothing refers to any more.
-    moves : int
-        How often rows changed their place, so that views know when to look for theirs again.
     """
 
     __slots__ = (
@@ -96,12 +106,10 @@ class Lanes:
         "is_filled",
         "lock",
         "memory",
-        "moves",
         "plan",
         "rows",
         "source",
         "state",
-        "wasted",
         "words",
     )
     arrays: Arrays
@@ -129,9 +137,7 @@ class Lanes:
         self.is_filled = True
         self.lock = allocate_lock()
         self.source: list[Any] = [None]
-        self.moves = 0
         self.rows = plan.rows
-        self.wasted = 0
 
     if not TYPE_CHECKING:  # for which the slots are always there
 
@@ -274,8 +280,7 @@ class Lanes:
         self.take(0, rows)
         self.bear(self.plan.births, 0, rows)
         self.source[0] = None
-        self.wasted = 0
-        self.moves += 1
+        self.words[WASTED] = 0
         self.words[VALID] = CLEAN
 
     def adopt(self, other: Lanes) -> None:
@@ -284,8 +289,7 @@ class Lanes:
             self._place(lane, buffer, other.capacity(lane))
             self.give_back(lane, other.used(lane))
         self.source[0] = None
-        self.wasted = 0
-        self.moves += 1
+        self.words[WASTED] = 0
         self.words[VALID] = CLEAN
 
     def begin_filling(self) -> None:
@@ -299,8 +303,8 @@ class Lanes:
 
     def waste(self, lane: int, rows: int) -> None:
         """Rows of a lane are not referred to any more. Where there are many, the next encode tidies up."""
-        self.wasted += rows * self.plan.strides[lane]
-        if self.wasted > max(MAX_WASTE, sum(buffer.size for buffer in self.buffers) // 2):
+        self.words[WASTED] += rows * self.plan.strides[lane]
+        if self.words[WASTED] > max(MAX_WASTE, sum(buffer.size for buffer in self.buffers) // 2):
             self.unsettle()
 
     def borrowed(self, start: int, size: int) -> memoryview:

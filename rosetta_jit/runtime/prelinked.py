@@ -5,7 +5,7 @@
 
 Its parts refer to one another by distance. What it takes from the process it finds in the slots: addresses of 8 bytes at the end of the
 code, in the order of ``wants``. In memory the data begin on the page behind the code; code is executed and never written, data are written
-and never executed. `backends.prelink` makes it.
+and never executed. `runtime.prelink` makes it.
 """
 
 from __future__ import annotations

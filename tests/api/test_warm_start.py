@@ -52,15 +52,15 @@ def test_no_process_imports_numba_unless_it_is_asked_for(tmp_path):
 def test_a_harmed_cache_costs_a_warning(tmp_path, harm):
     folder = tmp_path / "cache"
     start(folder)
-    (kernel,) = folder.glob("*.kernel")
-    data = kernel.read_bytes()
-    match harm:
-        case "cut":
-            kernel.write_bytes(data[: len(data) // 2])
-        case "altered":
-            kernel.write_bytes(data[:-100] + bytes(100))
-        case _:
-            folder.chmod(0o777)
+    for kernel in folder.glob("*.kernel"):
+        data = kernel.read_bytes()
+        match harm:
+            case "cut":
+                kernel.write_bytes(data[: len(data) // 2])
+            case "altered":
+                kernel.write_bytes(data[:-100] + bytes(100))
+            case _:
+                folder.chmod(0o777)
     ran = start(folder, "loud")
     assert "CacheWarning" in ran.stderr
     assert "rosetta_jit.lowering.lower" in ran.stdout

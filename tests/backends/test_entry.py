@@ -15,7 +15,7 @@ from rosetta_jit.backends.link import compile_program
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, VALID
 from rosetta_jit.runtime import native
-from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, holder_base, is_native
+from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, is_native, message_base
 from tests.backends import kernels
 from tests.backends.engines import outcome
 from tests.backends.holders import rows
@@ -40,7 +40,7 @@ class Program:
         return "slow"
 
 
-class Holder(holder_base()):
+class Holder(message_base()):
     def __init__(self, memory):
         self.rows = memory
         bind_state(self, memory.state.ctypes.data)

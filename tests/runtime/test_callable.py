@@ -9,7 +9,7 @@ import weakref
 import numpy as np
 import pytest
 
-from rosetta_jit.runtime.callable import STATE, Context, bind_call, bind_state, callable_class, holder_base, is_native
+from rosetta_jit.runtime.callable import STATE, Context, bind_call, bind_state, callable_class, is_native, message_base
 
 
 class Program:
@@ -42,7 +42,7 @@ def test_the_fallback_calls_the_slow_path():
     instance = callable_class(Program, native=False)("x")
     bind_call(instance, 0, context(lambda *arguments, **named: (arguments, named)))
     assert instance(1, two=2) == ((1,), {"two": 2})
-    holder = holder_base(native=False)()
+    holder = message_base(native=False)()
     bind_state(holder, np.zeros(16, np.int64).ctypes.data)
 
 
@@ -56,7 +56,7 @@ def test_an_unbound_callable_says_so():
 def test_holders_carry_the_address_of_their_state():
     import ctypes
 
-    class Holder(holder_base()):
+    class Holder(message_base()):
         pass
 
     holder, state = Holder(), np.zeros(16, np.int64)
@@ -78,7 +78,7 @@ def test_cycles_are_collected():
 def test_a_hundred_thousand_come_and_go():
     made = callable_class(Program)
 
-    class Holder(holder_base()):
+    class Holder(message_base()):
         pass
 
     def churn(count):

@@ -10,6 +10,7 @@ import pickle
 import sys
 import tracemalloc
 from pathlib import Path
+from types import MemberDescriptorType
 
 import numpy as np
 import pytest
@@ -176,6 +177,8 @@ def test_a_failed_decode_is_noticed():
     part, parts = holder.part, holder.parts
     holder.lanes_.words[VALID] = 0
     for name in FULL:
+        if isinstance(getattr(type(holder), name), MemberDescriptorType):
+            continue  # a view that has been there: to read it fails
         with pytest.raises(InvalidHolder):
             getattr(holder, name)
     for read in (
@@ -307,7 +310,7 @@ def test_hostile_names():
     cls = holder_class(struct, Schema({}))
     values = {name: index for index, name in enumerate(HOSTILE)}
     holder = cls.from_dict(values)
-    assert cls.__dict__["to_dict"].fget is not None
+    assert cls.__dict__["to_dict"].__get__(holder) == HOSTILE.index("to_dict")
     assert copy.copy(holder) == holder
     assert getattr(holder, "'") == HOSTILE.index("'")
     assert holder.new == HOSTILE.index("new")

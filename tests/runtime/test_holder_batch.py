@@ -67,7 +67,7 @@ def test_ragged_arrays(batch):
 
 
 def test_borrowed_columns(batch):
-    span = flat().access_.record.entries["data"].node.span
+    span = flat()().access_.record.entries["data"].node.span
     words = batch.lanes.cells[span.key]
     words[span.step + span.index], words[span.step + span.index + 1] = 1, ~2
     batch.lanes.source[0] = b"xyz"

@@ -10,12 +10,13 @@ from pathlib import Path
 import pytest
 from llvmlite import binding
 
-from rosetta_jit.backends.link import compile_program, object_file, target_machine
-from rosetta_jit.backends.prelink import prelinked
+from rosetta_jit.backends.link import compile_program, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.runtime import native
 from rosetta_jit.runtime.allowed import ForeignCodeError
+from rosetta_jit.runtime.assembler import target_machine
 from rosetta_jit.runtime.object_file import undefined_symbols
+from rosetta_jit.runtime.prelink import prelinked
 from rosetta_jit.runtime.prelinked import MAGIC, from_bytes
 from tests.backends import kernels
 

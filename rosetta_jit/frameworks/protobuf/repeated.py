@@ -14,8 +14,8 @@ import numpy as np
 
 from rosetta_jit.runtime.holder import coerce, values
 from rosetta_jit.runtime.holder.merge import append_numbers
-from rosetta_jit.runtime.holder.message import Message, place, writable
-from rosetta_jit.runtime.holder.record import Numbers, Record
+from rosetta_jit.runtime.holder.message import Message, View, place, writable
+from rosetta_jit.runtime.holder.record import Items, Numbers, Record
 from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class NumberArray(np.ndarray[Any, Any]):
     def _replace(self, elements: Iterable[Any]) -> None:
         message, node = self._field()
         prepared = values.prepare(node, elements)
-        with message.home_:
+        with message.lanes_:
             lanes, row = writable(message)
             values.put(node, lanes, row, prepared)
 
@@ -84,7 +84,7 @@ class NumberArray(np.ndarray[Any, Any]):
     def _current(self) -> list[Any]:
         """The field's elements, which may be others than when this array was read."""
         message, node = self._field()
-        return message.home_.consistent(_elements, (message, node)).tolist()
+        return message.lanes_.consistent(_elements, (message, node)).tolist()
 
     def __delitem__(self, index: Any) -> None:
         elements = self._current()
@@ -138,7 +138,7 @@ class RepeatedMessages(Sequence):
 
     def add(self, **fields: Any) -> Any:
         """Append an empty message, or one of the fields given; return it."""
-        with self.message.home_:
+        with self.message.lanes_:
             self._append([{}])
             added = self._at(-1)
         try:
@@ -171,10 +171,13 @@ class RepeatedMessages(Sequence):
         return value
 
 
-def repeated(message: Message, entry: Entry) -> Sequence:
+def repeated(message: View, entry: Entry) -> Sequence:
     """What shows a repeated field of anything but numbers."""
-    shown = Sequence(message, entry)
-    return (RepeatedMessages if isinstance(shown.node.element, Record) else RepeatedStrings)(message, entry)
+    match entry.node:
+        case Items(element=Record()):
+            return RepeatedMessages(message, entry)
+        case _:
+            return RepeatedStrings(message, entry)
 
 
 class MapField(Dictionary):

@@ -1,7 +1,6 @@
-"""Getters and setters: one closure a field, that knows its cell. What a property of a holder runs.
+"""Getters and setters: one closure a field, that knows its cell.
 
-A getter reads where the message already is (`Message.lanes_`, ``row_``); views look for their row before. Absent values are zero in memory,
-so presence is asked only where a default is not, and of the cases of a union, which share their memory.
+Absent values are zero in memory, so presence is asked only where a default is not, and of the cases of a union, which share their memory.
 """
 
 from __future__ import annotations
@@ -12,17 +11,20 @@ from typing import TYPE_CHECKING, Any, Protocol, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.kernel.state import VALID
 from rosetta_jit.model.births import MAX_BORN_BYTES
+from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
 from rosetta_jit.runtime.holder import arena, coerce, grid, values
-from rosetta_jit.runtime.holder.message import Message, View, bind, place, writable
+from rosetta_jit.runtime.holder.message import Message, View, beside, element, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
+    from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.lanes import Lanes
 
 Getter = Callable[[Any], Any]
+Read = Callable[[Message, "Lanes", int], Any]
+"""What reads a field of a message that has been found in a row of lanes."""
 Setter = Callable[[Any, Any], None]
 
 
@@ -32,30 +34,72 @@ class Family(Protocol):
     @property
     def array_type(self) -> type[np.ndarray[Any, Any]]: ...
     @property
-    def sequence(self) -> Callable[[Message, Entry], Any]: ...
+    def sequence(self) -> Callable[[View, Entry], Any]: ...
     @property
-    def mapping(self) -> Callable[[Message, Entry], Any]: ...
+    def mapping(self) -> Callable[[View, Entry], Any]: ...
     @property
     def assigns_whole(self) -> bool: ...
     def access(self, record: Record) -> Access: ...
     def view_class(self, struct: str) -> type[View]: ...
     def empty_lanes(self) -> Lanes: ...
+    @property
+    def sequences(self) -> OfSequences: ...
+    def kept_of(self, struct: str) -> KeptFields | None:
+        """Where messages of a struct keep what shows their fields; None where no compiled code reads them."""
+        ...
 
 
 class Access:
     """How the fields of one record are read and written; each accessor is made when first used."""
 
-    __slots__ = ("family", "getters", "record", "setters")
+    __slots__ = ("_numbers", "_places", "family", "getters", "record", "setters", "table")
 
     def __init__(self, record: Record, family: Family) -> None:
         self.record = record
         self.family = family
         self.getters = _Made(lambda name: getter(record.entries[name], family))
         self.setters = _Made(lambda name: setter(record.entries[name], family))
+        kept = family.kept_of(record.struct)
+        self._places = None if kept is None else Places(record, self._read, write_field, kept, family.sequences)
+        self._numbers = {name: number for number, name in enumerate(record.entries)}
+        for name in kept.members if kept is not None else ():
+            self._show(name)
+        self.table = 0 if self._places is None else self._places.address
+        """Address of what compiled accessors know of the record's fields; 0 where there are none."""
+
+    def place_of(self, name: str) -> int:
+        """Address of what they know of one field."""
+        return self.table and self.table + PLACE_BYTES * self._numbers[name]
+
+    def _read(self, name: str) -> Getter:
+        """What compiled accessors ask for a field. From then on they know what its value is shown as."""
+        return read_field(name) if _shown(self.record.entries[name]) is None else lambda message: message.access_.read_first(message, name)
+
+    def read_first(self, message: Message, name: str) -> Any:
+        """Read a field whose value, or elements, are shown by views; compiled accessors make them from now on."""
+        self._show(name)
+        return self.getters[name](message)
+
+    def _show(self, name: str) -> None:
+        shown = _shown(self.record.entries[name])
+        if shown is not None and self._places is not None:
+            inner = self.family.access(shown)
+            self._places.show(self._numbers[name], self.family.view_class(shown.struct), inner, inner.table)
 
     def empty_lanes(self) -> Lanes:
         """Lanes of the same layout in which everything is absent."""
         return self.family.empty_lanes()
+
+
+def _shown(entry: Entry) -> Record | None:
+    """The record that the views show which a field, or its elements, are read as."""
+    match entry.node:
+        case Record() as record:
+            return record
+        case Items(element=Record() as record):
+            return record
+        case _:
+            return None
 
 
 class _Made(dict[str, Any]):
@@ -71,151 +115,110 @@ class _Made(dict[str, Any]):
         return made
 
 
-def getter(entry: Entry, family: Family, *, first_row: bool = False) -> Getter:
-    """What reads a field of a message; quicker where all messages are in the first row of their lanes, as holders are."""
+def read_field(name: str) -> Getter:
+    """What a property runs: the getter of the message's own record."""
+    return lambda message: message.access_.getters[name](message)
+
+
+def write_field(name: str) -> Setter:
+    """The same of the setter."""
+    return lambda message, value: message.access_.setters[name](message, value)
+
+
+def getter(entry: Entry, family: Family) -> Getter:
+    """What reads a field of a message."""
     node = entry.node
-    guarded = entry.presence is not None and (bool(entry.default) or not isinstance(entry.presence, Bit))
     match node:
-        case Scalar():
-            return _or_default(_scalar(node), entry) if guarded else _scalar(node, first_row=first_row)
-        case Text():
-            return _or_default(_text(node), entry) if guarded else _consistent(_text(node))
-        case Blob():
-            return _or_default(_blob(node), entry) if guarded else _consistent(_blob(node))
-        case Numbers():
-            return _numbers(entry, node, family, first_row=first_row)
-        case Items() if node.shape:
-            return _consistent(_grid(node))
-        case Items():
-            return lambda message: family.sequence(message, entry)
+        case Items() if not node.shape:
+            return lambda message: family.sequence(view_of(message), entry)
+        case Scalar() | Text() | Blob() | Numbers() | Items():
+            return _consistent(_or_default(_leaf(entry, node, family), entry))
         case Pairs():
-            return lambda message: family.mapping(message, entry)
-        case Record() | Child():
-            return _message(entry, node, family)
+            return lambda message: family.mapping(view_of(message), entry)
+        case Record():
+            return lambda message: _beside(message, node, family)
+        case Child():
+            return lambda message: element(_new_view(family, node.record), view_of(message), family.access(node.record), entry, 0)
         case _:
             assert_never(node)
 
 
+def _beside(message: Message, record: Record, family: Family) -> View:
+    place(message)
+    return beside(_new_view(family, record), message, family.access(record))
+
+
+def _new_view(family: Family, record: Record) -> View:
+    cls = family.view_class(record.struct)
+    return cls.__new__(cls)
+
+
+def view_of(message: Message) -> View:
+    """A view of a message, which the message can keep: it does not lead back to it."""
+    place(message)
+    access = message.access_
+    made = type(message) if isinstance(message, View) else access.family.view_class(access.record.struct)
+    return beside(made.__new__(made), message, access)
+
+
 def _consistent(read: Getter) -> Getter:
     """A getter that takes several steps, between which another thread may decode."""
-    return lambda message: message.home_.consistent(read, message)
+    return lambda message: message.lanes_.consistent(read, message)
 
 
-def _or_default(get: Getter, entry: Entry) -> Getter:
+def _or_default(read: Read, entry: Entry) -> Getter:
     presence, default = entry.presence, entry.default
+    is_guarded = presence is not None and (bool(default) or not isinstance(presence, Bit))
+
+    def get(message: Message) -> Any:
+        return read(message, *place(message))
 
     def get_or_default(message: Message) -> Any:
-        if arena.present(message.lanes_, presence, message.row_):
-            return get(message)
-        place(message)
-        return default
+        lanes, row = place(message)
+        return read(message, lanes, row) if arena.present(lanes, presence, row) else default
 
-    return _consistent(get_or_default)
+    return get_or_default if is_guarded else get
 
 
-def _scalar(node: Scalar, *, first_row: bool = False) -> Getter:
+def _leaf(entry: Entry, node: values.Leaf, family: Family) -> Read:
+    match node:
+        case Scalar():
+            return _scalar(node)
+        case Text():
+            return lambda _, lanes, row: coerce.decoded(node.type, arena.content(lanes, node.span, node.lane, row))
+        case Blob():
+            return _blob(node)
+        case Numbers():
+            return _numbers(entry, node, family)
+        case Items():
+            return lambda _, lanes, row: grid.view(node, lanes, row)
+
+
+def _scalar(node: Scalar) -> Read:
     key, step, index = node.cell.key, node.cell.step, node.cell.index
-
-    def get(message: Message) -> Any:
-        lanes = message.lanes_
-        if lanes.words[VALID]:
-            return lanes.cells[key][message.row_ * step + index]
-        raise lanes.invalid()
-
-    def get_first(message: Message) -> Any:
-        lanes = message.lanes_
-        if lanes.words[VALID]:
-            return lanes.cells[key][index]
-        raise lanes.invalid()
-
-    return get_first if first_row else get
+    return lambda _, lanes, row: lanes.cells[key][row * step + index]
 
 
-def _text(node: Text) -> Getter:
-    span, lane, type_ = node.span, node.lane, node.type
-
-    def get(message: Message) -> str:
-        lanes = message.lanes_
-        if lanes.words[VALID]:
-            return coerce.decoded(type_, arena.content(lanes, span, lane, message.row_))
-        raise lanes.invalid()
-
-    return get
-
-
-def _blob(node: Blob) -> Getter:
+def _blob(node: Blob) -> Read:
     span, lane = node.span, node.lane
     absent = bytes(node.length) if node.length and node.length <= MAX_BORN_BYTES else b""
-
-    def get(message: Message) -> bytes:
-        lanes = message.lanes_
-        if lanes.words[VALID]:
-            return bytes(arena.content(lanes, span, lane, message.row_)) or absent
-        raise lanes.invalid()
-
-    return get
+    return lambda _, lanes, row: bytes(arena.content(lanes, span, lane, row)) or absent
 
 
-def _numbers(entry: Entry, node: Numbers, family: Family, *, first_row: bool) -> Getter:
-    lane, key, index = node.lane, node.span.key, node.span.index
-    behind = index + 1
+def _numbers(entry: Entry, node: Numbers, family: Family) -> Read:
+    lane = node.lane
     absent = grid.zeros(node.type, (node.length,)).view(family.array_type) if node.length else None
 
-    def get(message: Message) -> Any:
-        lanes = message.lanes_
-        if not lanes.words[VALID]:
-            raise lanes.invalid()
-        start, count = arena.span_of(lanes, node.span, message.row_)
+    def read(_: Message, lanes: Lanes, row: int) -> Any:
+        start, count = arena.span_of(lanes, node.span, row)
         return lanes.arrays[lane][start : start + count] if count or absent is None else absent
 
-    def get_first(message: Message) -> Any:
-        lanes = message.lanes_
-        if not lanes.words[VALID]:
-            raise lanes.invalid()
-        words = lanes.cells[key]
-        start, count = words[index], words[behind]
-        return lanes.arrays[lane][start : start + count] if count or absent is None else absent
-
-    def get_owned(message: Message) -> Any:
-        array = get(message)
+    def read_owned(message: Message, lanes: Lanes, row: int) -> Any:
+        array = read(message, lanes, row)
         array.owner_ = message, entry
         return array
 
-    def get_first_owned(message: Any) -> Any:
-        lanes = message.lanes_
-        if not lanes.words[VALID]:
-            raise lanes.invalid()
-        words = lanes.cells[key]
-        start = words[index]
-        array = lanes.arrays[lane][start : start + words[behind]]
-        array.owner_ = message, entry
-        return array
-
-    if family.array_type is np.ndarray:
-        return get_first if first_row else get
-    return get_first_owned if first_row else get_owned
-
-
-def _grid(node: Items) -> Getter:
-    def get(message: Message) -> Any:
-        lanes = message.lanes_
-        if lanes.words[VALID]:
-            return grid.view(node, lanes, message.row_)
-        raise lanes.invalid()
-
-    return get
-
-
-def _message(entry: Entry, node: Record | Child, family: Family) -> Getter:
-    record = node.record if isinstance(node, Child) else node
-    through = entry if isinstance(node, Child) else None
-
-    def get(message: Message) -> View:
-        place(message)
-        cls = family.view_class(record.struct)
-        return bind(cls.__new__(cls), message, family.access(record), through)
-
-    return get
+    return read if family.array_type is np.ndarray else read_owned
 
 
 def setter(entry: Entry, family: Family) -> Setter:
@@ -241,7 +244,7 @@ def _leaf_setter(entry: Entry, node: values.Leaf) -> Setter:
 
     def set_(message: Message, value: Any) -> None:
         prepared = values.prepare(node, value)
-        with message.home_:
+        with message.lanes_:
             lanes, row = writable(message)
             arena.mark(lanes, presence, row)
             values.put(node, lanes, row, prepared)
@@ -254,7 +257,7 @@ def _whole_setter(entry: Entry) -> Setter:
 
     def set_(message: Message, value: Any) -> None:
         plain = raw(value)
-        with message.home_:
+        with message.lanes_:
             lanes, row = writable(message)
             arena.clear(lanes, entry, row)
             values.write_entry(entry, lanes, row, plain)
@@ -275,7 +278,7 @@ def raw(value: Any, depth: int = 0) -> Any:
         raise EncodeError("nesting", "", f"values contain each other more than {2 * values.MAX_DEPTH} deep")
     match value:
         case Message():
-            return value.home_.consistent(_raw_message, value)
+            return value.lanes_.consistent(_raw_message, value)
         case Mapping():
             return {key: raw(each, depth + 1) for key, each in cast("Mapping[Any, Any]", value).items()}
         case str() | bytes() | bytearray() | memoryview() | np.ndarray():

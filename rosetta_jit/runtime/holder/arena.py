@@ -44,7 +44,7 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
         if at_end:
             lanes.give_back(lane, start + count)
         elif count < old:
-            _abandon(lanes, lane, old - count)
+            lanes.waste(lane, old - count)
     elif old and at_end:
         lanes.take(lane, count - old)
     else:
@@ -63,13 +63,8 @@ def _moved(lanes: Lanes, lane: int, start: int, old: int, count: int) -> int:
     if old:
         stride, buffer = lanes.plan.strides[lane], lanes.buffers[lane]
         buffer[target * stride : (target + old) * stride] = buffer[start * stride : (start + old) * stride]
-        _abandon(lanes, lane, old)
+        lanes.waste(lane, old)
     return target
-
-
-def _abandon(lanes: Lanes, lane: int, rows: int) -> None:
-    lanes.moves += 1
-    lanes.waste(lane, rows)
 
 
 def replace(lanes: Lanes, node: Text | Blob, row: int, data: memoryview | bytes) -> None:
@@ -85,7 +80,6 @@ def rearrange(lanes: Lanes, node: Spanned, row: int, order: list[int]) -> None:
     stride = lanes.plan.strides[node.lane]
     rows = lanes.buffers[node.lane][start * stride : (start + count) * stride].reshape(count, stride)
     rows[: len(order)] = rows[order]
-    lanes.moves += 1
     resize(lanes, node, row, len(order))
 
 
@@ -162,7 +156,6 @@ def clear(lanes: Lanes, entry: Entry, row: int) -> None:
         return
     _release(lanes, node, row)
     _zero(lanes, *_at(node, row))
-    lanes.moves += 1
     match presence:
         case None:
             lanes.bear(entry.births, row, 1)

@@ -8,10 +8,9 @@ import numpy as np
 
 from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import CLEAN, VALID
-from rosetta_jit.runtime.callable import bind_state, holder_base
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
-from rosetta_jit.runtime.holder.message import OWN_SLOTS, Message, View, place
+from rosetta_jit.runtime.holder.message import Message, View, in_row, place
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
 from rosetta_jit.runtime.lanes import Lanes
 
@@ -27,16 +26,10 @@ if TYPE_CHECKING:
 _Holder = TypeVar("_Holder", bound="Holder")
 
 
-if TYPE_CHECKING:
-    Base = object
-else:
-    Base = holder_base()
-
-
-class Holder(Message, Base):
+class Holder(Message):
     """A message with lanes of its own. Subclasses are made by `holder_class`."""
 
-    __slots__ = OWN_SLOTS
+    __slots__ = ()
 
     family_: Family
 
@@ -49,9 +42,7 @@ class Holder(Message, Base):
 
     def lay_out_(self, plan: Plan) -> None:
         """Give the holder lanes. It must have none yet."""
-        self.lanes_ = self.home_ = Lanes(plan, self.family_.array_type)
-        self.row_ = 0
-        bind_state(self, self.lanes_.address)
+        in_row(self, Lanes(plan, self.family_.array_type), self.family_.access(self.family_.tree.root), 0)
 
     def new(self) -> Self:
         """An empty holder of the same type."""
@@ -73,7 +64,7 @@ class Holder(Message, Base):
         TypeError
             If its value is no array of numbers or bytes.
         """
-        return self.home_.consistent(lambda entry: _shown(self, entry), self.access_.record.entries[name])
+        return self.lanes_.consistent(lambda entry: _shown(self, entry), self.access_.record.entries[name])
 
     def has(self, name: str) -> bool:
         """Whether a field is present: KeyError where there is none of that name."""
@@ -86,11 +77,11 @@ class Holder(Message, Base):
 
     def which(self, union: str) -> str | None:
         """The name of the case of a union that is present."""
-        return self.home_.consistent(lambda cases: _present_case(self, cases), self.access_.record.unions[union])
+        return self.lanes_.consistent(lambda cases: _present_case(self, cases), self.access_.record.unions[union])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain Python values of what is present, named as in the IDL: enums by their names, arrays as lists."""
-        return self.home_.consistent(_plain, self)
+        return self.lanes_.consistent(_plain, self)
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any]) -> Self:
@@ -137,12 +128,12 @@ def clear(holder: Holder, name: str | None) -> None:
     """Make a field absent or empty, or all of them; a holder whose decode failed becomes valid so."""
     record = holder.access_.record
     entries = record.entries.values() if name is None else [record.entries[name]]
-    with holder.home_:
+    with holder.lanes_:
         if name is None and not isinstance(holder, View):
             holder.lanes_.reset()
             return
         lanes, row = place(holder)
-        if lanes is holder.home_:
+        if lanes is holder.lanes_:
             for entry in entries:
                 arena.clear(lanes, entry, row)
 

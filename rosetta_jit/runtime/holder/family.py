@@ -13,11 +13,13 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
-from rosetta_jit.runtime.holder.access import Access, getter
+from rosetta_jit.runtime.attributes import descriptors
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.holder.access import Access, read_field, write_field
 from rosetta_jit.runtime.holder.classes import Holder, filled
-from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind_row, stale_getter, view_setter
+from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row
 from rosetta_jit.runtime.holder.record import Tree
-from rosetta_jit.runtime.holder.sequence import Dictionary, Sequence
+from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
 from rosetta_jit.runtime.lanes import Lanes, born
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.plan import plan
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
     from rosetta_jit.runtime.holder.record import Entry, Record
 
 
@@ -53,8 +56,8 @@ class Manners:
 
     base: type[Holder]
     array_type: type[np.ndarray[Any, Any]]
-    sequence: Callable[[Message, Entry], Any]
-    mapping: Callable[[Message, Entry], Any]
+    sequence: Callable[[View, Entry], Any]
+    mapping: Callable[[View, Entry], Any]
     assigns_whole: bool
     members: Callable[[Family], dict[str, Any]]
     serialising: tuple[str, str] | None = None
@@ -87,6 +90,7 @@ class Family:
         self._views: dict[str, type[View]] = {}
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
+        self._kept: KeptFields | None = None
         self.programs: Any = None  # what serialises the holders, when somebody has asked for it: it ends with them
 
     @property
@@ -98,12 +102,29 @@ class Family:
         return self._holder
 
     def _made(self) -> type[Holder]:
-        access = self.access(self.tree.root)
-        entries = self.tree.root.entries
+        entries, code = self.tree.root.entries, library()
         shown = _shown(self.tree.root, self.manners.base)
-        properties = {name: property(getter(entries[name], self, first_row=True), access.setters[name]) for name in shown}
-        members = {"family_": self, "access_": access, "__slots__": (self._mark,), "__doc__": f"A holder of `{self.struct.name}`."}
-        return _class(self.struct.name, (self.manners.base,), {**self.manners.members(self), **properties, **members})
+        slots = () if code is None else descriptors.slots(entries.values())
+        properties = {name: property(read_field(name), write_field(name)) for name in shown}
+        members = {"family_": self, "__slots__": (self._mark, *slots), "__doc__": f"A holder of `{self.struct.name}`."}
+        base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
+        made = _class(self.struct.name, (base,), {**self.manners.members(self), **properties, **members})
+        if code is not None:
+            self._kept = descriptors.take_slots(made, list(entries.values()))
+            descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray)
+        return made
+
+    def kept_of(self, struct: str) -> KeptFields | None:
+        """Where messages of a struct keep what shows their fields; None where no compiled code reads them."""
+        if not struct or library() is None:  # the pairs of a map have no name, and no attributes
+            return None
+        family = self.of_struct(struct).family_
+        return family._kept  # noqa: SLF001 - of the same class
+
+    @property
+    def sequences(self) -> OfSequences:
+        """What compiled code asks of sequences."""
+        return OF_SEQUENCES
 
     @property
     def _mark(self) -> str:
@@ -122,9 +143,7 @@ class Family:
         view = self._views.get(struct)
         if view is None:
             base = self.of_struct(struct)
-            record = base.family_.tree.root
-            properties = {name: property(stale_getter(name), view_setter(name)) for name in _shown(record, self.manners.base)}
-            view = _class(struct, (View, base), {**properties, "__slots__": VIEW_SLOTS, "__doc__": base.__doc__})
+            view = _class(struct, (View, base), {"__slots__": ("_is_view",), "__doc__": base.__doc__})
             self._views[struct] = view
         return view
 
@@ -151,7 +170,7 @@ class Family:
     def row(self, lanes: Lanes, row: int) -> View:
         """A view of one message of a batch."""
         cls = self.view_class(self.struct.name)
-        return bind_row(cls.__new__(cls), lanes, self.access(self.tree.root), row)
+        return in_row(cls.__new__(cls), lanes, self.access(self.tree.root), row)
 
 
 def _written_within(struct: Struct, schema: Schema, name: str) -> Struct:
@@ -172,7 +191,7 @@ def _written_within(struct: Struct, schema: Schema, name: str) -> Struct:
 
 def _shown(record: Record, base: type) -> list[str]:
     """Fields that become properties: all but those whose names Python or the holder need for themselves."""
-    own = {*OWN_SLOTS, *VIEW_SLOTS, "family_", "programs_", "_is_native"}
+    own = {*OWN_NAMES, "family_", "programs_", "_is_native"}
     return [name for name in record.entries if name not in own and not (name.startswith("_") and hasattr(base, name))]
 
 

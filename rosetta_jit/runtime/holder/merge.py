@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.runtime.holder import arena, coerce, values
-from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.access import raw, view_of
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import Dictionary, store_row
@@ -27,7 +27,7 @@ def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
         raise EncodeError("nesting", "", f"messages contain each other more than {values.MAX_DEPTH} deep")
     for name, value in fields.items():
         if name == UNKNOWN and message.access_.record.unknown is not None:
-            with message.home_:
+            with message.lanes_:
                 lanes, row = writable(message)
                 values.append_unknown(message.access_.record.unknown, lanes, row, value)
             continue
@@ -49,7 +49,7 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
         case Scalar() | Text() | Blob():
             message.access_.setters[entry.name](message, value)
         case Numbers() | Items() if node.length is not None:
-            with message.home_:
+            with message.lanes_:
                 lanes, row = writable(message)
                 values.write_entry(entry, lanes, row, value)
         case Numbers():
@@ -57,7 +57,7 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
         case Items():
             _append(message, node, value)
         case Pairs():
-            shown = Dictionary(message, entry)
+            shown = Dictionary(view_of(message), entry)
             for key, each in value.items():
                 shown[key] = each
         case Record() | Child():
@@ -71,7 +71,7 @@ def _merge_field(message: Message, entry: Entry, value: Any, depth: int) -> None
 def append_numbers(message: Message, node: Numbers, elements: Iterable[Any]) -> None:
     """Add elements to an array of numbers: all, or none if one is wrong."""
     prepared = coerce.numbers(node.type, elements)
-    with message.home_:
+    with message.lanes_:
         lanes, row = writable(message)
         count = arena.span_of(lanes, node.span, row)[1]
         coerce.counted(count + prepared.size, node.length, node.maximum)
@@ -80,7 +80,7 @@ def append_numbers(message: Message, node: Numbers, elements: Iterable[Any]) -> 
 
 
 def _append(message: Message, node: Items, elements: list[Any]) -> None:
-    with message.home_:
+    with message.lanes_:
         lanes, row = writable(message)
         count = arena.span_of(lanes, node.span, row)[1]
         coerce.counted(count + len(elements), node.length, node.maximum)

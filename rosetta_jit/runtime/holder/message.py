@@ -1,18 +1,20 @@
-"""What every holder and every view into one is: lanes, a row, and the record that says what lies there.
+"""What every holder and every view into one is: lanes, a way to its row there, and the record that says what lies in the row.
 
-A `Holder` is row 0 of its own lanes. A `View` is a nested message: it knows its parent, and finds its row through it again when rows
-have moved. A view of a message that is absent reads from empty lanes; writing to it brings the message into being. Views do not outlive
-the next decode into their holder.
+A `Holder` has lanes of its own. A `View` shows a message in the lanes of a holder or a batch. It keeps the lanes alive, not the holder, so
+that a holder may keep its views. Its row is looked for when it is read: by number, or as an element of the field ``entry_`` of another
+view. A view of a message that is absent reads from empty lanes; writing to it brings the message into being.
 
 The attributes that a class needs for itself end with an underscore, so that they do not stand in the way of fields.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeVar
 
 from rosetta_jit.errors import EncodeError, InvalidHolder
-from rosetta_jit.kernel.state import VALID
+from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
+from rosetta_jit.runtime.attributes.code import populate
+from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_message, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs
 from rosetta_jit.runtime.holder.values import MAX_DEPTH
@@ -22,68 +24,77 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.lanes import Lanes
 
-OWN_SLOTS = ("lanes_", "row_", "home_", "__weakref__")
-VIEW_SLOTS = ("access_", "parent_", "entry_", "index_", "seen_")
+    Base = object
+else:
+    Base = message_base()
+
+_Message = TypeVar("_Message", bound="Message")
+_FIRST_LANE = 8 * lane_word(0, ADDRESS)
 
 
-class Message:
+class Message(Base):
     """A message in lanes.
 
     Attributes
     ----------
     lanes_ : Lanes
-        Where it is read.
-    row_ : int
-        Its row.
-    home_ : Lanes
-        Where it is written; not where it is read while it is absent.
+        Those of the holder or batch. It is read from others while it is absent.
     access_ : Access
         How its fields are read and written.
+    parent_ : View or None
+        The view of which it is an element, or in an element; None in row ``index_`` of lane 0.
+    entry_ : Entry
+        The field of the parent through which its row is found.
+    index_ : int
+        Which element of that field it is, or is in.
     """
 
-    __slots__ = ()
+    __slots__ = ("__weakref__", "access_", "entry_", "lanes_", "parent_")
 
     if TYPE_CHECKING:
         lanes_: Lanes
-        row_: int
-        home_: Lanes
         access_: Access
+        parent_: View | None
+        entry_: Entry
+        index_: int
+
+
+OWN_NAMES = (*(name for name in Message.__slots__ if name != "__weakref__"), "index_")
 
 
 class View(Message):
-    """A message inside another, or one row of a batch (without a parent).
-
-    Attributes
-    ----------
-    entry_ : Entry or None
-        The field of the parent through which its row is found; None where it lies in the parent's own row.
-    index_ : int
-        Which element of that field it is.
-    seen_ : int
-        `Lanes.moves` when it was found.
-    """
+    """A message in the lanes of another, or a row of a batch."""
 
     __slots__ = ()
 
-    if TYPE_CHECKING:
-        parent_: Message | None
-        entry_: Entry | None
-        index_: int
-        seen_: int
 
-
-def bind(view: View, parent: Message, access: Access, entry: Entry | None = None, index: int = 0) -> View:
-    """Make a new view show a message inside another."""
-    view.parent_, view.home_, view.access_, view.entry_, view.index_ = parent, parent.home_, access, entry, index
-    _find(view, parent)
+def in_row(view: _Message, lanes: Lanes, access: Access, row: int) -> _Message:
+    """Make a new view show a row of lane 0."""
+    view.lanes_, view.access_, view.parent_ = lanes, access, None
+    view.index_ = row
+    bind_message(view, (lanes.address, row, ALWAYS, _FIRST_LANE, access.table, row, 0))
+    if access.table:
+        populate(view)
     return view
 
 
-def bind_row(view: View, lanes: Lanes, access: Access, row: int) -> View:
-    """Make a new view show a row of lane 0."""
-    view.parent_, view.access_, view.entry_, view.index_ = None, access, None, row
-    view.lanes_ = view.home_ = lanes
-    view.row_, view.seen_ = row, lanes.moves
+def beside(view: _Message, message: Message, access: Access) -> _Message:
+    """Make a new view show another record in the row of a message, or the message's own."""
+    if message.parent_ is None:
+        return in_row(view, message.lanes_, access, message.index_)
+    return element(view, message.parent_, access, message.entry_, message.index_)
+
+
+def element(view: _Message, parent: View, access: Access, entry: Entry, index: int) -> _Message:
+    """Make a new view show an element of a field of another view."""
+    view.lanes_, view.access_ = parent.lanes_, access
+    view.parent_, view.entry_, view.index_ = parent, entry, index
+    node = entry.node
+    assert isinstance(node, Child | Items | Pairs)
+    lane = 8 * lane_word(node.lane, ADDRESS)
+    bind_message(view, (view.lanes_.address, 0, NEVER, lane, access.table, index, 8 * node.span.index))
+    if access.table:
+        populate(view)
     return view
 
 
@@ -95,30 +106,20 @@ def place(message: Message) -> tuple[Lanes, int]:
     InvalidHolder
         If the last decode into its holder failed, or the message is an element that is gone.
     """
-    if isinstance(message, View) and message.seen_ != message.home_.moves:
-        locate(message)
     lanes = message.lanes_
     if not lanes.words[VALID]:
         raise lanes.invalid()
-    return lanes, message.row_
-
-
-def locate(view: View) -> None:
-    """Find the row of a view again, and those of the views above it."""
-    for each in _chain(view):
-        if each.parent_ is not None and each.seen_ != each.home_.moves:
-            _find(each, each.parent_)
-        each.seen_ = each.home_.moves
+    return (lanes, message.index_) if message.parent_ is None else _found(_chain(message))
 
 
 def make_present(message: Message) -> None:
     """Let a message and all around it be present, as by an assignment to one of its fields."""
-    with message.home_:
+    with message.lanes_:
         writable(message)
 
 
 def writable(message: Message) -> tuple[Lanes, int]:
-    """Where a message is to be written, inside ``with message.home_:``; it and all around it are present from now on.
+    """Where a message is to be written, inside ``with message.lanes_:``; it and all around it are present from now on.
 
     Raises
     ------
@@ -127,70 +128,50 @@ def writable(message: Message) -> tuple[Lanes, int]:
     EncodeError
         If messages would contain each other too deep.
     """
-    if isinstance(message, View):
-        chain = _chain(message)
-        if len(chain) > MAX_DEPTH:
-            raise EncodeError("nesting", "", f"messages contain each other more than {MAX_DEPTH} deep")
-        for each in chain:
-            _make_present(each)
-    return place(message)
+    lanes = message.lanes_
+    if not lanes.words[VALID]:
+        raise lanes.invalid()
+    chain = _chain(message)
+    if len(chain) > MAX_DEPTH:
+        raise EncodeError("nesting", "", f"messages contain each other more than {MAX_DEPTH} deep")
+    row = -1
+    for each in chain:
+        row = _row(each, lanes, row, make=True)
+        for presence in each.access_.record.touch:
+            arena.mark(lanes, presence, row)
+    return lanes, row
 
 
-def _chain(view: View) -> list[View]:
-    """The view and those above it, the outermost first."""
-    chain = [view]
-    while isinstance(parent := chain[-1].parent_, View):
+def _chain(message: Message) -> list[Message]:
+    """The message and those through which its row is found, the outermost first."""
+    chain = [message]
+    while (parent := chain[-1].parent_) is not None:
         chain.append(parent)
     return chain[::-1]
 
 
-def _make_present(view: View) -> None:
-    parent, home = view.parent_, view.home_
-    if parent is not None:
-        _find(view, parent)
-        if view.lanes_ is not home and view.entry_ is not None:
-            node = view.entry_.node
-            assert isinstance(node, Child)
-            arena.mark(home, view.entry_.presence, parent.row_)
-            arena.resize(home, node, parent.row_, 1)
-            home.moves += 1
-            _find(view, parent)
-    for presence in view.access_.record.touch:
-        arena.mark(home, presence, view.row_)
+def _found(chain: list[Message]) -> tuple[Lanes, int]:
+    lanes, row = chain[0].lanes_, -1
+    for each in chain:
+        row = _row(each, lanes, row, make=False)
+        if row < 0:
+            lanes, row = each.access_.empty_lanes(), 0
+    return lanes, row
 
 
-def _find(view: View, parent: Message) -> None:
-    """The row of a view, from its parent's."""
-    view.seen_ = view.home_.moves
-    view.lanes_, view.row_ = parent.lanes_, parent.row_
-    if view.entry_ is None:
-        return
-    node = view.entry_.node
+def _row(message: Message, lanes: Lanes, row: int, *, make: bool) -> int:
+    """The row of a message, from its parent's; -1 of a message that is absent and is not to be made."""
+    if message.parent_ is None:
+        return message.index_
+    entry = message.entry_
+    node = entry.node
     assert isinstance(node, Child | Items | Pairs)
-    start, count = arena.span_of(parent.lanes_, node.span, parent.row_)
-    if view.index_ < count:
-        view.row_ = start + view.index_
-    elif isinstance(node, Child):
-        view.lanes_, view.row_ = view.access_.empty_lanes(), 0
-    else:
+    start, count = arena.span_of(lanes, node.span, row)
+    if message.index_ < count:
+        return start + message.index_
+    if not isinstance(node, Child):
         raise InvalidHolder("the element that was here is gone")
-
-
-def stale_getter(name: str) -> Any:
-    """The getter of a view's property: that of its record, when it has found its row."""
-
-    def get(view: View) -> Any:
-        if view.seen_ != view.home_.moves:
-            locate(view)
-        return view.access_.getters[name](view)
-
-    return get
-
-
-def view_setter(name: str) -> Any:
-    """The setter of a view's property: that of its record."""
-
-    def set_(view: View, value: Any) -> None:
-        view.access_.setters[name](view, value)
-
-    return set_
+    if not make:
+        return -1
+    arena.mark(lanes, entry.presence, row)
+    return arena.resize(lanes, node, row, 1)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, MutableSequence
 from copy import copy
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
+from rosetta_jit.kernel.state import EPOCH
+from rosetta_jit.runtime.attributes.sequences import bind_place, compiled, extend_texts, iterator_class, sequence_base
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import raw
-from rosetta_jit.runtime.holder.message import OWN_SLOTS, VIEW_SLOTS, Message, View, bind, place, writable
+from rosetta_jit.runtime.holder.message import Message, View, element, place, writable
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
@@ -17,11 +19,11 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.lanes import Lanes
 
 
-def view_of(message: Message, entry: Entry, record: Record, index: int) -> View:
+def _element(message: View, entry: Entry, record: Record, index: int) -> View:
     """A view of one row of an array or map of records."""
     family = message.access_.family
     cls = family.view_class(record.struct)
-    return bind(cls.__new__(cls), message, family.access(record), entry, index)
+    return element(cls.__new__(cls), message, family.access(record), entry, index)
 
 
 def store_row(node: Node, lanes: Lanes, row: int, value: Any) -> None:
@@ -32,19 +34,29 @@ def store_row(node: Node, lanes: Lanes, row: int, value: Any) -> None:
         values.write(node, lanes, row, value)
 
 
-class Sequence(MutableSequence[Any]):
+if TYPE_CHECKING:
+    Base = object
+else:
+    Base = sequence_base()
+
+
+class Sequence(MutableSequence[Any], Base):
     """An array of messages, strings, bytes or arrays.
 
     Elements that are messages are views, and strings and bytes are Python's own. What is assigned or appended is copied.
     """
 
-    __slots__ = ("entry", "message", "node")
+    __slots__ = ("entry", "message", "node", "spare_one", "spare_two")  # in this order in memory
 
-    def __init__(self, message: Message, entry: Entry) -> None:
+    def __new__(cls, message: View, entry: Entry) -> Self:  # noqa: ARG004  which is for __init__
+        return super().__new__(cast("type[Self]", compiled(cls)) if message.access_.table else cls)
+
+    def __init__(self, message: View, entry: Entry) -> None:
         place(message)
         self.message = message
         self.entry = entry
         self.node = cast("Items", entry.node)
+        bind_place(self, message.access_.place_of(entry.name))
 
     def _span(self) -> tuple[Lanes, int, int]:
         lanes, row = place(self.message)
@@ -54,7 +66,7 @@ class Sequence(MutableSequence[Any]):
         return self._span()[2]
 
     def __getitem__(self, index: Any) -> Any:
-        return self.message.home_.consistent(self._at, index)
+        return self.message.lanes_.consistent(self._at, index)
 
     def _at(self, index: Any) -> Any:
         lanes, start, count = self._span()
@@ -73,7 +85,7 @@ class Sequence(MutableSequence[Any]):
     def _element(self, lanes: Lanes, start: int, index: int) -> Any:
         match self.node.element:
             case Record():
-                return view_of(self.message, self.entry, self.node.element, index)
+                return _element(self.message, self.entry, self.node.element, index)
             case element:
                 return values.read(element, lanes, start + index, values.Form.RAW)
 
@@ -82,14 +94,14 @@ class Sequence(MutableSequence[Any]):
             self._replace(_listed(self, cast("slice", index), value))
             return
         plain = raw(value)
-        with self.message.home_:
+        with self.message.lanes_:
             count = len(self)
             at = _checked(index, count)
             self._append([plain])
             self._order([*range(at), count, *range(at + 1, count)])
 
     def __delitem__(self, index: Any) -> None:
-        with self.message.home_:
+        with self.message.lanes_:
             count = len(self)
             gone = set(range(count)[index]) if isinstance(index, slice) else {_checked(index, count)}
             self._allow(count - len(gone))
@@ -97,7 +109,7 @@ class Sequence(MutableSequence[Any]):
 
     def insert(self, index: int, value: Any) -> None:
         plain = raw(value)
-        with self.message.home_:
+        with self.message.lanes_:
             count = len(self)
             self._allow(count + 1)
             at = range(count)[:index].stop if count else 0
@@ -108,8 +120,10 @@ class Sequence(MutableSequence[Any]):
         self.extend([value])
 
     def extend(self, values: Iterable[Any]) -> None:
+        if self.message.access_.table and extend_texts(self, values):
+            return
         plain = [raw(each) for each in values]
-        with self.message.home_:
+        with self.message.lanes_:
             self._allow(len(self) + len(plain))
             self._append(plain)
 
@@ -122,18 +136,18 @@ class Sequence(MutableSequence[Any]):
 
     def clear(self) -> None:
         self._allow(0)
-        with self.message.home_:
+        with self.message.lanes_:
             self._order([])
 
     def sort(self, *, key: Callable[[Any], Any] | None = None, reverse: bool = False) -> None:
         """Sort the elements in place."""
         elements = list(self)
         order = sorted(range(len(elements)), key=lambda each: key(elements[each]) if key else elements[each], reverse=reverse)
-        with self.message.home_:
+        with self.message.lanes_:
             self._order(order)
 
     def reverse(self) -> None:
-        with self.message.home_:
+        with self.message.lanes_:
             self._order(list(range(len(self)))[::-1])
 
     def _allow(self, count: int) -> None:
@@ -156,7 +170,7 @@ class Sequence(MutableSequence[Any]):
     def _replace(self, elements: list[Any]) -> None:
         self._allow(len(elements))
         plain = [raw(each) for each in elements]
-        with self.message.home_:
+        with self.message.lanes_:
             count = len(self)
             self._append(plain)
             self._order(list(range(count, count + len(plain))))
@@ -189,10 +203,25 @@ def _listed(sequence: Sequence, index: slice, value: Iterable[Any]) -> list[Any]
     return elements
 
 
+class _OfSequences:
+    """What compiled code asks of sequences that it does not know itself."""
+
+    length = staticmethod(Sequence.__len__)
+    item = staticmethod(Sequence.__getitem__)
+
+    @property
+    def iterator(self) -> type:
+        """The class of their iterators."""
+        return iterator_class()
+
+
+OF_SEQUENCES = _OfSequences()
+
+
 class Pair(View):
     """The view of one key and value, through which the view of a value that is a message finds its row."""
 
-    __slots__ = OWN_SLOTS + VIEW_SLOTS
+    __slots__ = ()
 
 
 class Dictionary(MutableMapping[Any, Any]):
@@ -203,27 +232,28 @@ class Dictionary(MutableMapping[Any, Any]):
 
     __slots__ = ("entry", "index", "message", "node", "seen")
 
-    def __init__(self, message: Message, entry: Entry) -> None:
+    def __init__(self, message: View, entry: Entry) -> None:
         self.message = message
         self.entry = entry
         self.node = cast("Pairs", entry.node)
         self.index: dict[Any, int] = {}
-        self.seen: tuple[int, ...] = ()
+        self.seen = -1
         place(message)
 
     def _keys(self) -> dict[Any, int]:
         """Which pair is the last of each key."""
         lanes, row = place(self.message)
-        start, count = arena.span_of(lanes, self.node.span, row)
-        if self.seen != (start, count, lanes.moves):
+        epoch = self.message.lanes_.words[EPOCH]
+        if self.seen != epoch or epoch < 0:
+            start, count = arena.span_of(lanes, self.node.span, row)
             rows = range(start, start + count)
             self.index = {values.read(self.node.key, lanes, each, values.Form.RAW): index for index, each in enumerate(rows)}
-            self.seen = (start, count, lanes.moves)
+            self.seen = epoch
         return self.index
 
     def _known(self) -> dict[Any, int]:
         """The same, where another thread may change the map."""
-        return self.message.home_.consistent(lambda dictionary: dictionary._keys(), self)  # noqa: SLF001 - it is this one
+        return self.message.lanes_.consistent(lambda dictionary: dictionary._keys(), self)  # noqa: SLF001 - it is this one
 
     def __len__(self) -> int:
         return len(self._known())
@@ -237,7 +267,7 @@ class Dictionary(MutableMapping[Any, Any]):
     def __getitem__(self, key: Any) -> Any:
         index = self._known()[self.checked(key)]
         family = self.message.access_.family
-        pair = bind(Pair(), self.message, family.access(self.node.record), self.entry, index)
+        pair = element(Pair(), self.message, family.access(self.node.record), self.entry, index)
         return pair.access_.getters["value"](pair)
 
     def checked(self, key: object) -> Any:
@@ -254,7 +284,7 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def __setitem__(self, key: Any, value: Any) -> None:
         plain = raw(value)
-        with self.message.home_:
+        with self.message.lanes_:
             self._store(key, plain)
 
     def _store(self, key: Any, plain: Any) -> None:
@@ -277,7 +307,7 @@ class Dictionary(MutableMapping[Any, Any]):
 
     def __delitem__(self, key: Any) -> None:
         wanted = self.checked(key)
-        with self.message.home_:
+        with self.message.lanes_:
             if wanted not in self._keys():
                 raise KeyError(key)
             lanes, row = writable(self.message)

@@ -12,11 +12,12 @@ import pytest
 from llvmlite import binding
 
 from rosetta_jit import runtime
-from rosetta_jit.backends.link import compile_program, object_file, target_machine
-from rosetta_jit.backends.prelink import prelinked
+from rosetta_jit.backends.link import compile_program, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.runtime import linker, native
 from rosetta_jit.runtime.allowed import ALLOWED, ForeignCodeError
+from rosetta_jit.runtime.assembler import target_machine
+from rosetta_jit.runtime.prelink import prelinked
 from rosetta_jit.runtime.prelinked import from_bytes, place, to_bytes
 from tests.backends import kernels
 from tests.backends.holders import KERNEL, rows

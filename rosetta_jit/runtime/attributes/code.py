@@ -1,0 +1,111 @@
+"""The accessors as code: the text of LLVM, and the library that it becomes, which the cache keeps."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.runtime import native
+from rosetta_jit.runtime.allowed import ForeignCodeError
+from rosetta_jit.runtime.cache import Cache
+from rosetta_jit.runtime.cache_names import entry_name
+from rosetta_jit.runtime.callable import is_native
+from rosetta_jit.runtime.cells import SCALARS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rosetta_jit.runtime.native import Library
+
+FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll")
+MESSAGES = ("populate", "set_attribute")
+READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
+WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts")
+SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator", "extend_texts")
+SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *MESSAGES, *SEQUENCES)
+"""What the library defines."""
+
+CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
+"""LLVM's type of a scalar in memory, where it is not an integer of that size."""
+
+
+@cache
+def library() -> Library | None:
+    """The accessors, loaded; None where Python is none that they know, or its memory cannot be executed."""
+    if not is_native():
+        return None
+    try:
+        return native.load(_image(), SYMBOLS)
+    except ForeignCodeError:
+        return None
+
+
+def populate(message: object) -> None:
+    """Make the views that a new message has from the start, when it knows where it lies.
+
+    Raises
+    ------
+    MemoryError
+        If there is no room for them.
+    """
+    if _populate()(message):
+        raise MemoryError("there is no room for the parts of a message")
+
+
+@cache
+def _populate() -> Callable[[object], int]:
+    code = library()
+    assert code is not None, "there are tables for it"
+    return ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.py_object)(code["populate"])
+
+
+def _image() -> bytes:
+    kept, whole = Cache.default(), text()
+    name = entry_name(whole)
+    entry = kept.get(name)
+    if entry is not None:
+        return entry.image
+    from rosetta_jit.runtime.assembler import assembled  # imports LLVM
+
+    image = assembled(whole, SYMBOLS)
+    kept.put(name, {"entry": "attributes"}, image)
+    return image
+
+
+def text() -> str:
+    """The module."""
+    return "\n".join([*(_read(file) for file in FILES), *_scalars()])
+
+
+def _scalars() -> Iterator[str]:
+    template = Template(_read("scalar.ll"))
+    for name in SCALARS:
+        yield template.substitute(_conversions(name), NAME=name)
+
+
+def _conversions(name: str) -> dict[str, str]:
+    """How a scalar becomes one of Python's, and back. An integer that does not come back as it was is out of range; floats are rounded."""
+    cell = CELLS.get(name, f"i{name[1:]}")
+    match name[0]:
+        case "b":
+            box, wide = "bool", "i8"
+        case "f":
+            box, wide = "float", "double"
+        case _:
+            box, wide = "signed" if name[0] == "i" else "unsigned", "i64"
+    if cell == wide:
+        widen, narrow = f"bitcast {cell} %cell to {cell}", f"bitcast {cell} %wide to {cell}"
+    elif box == "float":
+        widen, narrow = "fpext float %cell to double", "fptrunc double %wide to float"
+    else:
+        widen, narrow = f"{'sext' if box == 'signed' else 'zext'} {cell} %cell to i64", f"trunc i64 %wide to {cell}"
+    unbox = "unbox_real" if box == "float" else f"unbox_{box}"
+    fits = "icmp eq i64 %back, %wide" if wide == "i64" else "icmp eq i1 true, true"
+    return {"CELL": cell, "WIDE": wide, "BOX": box, "WIDEN": widen, "NARROW": narrow, "BACK": widen, "FITS": fits, "UNBOX": unbox}
+
+
+def _read(file: str) -> str:
+    return Path(__file__).with_name(file).read_text("utf-8")

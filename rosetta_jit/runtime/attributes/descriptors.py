@@ -1,0 +1,114 @@
+"""Attributes of a class that run the compiled accessors, and room in its objects for what these keep."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.places import PLACE_BYTES, KeptFields
+from rosetta_jit.runtime.cells import SCALARS
+from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.specs import (
+    BASETYPE,
+    DEFAULT,
+    OBJECT,
+    READONLY,
+    TP_SETATTRO,
+    GetSet,
+    Member,
+    attribute_of,
+    from_spec,
+    member_of,
+    slot_offset,
+    with_attributes,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosetta_jit.runtime.holder.record import Entry
+
+
+MAX_MEMBERS = 32
+"""Messages with more records in their row than that make the views of them when they are asked for, not at once."""
+
+
+def slots(entries: Iterable[Entry]) -> tuple[str, ...]:
+    """Names of the slots in which messages keep what shows these fields."""
+    return tuple(f"_kept_{number}" for number, entry in enumerate(entries) if is_kept(entry))
+
+
+def is_kept(entry: Entry) -> bool:
+    """Whether a message keeps what shows a field."""
+    return isinstance(entry.node, Record | Pairs | Numbers) or (isinstance(entry.node, Items) and not entry.node.shape)
+
+
+def take_slots(made: type, entries: Sequence[Entry]) -> KeptFields:
+    """Where a class's objects keep what shows each field. The slots are no attributes any more: only accessors use them."""
+    offsets: dict[str, int] = {}
+    for slot in slots(entries):
+        offsets[entries[int(slot.rpartition("_")[2])].name] = slot_offset(made.__dict__[slot])
+        delattr(made, slot)
+    records = [entry for entry in entries if isinstance(entry.node, Record)]
+    few = sum(map(_records_within, records)) <= MAX_MEMBERS
+    return KeptFields(offsets, frozenset(entry.name for entry in records if few))
+
+
+def _records_within(entry: Entry) -> int:
+    """How many records lie in a row because of a field."""
+    node = entry.node
+    return 1 + sum(map(_records_within, node.entries.values())) if isinstance(node, Record) else 0
+
+
+@cache
+def assignable(base: type) -> type:
+    """A subclass whose objects can assign to members (`describe`), as far as their type lets them."""
+    code = library()
+    assert code is not None, "there are members for it"
+    created = from_spec(base.__name__, base, base.__basicsize__, DEFAULT | BASETYPE, ((TP_SETATTRO, code["set_attribute"]),))
+    names = {"__module__": base.__module__, "__qualname__": base.__qualname__, "__doc__": base.__doc__, "_code": code}
+    return with_attributes(created, names)
+
+
+def describe(made: type, entries: Mapping[str, Entry], shown: Sequence[str], kept: KeptFields, *, plain_arrays: bool) -> None:
+    """Give a class an attribute for each field that is shown."""
+    code = library()
+    assert code is not None, "there are accessors"
+    numbers = {name: number for number, name in enumerate(entries)}
+    members = [name for name in shown if name in kept.members]
+    others = [name for name in shown if name not in kept.members]
+    slots, table = (Member * len(members))(), (GetSet * len(others))()
+    for definition, name in zip(slots, members, strict=True):
+        definition.name, definition.type, definition.offset, definition.flags = _c_name(name), OBJECT, kept.offsets[name], READONLY
+    for definition, name in zip(table, others, strict=True):
+        get, set_ = _accessors(entries[name], plain_arrays=plain_arrays)
+        definition.name, definition.get, definition.set = _c_name(name), code[get], code[set_]
+        definition.closure = PLACE_BYTES * numbers[name]
+    made._attributes = slots, table  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
+    for name, definition in zip(members, slots, strict=True):
+        setattr(made, name, member_of(made, definition))
+    for name, definition in zip(others, table, strict=True):
+        setattr(made, name, attribute_of(made, definition))
+
+
+def _c_name(name: str) -> bytes:
+    return name.encode(errors="backslashreplace")
+
+
+def _accessors(entry: Entry, *, plain_arrays: bool) -> tuple[str, str]:
+    """The symbols of what reads and writes a field."""
+    match entry.node:
+        case Scalar(cell):
+            scalar = SCALARS[cell.key & 15]
+            return f"get_{scalar}", f"set_{scalar}"
+        case Text(_, _, type_) if type_.encoding != "utf-16":
+            return ("get_utf8", "set_utf8") if type_.encoding == "utf-8" else ("get_octets", "set_python")
+        case Blob():
+            return "get_bytes", "set_bytes"
+        case Numbers() if plain_arrays:
+            return "get_numbers", "set_numbers"
+        case Items(element=Text(_, _, type_)) if plain_arrays and type_.encoding == "utf-8":
+            return "get_kept", "set_texts"
+        case _:
+            return "get_kept" if is_kept(entry) and not isinstance(entry.node, Numbers) else "get_python", "set_python"

@@ -1,0 +1,114 @@
+"""Types that Python's class statement cannot make, through CPython's stable type specifications (PEP 384) by ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+# Include/object.h, Include/typeslots.h, Include/structmember.h
+DEFAULT, VECTORCALL, BASETYPE = 1 << 18, 1 << 11, 1 << 10
+MP_SUBSCRIPT, SQ_LENGTH = 5, 45
+TP_CALL, TP_DEALLOC, TP_ITER, TP_ITERNEXT, TP_SETATTRO, TP_MEMBERS = 50, 52, 62, 63, 69, 72
+OBJECT, SSIZE_T, READONLY = 16, 19, 1
+
+
+class Member(ctypes.Structure):
+    """PyMemberDef of Include/structmember.h."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("type", ctypes.c_int),
+        ("offset", ctypes.c_ssize_t),
+        ("flags", ctypes.c_int),
+        ("doc", ctypes.c_char_p),
+    )
+
+
+class GetSet(ctypes.Structure):
+    """PyGetSetDef of Include/descrobject.h."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("get", ctypes.c_void_p),
+        ("set", ctypes.c_void_p),
+        ("doc", ctypes.c_char_p),
+        ("closure", ctypes.c_void_p),
+    )
+
+
+class Method(ctypes.Structure):
+    """PyMethodDef of Include/methodobject.h."""
+
+    _fields_ = (("name", ctypes.c_char_p), ("function", ctypes.c_void_p), ("flags", ctypes.c_int), ("doc", ctypes.c_char_p))
+
+
+class _Slot(ctypes.Structure):
+    """PyType_Slot of Include/object.h."""
+
+    _fields_ = (("slot", ctypes.c_int), ("function", ctypes.c_void_p))
+
+
+class _Spec(ctypes.Structure):
+    """PyType_Spec of Include/object.h."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("basicsize", ctypes.c_int),
+        ("itemsize", ctypes.c_int),
+        ("flags", ctypes.c_uint),
+        ("slots", ctypes.POINTER(_Slot)),
+    )
+
+
+def from_spec(name: str, base: type, size: int, flags: int, slots: Sequence[tuple[int, int]]) -> type:
+    """A type whose instances are of a fixed size; all else, garbage collection included, comes from the base."""
+    table = (_Slot * (len(slots) + 1))(*(_Slot(number, function) for number, function in slots))
+    spec = _Spec(f"rosetta_jit.{name}".encode(), size, 0, flags, table)
+    create = ctypes.pythonapi.PyType_FromSpecWithBases
+    create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object]
+    return create(ctypes.addressof(spec), (base,))
+
+
+def with_attributes(created: type, attributes: Mapping[str, object]) -> type:
+    """The type, with attributes; what its C structures point to must live as long as the type, and so is one of them."""
+    for name, value in attributes.items():
+        setattr(created, name, value)
+    return created
+
+
+def address_of(function: str) -> int:
+    """Where a function of Python's C interface is."""
+    return ctypes.cast(getattr(ctypes.pythonapi, function), ctypes.c_void_p).value or 0
+
+
+def attribute_of(owner: type, definition: GetSet) -> Any:
+    """The descriptor that a definition says, which must live as long as the class."""
+    return _described(ctypes.pythonapi.PyDescr_NewGetSet, owner, definition)
+
+
+def member_of(owner: type, definition: Member) -> Any:
+    """The same of a member."""
+    return _described(ctypes.pythonapi.PyDescr_NewMember, owner, definition)
+
+
+def _described(create: Any, owner: type, definition: ctypes.Structure) -> Any:
+    create.restype, create.argtypes = ctypes.py_object, [ctypes.py_object, ctypes.c_void_p]
+    return create(owner, ctypes.addressof(definition))
+
+
+def slot_offset(descriptor: Any) -> int:
+    """Where a slot of a class lies in its objects: PyMemberDescrObject of Include/descrobject.h."""
+    return read_word(read_word(id(descriptor) + 40) + 16)
+
+
+def read_word(address: int) -> int:
+    """Eight bytes of memory."""
+    return ctypes.c_uint64.from_address(address).value
+
+
+def write_word(address: int, value: int) -> None:
+    """Change eight bytes of memory."""
+    ctypes.c_uint64.from_address(address).value = value
