@@ -19,7 +19,7 @@ from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import are_long_and_straight, are_vast, calls_to_host, is_large, is_short_and_straight, is_told, our_functions
-from rosetta_jit.runtime.assembler import linked, make_private, run_passes, target_machine
+from rosetta_jit.runtime.assembler import linked, make_private, run_few_passes, run_passes, target_machine
 from rosetta_jit.runtime.prelink import prelinked
 
 if TYPE_CHECKING:
@@ -87,8 +87,7 @@ def optimised(
     module = linked(_parts(kernels, entry, with_numba=with_numba, functions=functions))
     make_private(module, (*SYMBOLS[entry], TABLE))
     if are_vast(kernels):
-        builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0))
-        run_passes(_few_passes(), module, builder)
+        run_few_passes(module, machine)
         return module
     options = binding.create_pipeline_tuning_options(speed_level=1 if are_long_and_straight(kernels) else 3)
     options.loop_vectorization, options.slp_vectorization = True, True
@@ -111,15 +110,6 @@ def _parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, fun
     if our_functions(kernels):
         yield table_text(kernels)
     yield _entries(kernels, entry)
-
-
-def _few_passes() -> binding.ModulePassManager:
-    few = binding.create_new_module_pass_manager()
-    few.add_always_inliner_pass()
-    few.add_sroa_pass()
-    few.add_instruction_combine_pass()
-    few.add_simplify_cfg_pass()
-    return few
 
 
 def _emitted(kernel: Kernel, name: str) -> str:

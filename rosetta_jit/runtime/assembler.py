@@ -49,11 +49,20 @@ def run_passes(passes: binding.ModulePassManager, module: binding.ModuleRef, bui
     passes.detach()
 
 
+def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine) -> None:
+    """Run the passes without which code is poor, all of which take time in proportion to it."""
+    few = binding.create_new_module_pass_manager()
+    few.add_always_inliner_pass()
+    few.add_sroa_pass()
+    few.add_instruction_combine_pass()
+    few.add_simplify_cfg_pass()
+    run_passes(few, module, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0)))
+
+
 def assembled(text: str, exported: Sequence[str]) -> bytes:
-    """Code of a module's text, for `runtime.native`. Its passes are LLVM's O1."""
+    """Code of a module that a person wrote, for `runtime.native`: it says itself what is inlined, and needs few passes."""
     machine, module = target_machine(), linked([text])
     make_private(module, exported)
-    builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=1))
-    run_passes(builder.getModulePassManager(), module, builder)
+    run_few_passes(module, machine)
     image = machine.emit_object(module)
     return prelinked(image) or image

@@ -18,7 +18,7 @@ define ptr @get_octets(ptr %self, ptr %field) {
   ret ptr %text
 }
 
-define internal ptr @text(ptr %self, ptr %place, ptr %errors) alwaysinline {
+define internal ptr @text(ptr %self, ptr %place, ptr %errors) noinline {
   %found = call { ptr, i64, i64 } @span(ptr %self, ptr %place)
   %data = extractvalue { ptr, i64, i64 } %found, 0
   %count = extractvalue { ptr, i64, i64 } %found, 2
@@ -107,7 +107,7 @@ python:
 }
 
 ; Whether an array that we gave out is nobody's any more, shows these rows, and is as it was.
-define internal i1 @shows(ptr %array, ptr %data, i64 %count, ptr %place) alwaysinline {
+define internal i1 @shows(ptr %array, ptr %data, i64 %count, ptr %place) noinline {
   %spare = call i1 @is_spare(ptr %array)
   %its.data = call ptr @pointer(ptr %array, i64 16)
   %same.data = icmp eq ptr %its.data, %data
@@ -144,7 +144,7 @@ no:
 }
 
 ; The content of a field, its first row and how many they are; null where Python must read it.
-define internal { ptr, i64, i64 } @span(ptr %self, ptr %place) alwaysinline {
+define internal { ptr, i64, i64 } @span(ptr %self, ptr %place) noinline {
   %row = call ptr @row(ptr %self)
   %has.row = icmp ne ptr %row, null
   br i1 %has.row, label %look, label %none, !prof !0

@@ -63,7 +63,7 @@ define internal ptr @place(ptr %self, ptr %field) alwaysinline {
 }
 
 ; Where the row of a message begins; null where Python must say why it cannot be read.
-define internal ptr @row(ptr %self) alwaysinline {
+define internal ptr @row(ptr %self) noinline {
   %state = call ptr @pointer(ptr %self, i64 16)
   %is.made = icmp ne ptr %state, null
   br i1 %is.made, label %look, label %none, !prof !0
@@ -160,7 +160,7 @@ none:
 }
 
 ; Whether a field is there: some bits of its row say so.
-define internal i1 @is_present(ptr %place, ptr %row) alwaysinline {
+define internal i1 @is_present(ptr %place, ptr %row) noinline {
   %mask = call i64 @word(ptr %place, i64 24)
   %always = icmp eq i64 %mask, 0
   br i1 %always, label %yes, label %look
@@ -176,7 +176,7 @@ yes:
 }
 
 ; Whether so many rows from a start on are in use in a lane, or null where they are not: their address.
-define internal ptr @content(ptr %self, ptr %lane, i64 %start, i64 %count) alwaysinline {
+define internal ptr @content(ptr %self, ptr %lane, i64 %start, i64 %count) noinline {
   %address = load ptr, ptr %lane
   %used = call i64 @word(ptr %lane, i64 16)
   %stride = call i64 @word(ptr %lane, i64 24)
@@ -246,7 +246,7 @@ define internal void @refuse() {
 
 ; Make a message, all around it and a field present, before the field is written: count the change, and set the bits that say so. False, and
 ; nothing is done, where more must be done than that, or somebody uses the lanes.
-define internal i1 @begin_writing(ptr %self, ptr %place, ptr %row) alwaysinline {
+define internal i1 @begin_writing(ptr %self, ptr %place, ptr %row) noinline {
   %state = call ptr @pointer(ptr %self, i64 16)
   %epoch = call i64 @word(ptr %state, i64 8)
   %marks = call ptr @pointer(ptr %place, i64 48)

@@ -6,7 +6,7 @@ declare i64 @PyLong_AsSsize_t(ptr)
 declare void @PyObject_Free(ptr)
 
 ; The first row of an array and how many elements it has, -1 where Python must say it.
-define internal { i64, i64 } @elements(ptr %self) alwaysinline {
+define internal { i64, i64 } @elements(ptr %self) noinline {
   %place = call ptr @pointer(ptr %self, i64 16)
   %message = call ptr @pointer(ptr %self, i64 32)
   %has.place = icmp ne ptr %place, null
@@ -127,7 +127,7 @@ raise:
 }
 
 ; Where the text of an element lies.
-define internal { ptr, i64, i64 } @span_of_element(ptr %message, ptr %place, i64 %row) alwaysinline {
+define internal { ptr, i64, i64 } @span_of_element(ptr %message, ptr %place, i64 %row) noinline {
   %elements = call ptr @lane_of(ptr %message, ptr %place)
   %at = call ptr @element_row(ptr %elements, i64 %row)
   %used = icmp ne ptr %at, null
