@@ -51,7 +51,7 @@ ALLOWED = frozenset(
         "PyUnicode_Type",
         "Py_DecRef",
         "Py_IncRef",
-        *("_Py_FalseStruct", "_Py_TrueStruct"),
+        *("_Py_FalseStruct", "_Py_NoneStruct", "_Py_TrueStruct"),
         "clock_gettime",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),

@@ -22,6 +22,8 @@ from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.specs import (
     BASETYPE,
     DEFAULT,
+    FASTCALL,
+    KEYWORDS,
     READONLY,
     SSIZE_T,
     TP_CALL,
@@ -47,10 +49,6 @@ MADE, THREAD = 5, 6
 STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
 ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
 """No epochs: of a message whose row is fixed, and of one whose row must be looked for."""
-
-_WORDS = ctypes.c_int64 * 7
-
-_FASTCALL, _KEYWORDS = 0x80, 0x02  # Include/methodobject.h; the two together have the arguments of a vectorcall
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +146,7 @@ def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
     if not entry:
         return target._context[0].slow  # noqa: SLF001 - as above
     if "_method" not in vars(target):
-        target._method = Method(name.encode(), entry, _FASTCALL | _KEYWORDS, doc.encode())  # noqa: SLF001 - as above
+        target._method = Method(name.encode(), entry, FASTCALL | KEYWORDS, doc.encode())  # noqa: SLF001 - as above
     create = ctypes.pythonapi.PyCFunction_NewEx
     create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p]
     return create(ctypes.addressof(target._method), target, None)  # noqa: SLF001 - as above
@@ -158,16 +156,6 @@ def bind_state(holder: Any, address: int) -> None:
     """Tell the entries where the state of a holder, an instance of a subclass of a `message_base`, lies. The holder must keep it alive."""
     if holder._is_native:  # noqa: SLF001 - the class is ours
         write_word(id(holder) + STATE, address)
-
-
-def bind_message(message: Any, words: tuple[int, int, int, int, int, int, int]) -> None:
-    """Tell the compiled accessors where a message lies.
-
-    The words are: address of the state, row, epoch at which the row was found (`ALWAYS`, or `NEVER` yet), offset of the lane's words in the
-    state, address of the table of places, index, offset of the span in the parent's row.
-    """
-    if message._is_native:  # noqa: SLF001 - the class is ours
-        _WORDS.from_address(id(message) + STATE)[:] = words
 
 
 @cache

@@ -10,9 +10,11 @@ Compiled entries keep to the same rule by themselves (`backends/*.ll`).
 
 from __future__ import annotations
 
+import ctypes
 import operator
 from _thread import allocate_lock
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
 
 import numpy as np
@@ -34,6 +36,7 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.model.births import FirstCase, FixedArray
+from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
 from rosetta_jit.runtime.locks import shared_lock
@@ -71,6 +74,8 @@ class Lanes:
 
     Attributes
     ----------
+    arena : bytearray
+        The first memory, and some to spare.
     address : int
         Where the state lies, which kernels are given. It never moves.
     words : memoryview
@@ -98,6 +103,7 @@ class Lanes:
     __slots__ = (
         "__weakref__",
         "address",
+        "arena",
         "array_type",
         "arrays",
         "buffers",
@@ -112,31 +118,23 @@ class Lanes:
         "state",
         "words",
     )
+    arena: bytearray
     arrays: Arrays
     buffers: list[NDArray[np.uint8]]
     cells: Cells
+    hidden: Hidden | None
     lock: LockType
+    memory: Memory
+    source: list[Any]
     state: NDArray[np.int64]
+    words: memoryview
 
     def __init__(self, plan: Plan, array_type: type[Array] = np.ndarray) -> None:
-        arena = np.zeros(plan.size_bytes + ALIGNMENT, np.uint8)
-        address = address_of(arena)
-        shift = -address % ALIGNMENT
-        address += shift
-        first = memoryview(cast("Any", arena))[shift : shift + plan.size_bytes]
-        first[: len(plan.begin)] = plan.begin
-        words = first[: plan.state_bytes].cast("q")
-        for word, offset in zip(plan.addresses, plan.offsets, strict=True):
-            words[word] = address + offset
+        self.arena = arena = bytearray(plan.size_bytes + ALIGNMENT)
         self.plan = plan
         self.array_type = array_type
-        self.address = address
-        self.words = words
-        self.memory = Memory(first, plan.offsets, plan.sizes)
-        self.hidden: Hidden | None = None
+        self.address = _beginning()(arena, plan.begin, plan.places)
         self.is_filled = True
-        self.lock = allocate_lock()
-        self.source: list[Any] = [None]
         self.rows = plan.rows
 
     if not TYPE_CHECKING:  # for which the slots are always there
@@ -326,7 +324,41 @@ def in_use() -> InUse:
     )
 
 
+def _memory(lanes: Lanes) -> Memory:
+    """The first memory, from where it is aligned."""
+    whole = memoryview(lanes.arena)
+    shift = lanes.address - _address_of(lanes.arena)
+    return Memory(whole[shift : shift + lanes.plan.size_bytes], lanes.plan.offsets, lanes.plan.sizes)
+
+
+def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:
+    """Copy how the first memory of lanes begins to where it is aligned, and write where each lane lies; where the state does."""
+    address = _address_of(arena)
+    shift = -address % ALIGNMENT
+    arena[shift : shift + len(begin)] = begin
+    words = memoryview(arena)[shift:][: len(arena) - shift & -8].cast("q")
+    pairs = np.frombuffer(places, np.int64).reshape(-1, 2)
+    for word, offset in zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), strict=True):
+        words[word] = address + shift + offset
+    return address + shift
+
+
+@cache
+def _beginning() -> Callable[[bytearray, bytes, bytes], int]:
+    """What does so: compiled code where there is such."""
+    return _begun_in_python if library() is None else functions()["begin"]
+
+
+def _address_of(arena: bytearray) -> int:
+    return ctypes.addressof(ctypes.c_char.from_buffer(arena))
+
+
 _MADE: dict[str, Callable[[Lanes], Any]] = {
+    "memory": _memory,
+    "words": lambda lanes: lanes.memory.first[: lanes.plan.state_bytes].cast("q"),
+    "hidden": lambda _: None,
+    "lock": lambda _: allocate_lock(),
+    "source": lambda _: [None],
     "state": lambda lanes: np.frombuffer(lanes.words, np.int64),
     "buffers": lambda lanes: [np.frombuffer(lanes.memory[lane], np.uint8) for lane in range(len(lanes.plan.strides))],
     "cells": lambda lanes: Cells(lanes.memory),
@@ -340,8 +372,8 @@ def born(plan: Plan) -> Plan:
         return plan
     prototype = Lanes(plan)
     prototype.bear(plan.births, 0, 1)
-    for word in plan.addresses:
-        prototype.words[word] = 0
+    for lane in range(len(plan.strides)):
+        prototype.words[lane_word(lane, ADDRESS)] = 0
     return replace(plan, begin=bytes(prototype.memory.first).rstrip(b"\0"))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +32,8 @@ class Plan:
     """How the arena of a layout is divided: a function of the layout and the first capacities, made once a class.
 
     ``begin`` is how it begins, up to the last byte that is not zero: the state, of ``state_bytes``, without its addresses, and what the
-    messages are born with. ``addresses`` are the words of the state where each lane's stands.
+    messages are born with. ``places`` has pairs of int64: a word of the state, and the offset
+    of the lane whose address stands there.
     """
 
     layout: Layout
@@ -43,7 +45,7 @@ class Plan:
     size_bytes: int
     state_bytes: int
     begin: bytes
-    addresses: tuple[int, ...]
+    places: bytes
     births: tuple[Birth, ...] = ()
 
 
@@ -67,9 +69,9 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Se
         sizes.append(aligned(capacity * stride, 8))
         state[lane_word(lane, ADDRESS) : lane_word(lane, STRIDE) + 1] = 0, capacity, rows if lane == 0 else 0, stride
         behind = aligned(behind + sizes[-1])
-    addresses = tuple(lane_word(lane, ADDRESS) for lane in range(len(strides)))
+    places = b"".join(struct.pack("=2q", lane_word(lane, ADDRESS), offset) for lane, offset in enumerate(offsets))
     dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else BYTES for lane in layout.lanes), BYTES)
-    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), addresses, births)
+    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), places, births)
 
 
 def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:

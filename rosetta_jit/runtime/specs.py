@@ -6,13 +6,17 @@ import ctypes
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 # Include/object.h, Include/typeslots.h, Include/structmember.h
 DEFAULT, VECTORCALL, BASETYPE = 1 << 18, 1 << 11, 1 << 10
 MP_SUBSCRIPT, SQ_LENGTH = 5, 45
 TP_CALL, TP_DEALLOC, TP_ITER, TP_ITERNEXT, TP_SETATTRO, TP_MEMBERS = 50, 52, 62, 63, 69, 72
 OBJECT, SSIZE_T, READONLY = 16, 19, 1
+FASTCALL, KEYWORDS = 0x80, 0x02
+"""Flags of methods (Include/methodobject.h); the two together have the arguments of a vectorcall."""
+
+_KEPT: list[object] = []
 
 
 class Member(ctypes.Structure):
@@ -102,6 +106,15 @@ def _described(create: Any, owner: type, definition: ctypes.Structure) -> Any:
 def slot_offset(descriptor: Any) -> int:
     """Where a slot of a class lies in its objects: PyMemberDescrObject of Include/descrobject.h."""
     return read_word(read_word(id(descriptor) + 40) + 16)
+
+
+def function_of(name: str, address: int) -> Callable[..., Any]:
+    """A built-in function of code that takes an array of arguments. The code, and what this makes, live as long as the process."""
+    method = Method(name.encode(), address, FASTCALL, None)
+    _KEPT.append(method)
+    create = ctypes.pythonapi.PyCFunction_NewEx
+    create.restype, create.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
+    return create(ctypes.addressof(method), None, None)
 
 
 def read_word(address: int) -> int:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
+import warnings
 from functools import cache
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.runtime import native
 from rosetta_jit.runtime.allowed import ForeignCodeError
@@ -14,18 +14,19 @@ from rosetta_jit.runtime.cache import Cache
 from rosetta_jit.runtime.cache_names import entry_name
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
+from rosetta_jit.runtime.specs import function_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from rosetta_jit.runtime.native import Library
 
-FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll")
-MESSAGES = ("populate", "set_attribute")
+FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll")
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
-WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts")
-SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator", "extend_texts")
-SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *MESSAGES, *SEQUENCES)
+WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
+FUNCTIONS = ("begin", "bind", "extend_texts")
+SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
+SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *FUNCTIONS, *SEQUENCES)
 """What the library defines."""
 
 CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
@@ -39,27 +40,17 @@ def library() -> Library | None:
         return None
     try:
         return native.load(_image(), SYMBOLS)
-    except ForeignCodeError:
+    except ForeignCodeError as error:
+        warnings.warn(f"attributes of messages are read in Python, which takes ten times as long: {error}", RuntimeWarning, stacklevel=2)
         return None
 
 
-def populate(message: object) -> None:
-    """Make the views that a new message has from the start, when it knows where it lies.
-
-    Raises
-    ------
-    MemoryError
-        If there is no room for them.
-    """
-    if _populate()(message):
-        raise MemoryError("there is no room for the parts of a message")
-
-
 @cache
-def _populate() -> Callable[[object], int]:
+def functions() -> Mapping[str, Callable[..., Any]]:
+    """Those of the library that Python calls, as built-in functions."""
     code = library()
-    assert code is not None, "there are tables for it"
-    return ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.py_object)(code["populate"])
+    assert code is not None, "there are accessors"
+    return {name: function_of(name, code[name]) for name in FUNCTIONS}
 
 
 def _image() -> bytes:

@@ -79,7 +79,7 @@ give:
   ret ptr %last
 look:
   %lanes = call ptr @pointer(ptr %self, i64 88)
-  %arrays = call ptr @pointer(ptr %lanes, i64 32)
+  %arrays = call ptr @pointer(ptr %lanes, i64 40)
   %shown = icmp ne ptr %arrays, null
   br i1 %shown, label %search, label %python, !prof !0
 search:

@@ -39,7 +39,7 @@ define internal void @put_pointer(ptr %object, i64 %offset, ptr %value) alwaysin
   ret void
 }
 
-; One more reference to an object, if there is one; none of these is immortal.
+; One more reference to an object, if there is one; none of these is immortal, as None is.
 define internal void @keep(ptr %object) alwaysinline {
   %is = icmp ne ptr %object, null
   br i1 %is, label %count, label %done
@@ -116,7 +116,10 @@ define internal i1 @find(ptr %self, i64 %depth) noinline {
   %state = call ptr @pointer(ptr %self, i64 16)
   %epoch = call i64 @word(ptr %state, i64 8)
   %parent = call ptr @pointer(ptr %self, i64 96)
-  %has.parent = icmp ne ptr %parent, null
+  %is.parent = icmp ne ptr %parent, null
+  %is.root = icmp eq ptr %parent, @_Py_NoneStruct
+  %is.element = xor i1 %is.root, true
+  %has.parent = and i1 %is.parent, %is.element
   %free = icmp sge i64 %epoch, 0
   %shallow = icmp sgt i64 %depth, 0
   %may = and i1 %has.parent, %free

@@ -81,11 +81,11 @@ fill:
   call void @put(ptr %view, i64 64, i64 %span)
   call void @keep(ptr %access)
   call void @put_pointer(ptr %view, i64 72, ptr %access)
-  call void @keep(ptr %entry)
+  call void @Py_IncRef(ptr %entry)
   call void @put_pointer(ptr %view, i64 80, ptr %entry)
   call void @keep(ptr %lanes)
   call void @put_pointer(ptr %view, i64 88, ptr %lanes)
-  call void @keep(ptr %parent)
+  call void @Py_IncRef(ptr %parent)
   call void @put_pointer(ptr %view, i64 96, ptr %parent)
   call void @point_at(ptr %view, i64 %index, i64 %row, i64 %epoch)
   %full = call i32 @populate(ptr %view)
@@ -101,7 +101,7 @@ none:
 }
 
 ; Make the views that a new message has from the start; -1 if there is no memory for them.
-define i32 @populate(ptr %message) {
+define internal i32 @populate(ptr %message) {
   %table = call ptr @pointer(ptr %message, i64 48)
   %is.known = icmp ne ptr %table, null
   br i1 %is.known, label %begin, label %done

@@ -5,16 +5,12 @@ An object of such a class has the address of its place at 16. What is not common
 
 from __future__ import annotations
 
-import ctypes
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.specs import BASETYPE, DEFAULT, MP_SUBSCRIPT, SQ_LENGTH, TP_DEALLOC, TP_ITER, TP_ITERNEXT, from_spec, write_word
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 PLACE, SEQUENCE_BYTES, ITERATOR_BYTES = 16, 24, 32
 
@@ -60,11 +56,4 @@ def _word_class(sequence_class: type) -> type:
 
 def extend_texts(sequence: object, values: object) -> bool:
     """Append the texts of a list to a sequence; False if that is left to Python, because values or sequence are others."""
-    return bool(_extend()(sequence, values))
-
-
-@cache
-def _extend() -> Callable[[object, object], int]:
-    code = library()
-    assert code is not None, "there are sequences for it"
-    return ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.py_object, ctypes.py_object)(code["extend_texts"])
+    return functions()["extend_texts"](sequence, values)

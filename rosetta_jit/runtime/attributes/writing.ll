@@ -613,8 +613,10 @@ python:
   ret i1 false
 }
 
-; `sequence.extend(list)` of texts: 1 if it is done, 0 if Python must do it.
-define i32 @extend_texts(ptr %sequence, ptr %list) {
+; extend_texts(sequence, list) -> bool: whether the texts of a list were appended to a sequence; else Python must do it. METH_FASTCALL.
+define ptr @extend_texts(ptr %module, ptr %arguments, i64 %given) {
+  %sequence = load ptr, ptr %arguments
+  %list = call ptr @pointer(ptr %arguments, i64 8)
   %found = call { i64, i64 } @elements(ptr %sequence)
   %first = extractvalue { i64, i64 } %found, 1
   %known = icmp sge i64 %first, 0
@@ -635,8 +637,10 @@ measure:
   br i1 %good, label %write, label %python
 write:
   %done = call i1 @write_texts(ptr %message, ptr %place, ptr %list, i64 %first, i64 %count, i64 %total)
-  %answer = zext i1 %done to i32
-  ret i32 %answer
+  %answer = zext i1 %done to i8
+  %said = call ptr @box_bool(i8 %answer)
+  ret ptr %said
 python:
-  ret i32 0
+  %no = call ptr @box_bool(i8 0)
+  ret ptr %no
 }

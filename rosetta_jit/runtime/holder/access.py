@@ -12,6 +12,7 @@ import numpy as np
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.births import MAX_BORN_BYTES
+from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
 from rosetta_jit.runtime.holder import arena, coerce, grid, values
 from rosetta_jit.runtime.holder.message import Message, View, beside, element, place, writable
@@ -52,7 +53,7 @@ class Family(Protocol):
 class Access:
     """How the fields of one record are read and written; each accessor is made when first used."""
 
-    __slots__ = ("_numbers", "_places", "family", "getters", "record", "setters", "table")
+    __slots__ = ("_numbers", "_places", "bind", "family", "getters", "record", "setters", "table")
 
     def __init__(self, record: Record, family: Family) -> None:
         self.record = record
@@ -66,6 +67,8 @@ class Access:
             self._show(name)
         self.table = 0 if self._places is None else self._places.address
         """Address of what compiled accessors know of the record's fields; 0 where there are none."""
+        self.bind = None if library() is None else functions()["bind"]
+        """What tells them where a message lies."""
 
     def place_of(self, name: str) -> int:
         """Address of what they know of one field."""

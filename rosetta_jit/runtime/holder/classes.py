@@ -35,14 +35,13 @@ class Holder(Message):
 
     def __init__(self) -> None:
         """An empty message. A holder that is made again is emptied: compiled entries know where its lanes are."""
-        if hasattr(self, "lanes_"):
+        if not self.lay_out_(self.family_.plan):
             clear(self, None)
-        else:
-            self.lay_out_(self.family_.plan)
 
-    def lay_out_(self, plan: Plan) -> None:
-        """Give the holder lanes. It must have none yet."""
-        in_row(self, Lanes(plan, self.family_.array_type), self.family_.access(self.family_.tree.root), 0)
+    def lay_out_(self, plan: Plan) -> bool:
+        """Give the holder lanes, unless it has some."""
+        family = self.family_
+        return in_row(self, Lanes(plan, family.array_type), family.root, 0)
 
     def new(self) -> Self:
         """An empty holder of the same type."""

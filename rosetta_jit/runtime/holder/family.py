@@ -155,6 +155,11 @@ class Family:
         return access
 
     @cached_property
+    def root(self) -> Access:
+        """How the fields of the message itself are read and written."""
+        return self.access(self.tree.root)
+
+    @cached_property
     def _empty(self) -> Lanes:
         lanes = Lanes(self.plan, self.array_type)
         with lanes:
@@ -170,7 +175,9 @@ class Family:
     def row(self, lanes: Lanes, row: int) -> View:
         """A view of one message of a batch."""
         cls = self.view_class(self.struct.name)
-        return in_row(cls.__new__(cls), lanes, self.access(self.tree.root), row)
+        view = cls.__new__(cls)
+        in_row(view, lanes, self.root, row)
+        return view
 
 
 def _written_within(struct: Struct, schema: Schema, name: str) -> Struct:

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from rosetta_jit.errors import EncodeError, InvalidHolder
 from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
-from rosetta_jit.runtime.attributes.code import populate
-from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_message, message_base
+from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs
 from rosetta_jit.runtime.holder.values import MAX_DEPTH
@@ -68,33 +67,34 @@ class View(Message):
     __slots__ = ()
 
 
-def in_row(view: _Message, lanes: Lanes, access: Access, row: int) -> _Message:
-    """Make a new view show a row of lane 0."""
-    view.lanes_, view.access_, view.parent_ = lanes, access, None
-    view.index_ = row
-    bind_message(view, (lanes.address, row, ALWAYS, _FIRST_LANE, access.table, row, 0))
-    if access.table:
-        populate(view)
-    return view
+def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
+    """Make a new message show a row of lane 0; False if it shows something already."""
+    if access.bind is not None:
+        return access.bind(message, lanes, access, None, None, lanes.address, row, ALWAYS, _FIRST_LANE, access.table, row, 0)
+    if hasattr(message, "lanes_"):
+        return False
+    message.lanes_, message.access_, message.parent_, message.index_ = lanes, access, None, row
+    bind_state(message, lanes.address)
+    return True
 
 
 def beside(view: _Message, message: Message, access: Access) -> _Message:
     """Make a new view show another record in the row of a message, or the message's own."""
     if message.parent_ is None:
-        return in_row(view, message.lanes_, access, message.index_)
+        in_row(view, message.lanes_, access, message.index_)
+        return view
     return element(view, message.parent_, access, message.entry_, message.index_)
 
 
 def element(view: _Message, parent: View, access: Access, entry: Entry, index: int) -> _Message:
     """Make a new view show an element of a field of another view."""
-    view.lanes_, view.access_ = parent.lanes_, access
-    view.parent_, view.entry_, view.index_ = parent, entry, index
-    node = entry.node
+    lanes, node, bound = parent.lanes_, entry.node, access.bind
     assert isinstance(node, Child | Items | Pairs)
-    lane = 8 * lane_word(node.lane, ADDRESS)
-    bind_message(view, (view.lanes_.address, 0, NEVER, lane, access.table, index, 8 * node.span.index))
-    if access.table:
-        populate(view)
+    if bound is None:
+        view.lanes_, view.access_, view.parent_, view.entry_, view.index_ = lanes, access, parent, entry, index
+    else:
+        lane = 8 * lane_word(node.lane, ADDRESS)
+        bound(view, lanes, access, parent, entry, lanes.address, 0, NEVER, lane, access.table, index, 8 * node.span.index)
     return view
 
 
