@@ -280,6 +280,7 @@ class Serialising:
         family = holder_type.family_
         if family.programs is None:
             family.programs = OwnPrograms(Request("decode", encoding=self._encoding, plain=family.text, framework=self._framework))
+            setattr(family.holder, "programs_", family.programs)  # noqa: B010  where it is found sooner; not every holder has it
         return family.programs
 
 
@@ -289,28 +290,23 @@ class OwnPrograms:
     def __init__(self, request: Request) -> None:
         self._request = request
 
-    def encode(self, holder: Any) -> bytes:
-        """The bytes of a holder."""
-        return self._encoder(holder)
-
-    def size(self, holder: Any) -> int:
-        """How many they are."""
-        return self._encoder.size(holder)
-
-    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
-        """Fill a holder from bytes, or add to what it has."""
-        if merge:
-            holder.MergeFrom(self._decoder.into(data, holder.new()))
-        else:
-            self._decoder.into(data, holder)
+    @cached_property
+    def encode(self) -> Any:
+        """The encoder: the bytes of a holder."""
+        return _of_request(Encoder, replace(self._request, direction="encode"))
 
     @cached_property
-    def _decoder(self) -> Any:
+    def decode(self) -> Any:
+        """The decoder: it is given bytes, and the holder to fill."""
         return _of_request(Decoder, self._request)
 
-    @cached_property
-    def _encoder(self) -> Any:
-        return _of_request(Encoder, replace(self._request, direction="encode"))
+    def size(self, holder: Any) -> int:
+        """How many bytes a holder takes."""
+        return self.encode.size(holder)
+
+    def new(self) -> Any:
+        """A holder with room for what has been decoded until now."""
+        return self.decode.new()
 
 
 def _of_request(program: Any, request: Request) -> Any:

@@ -140,7 +140,7 @@ def bind_call(target: Any, entry: int | None, context: Context) -> None:
 def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:
     """The call of a bound ``target`` as a built-in function. CPython calls those with less ado than an object of any other type.
 
-    Its ``__self__`` is the target, which it keeps alive; not the other way round.
+    Its ``__self__`` is the target, which it keeps alive.
     """
     entry = read_word(id(target) + VECTORCALL) if target._is_native else 0  # noqa: SLF001 - the class is ours
     if not entry:

@@ -11,6 +11,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.cached import cached_property
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
@@ -99,7 +100,7 @@ class Program:
                 words[MADE] = number
             raise
 
-    @property
+    @cached_property
     def builtin(self) -> Callable[..., Any]:
         """The program's call as a built-in function, for inner loops: CPython calls those faster than any object."""
         return builtin_of(self, "builtin", "What calling its __self__ does.")

@@ -8,7 +8,7 @@ cannot be decoded raises `rosetta_jit.errors.DecodeError`, a ValueError that say
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -62,8 +62,9 @@ class LcmMessage(Holder):
         DecodeError
             If they are no message of the type. It is a ValueError.
         """
-        message = cast("type[Self]", cls.family_.holder)()
-        programs_of(message).decode_into(data.read() if hasattr(data, "read") else data, message, merge=False)
+        programs = programs_of(cls.family_.holder)
+        message: Self = programs.new()
+        programs.decode(data.read() if hasattr(data, "read") else data, message)
         return message
 
     @classmethod

@@ -8,11 +8,11 @@ at their index where elements before it are deleted; NaN differs from NaN; error
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
-from rosetta_jit.errors import EncodeError, RosettaError
+from rosetta_jit.errors import EncodeError
 from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescriptor, MessageDescriptor, nested_names
-from rosetta_jit.frameworks.protobuf.presence import missing, set_entries
+from rosetta_jit.frameworks.protobuf.presence import missing, requires, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import Holder, Manners, arena
@@ -20,28 +20,14 @@ from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.classes import clear
 from rosetta_jit.runtime.holder.merge import fill, merge
 from rosetta_jit.runtime.holder.message import Message, View, make_present, place
+from rosetta_jit.runtime.holder.serialising import encoded, programs_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.runtime.holder import Family
     from rosetta_jit.runtime.holder.record import Entry, Record
-
-
-class Programs(Protocol):
-    """What serialises holders of one class; whoever compiles it sets it as the class's ``programs_``."""
-
-    def encode(self, holder: Any) -> bytes:
-        """The bytes of a holder."""
-        ...
-
-    def size(self, holder: Any) -> int:
-        """How many they are."""
-        ...
-
-    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
-        """Fill a holder from bytes, or add to what it has."""
-        ...
+    from rosetta_jit.runtime.holder.serialising import Programs
 
 
 class ProtobufMessage(Holder):
@@ -56,6 +42,7 @@ class ProtobufMessage(Holder):
     __slots__ = ()
 
     DESCRIPTOR: ClassVar[MessageDescriptor]
+    requires_: ClassVar[bool]
     programs_: ClassVar[Programs | None] = None
 
     def __init__(self, **fields: Any) -> None:
@@ -133,7 +120,7 @@ class ProtobufMessage(Holder):
         """Paths of the required fields that are not set."""
         return list(missing(self.access_.record, raw(self)))
 
-    def SerializeToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802
+    def SerializeToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802, ARG002  always deterministic
         """The message's bytes. They are the same every time, whatever ``deterministic`` says.
 
         Raises
@@ -141,20 +128,20 @@ class ProtobufMessage(Holder):
         EncodeError
             If a required field is not set.
         """
-        errors = ProtobufMessage.FindInitializationErrors(self)
+        errors = ProtobufMessage.FindInitializationErrors(self) if self.requires_ else ()
         if errors:
             raise EncodeError(
                 "missing", f".{errors[0]}", f"Message {self.DESCRIPTOR.full_name} is missing required fields: {','.join(errors)}"
             )
-        return ProtobufMessage.SerializePartialToString(self, deterministic=deterministic)
+        return encoded(self)
 
     def SerializePartialToString(self, *, deterministic: bool | None = None) -> bytes:  # noqa: N802, ARG002  always deterministic
         """The message's bytes, even if required fields are missing."""
-        return self._programs().encode(self._whole())
+        return encoded(self)
 
     def ByteSize(self) -> int:  # noqa: N802
         """How many bytes the message takes."""
-        return self._programs().size(self._whole())
+        return programs_of(self).size(self.__deepcopy__({}) if isinstance(self, View) else self)
 
     def ParseFromString(self, data: Any) -> int:  # noqa: N802
         """Become what bytes say; how many they were.
@@ -167,15 +154,12 @@ class ProtobufMessage(Holder):
         if isinstance(self, View):
             ProtobufMessage.CopyFrom(self, self._parsed(data))
         else:
-            self._programs().decode_into(_bytes(data), self, merge=False)
+            programs_of(self).decode(data, self)
         return len(data)
 
     def MergeFromString(self, data: Any) -> int:  # noqa: N802
         """Merge with what bytes say; how many they were."""
-        if isinstance(self, View):
-            ProtobufMessage.MergeFrom(self, self._parsed(data))
-        else:
-            self._programs().decode_into(_bytes(data), self, merge=True)
+        ProtobufMessage.MergeFrom(self, self._parsed(data))
         return len(data)
 
     @classmethod
@@ -196,7 +180,7 @@ class ProtobufMessage(Holder):
 
     @classmethod
     def _parsed(cls, data: Any) -> ProtobufMessage:
-        message = cast("type[ProtobufMessage]", cls.family_.holder)()
+        message = programs_of(cls.family_.holder).new()
         ProtobufMessage.ParseFromString(message, data)
         return message
 
@@ -212,21 +196,6 @@ class ProtobufMessage(Holder):
             expected = f"expected {record.struct} got {type(other).__name__}"
             raise TypeError(f"Parameter to {method}() must be instance of same class: {expected}.")
         return raw(other)
-
-    def _whole(self) -> ProtobufMessage:
-        """The message in lanes of its own, as programs take it."""
-        return self.__deepcopy__({}) if isinstance(self, View) else self
-
-    def _programs(self) -> Programs:
-        if self.programs_ is None:
-            raise RosettaError(f"no decoder or encoder of {self.DESCRIPTOR.full_name} has been compiled")
-        return self.programs_
-
-
-def _bytes(data: Any) -> Any:
-    if isinstance(data, str):
-        raise TypeError("expected bytes, str found")
-    return data
 
 
 class _Nested:
@@ -251,7 +220,10 @@ def members(family: Family) -> dict[str, Any]:
             found[own] = EnumClass(declared)
         else:
             found[own] = _Nested(family, name)
-    return {name: value for name, value in found.items() if not name.startswith("__")} | {"DESCRIPTOR": descriptor}
+    return {name: value for name, value in found.items() if not name.startswith("__")} | {
+        "DESCRIPTOR": descriptor,
+        "requires_": requires(family.tree.root),
+    }
 
 
 PROTOBUF = Manners(

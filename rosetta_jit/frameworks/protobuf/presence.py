@@ -20,6 +20,33 @@ def set_entries(record: Record, values: Mapping[str, Any]) -> Iterator[tuple[Ent
             yield entry, values[entry.name]
 
 
+def requires(record: Record) -> bool:
+    """Whether a message, or one that it can contain, has a required field."""
+    pending, seen = [record], set[int]()
+    while pending:
+        each = pending.pop()
+        if any(entry.field.required for entry in each.entries.values()):
+            return True
+        if id(each) not in seen:
+            seen.add(id(each))
+            pending += [inner for entry in each.entries.values() for inner in _within(entry.node)]
+    return False
+
+
+def _within(node: Node) -> Iterator[Record]:
+    match node:
+        case Record():
+            yield node
+        case Child(record=record):
+            yield record
+        case Items(element=element):
+            yield from _within(element)
+        case Pairs(value=value):
+            yield from _within(value.node)
+        case _:
+            pass
+
+
 def missing(record: Record, values: Mapping[str, Any], path: str = "") -> Iterator[str]:
     """Paths of the required fields that are not set, as `FindInitializationErrors` gives them."""
     for entry in record.entries.values():

@@ -90,7 +90,7 @@ class RosMessage(Holder):
         DecodeError
             If they are no message of the type.
         """
-        programs_of(self).decode_into(data, self, merge=False)
+        programs_of(self).decode(data, self)
         return self
 
     def serialize_numpy(self, buff: Buffer, numpy: object) -> None:

@@ -8,7 +8,7 @@ range or beyond a bound ValueError, also where Python runs with ``-O`` and rosid
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -78,8 +78,9 @@ def deserialize_message(data: Any, message_type: type[Ros2Message]) -> Any:
     DecodeError
         If they are no message of the type.
     """
-    message = cast("Any", message_type)()
-    programs_of(message).decode_into(data, message, merge=False)
+    programs = programs_of(message_type)
+    message = programs.new()
+    programs.decode(data, message)
     return message
 
 

@@ -50,8 +50,8 @@ class Manners:
     members : callable
         What else the class of a struct has, by name, given its family: constants, nested classes.
     serialising : tuple of str
-        Framework and encoding of the base's methods that serialise; with it, ``programs_`` of every holder has `encode`, `size` and
-        `decode_into`.
+        Framework and encoding of the base's methods that serialise; with it, ``programs_`` of every holder is what
+        `rosetta_jit.runtime.holder.serialising.Programs` says.
     """
 
     base: type[Holder]

@@ -16,22 +16,31 @@ class Programs(Protocol):
         """The bytes of a holder."""
         ...
 
-    def decode_into(self, data: Any, holder: Any, *, merge: bool) -> None:
-        """Fill a holder from bytes, or add to what it has."""
+    def size(self, holder: Any) -> int:
+        """How many they are."""
+        ...
+
+    def new(self) -> Any:
+        """A holder with room for what has been decoded until now, unless that is much."""
+        ...
+
+    def decode(self, data: Any, holder: Any, /) -> object:
+        """Fill a holder from bytes."""
         ...
 
 
 def programs_of(message: Any) -> Programs:
-    """The programs of a message's class.
+    """The programs of a message, or of a class.
 
     Raises
     ------
     RosettaError
         None have been compiled in this process.
     """
-    if message.programs_ is None:
+    programs = message.programs_
+    if programs is None:
         raise RosettaError(f"no decoder or encoder of {message.family_.struct.name} has been compiled")
-    return message.programs_
+    return programs
 
 
 def encoded(message: Any) -> bytes:

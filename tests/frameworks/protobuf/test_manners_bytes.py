@@ -19,12 +19,16 @@ class JsonPrograms:
         assert type(holder) is self.cls
         return json.dumps(holder.to_dict()).encode()
 
+    def new(self):
+        return self.cls()
+
     def size(self, holder):
         return len(self.encode(holder))
 
-    def decode_into(self, data, holder, *, merge):
-        if not merge:
-            holder.Clear()
+    def decode(self, data, holder):
+        if isinstance(data, str):
+            raise TypeError(data)
+        holder.Clear()
         holder.MergeFrom(self.cls.from_dict(json.loads(bytes(data))))
 
 
