@@ -40,7 +40,7 @@ def test_all_that_the_runner_asked(version, backend):
     ask(version, backend, step=1)
 
 
-@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("version", [pytest.param(2, marks=pytest.mark.campaign), 3])
 def test_some_of_what_the_runner_asked(version):
     ask(version, "interpreter", step=30)
 

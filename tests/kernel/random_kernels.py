@@ -242,6 +242,29 @@ PASSED = {
             Return(BEGIN),
         )
     ),
+    "fewer rows emptied than numbered": kernel(
+        (
+            *COUNTED,
+            Fill(Place(1, i64("start_1")), mul(i64("n"), 4)),
+            For("i", i64("n"), (SetField(Place(1, ELEMENT), i64("i")),)),
+            Return(BEGIN),
+        )
+    ),
+    "checks from a place that changes between them": kernel(
+        (
+            ROW_EXISTS,
+            need(BEGIN, 1),
+            Let("n", Convert("i64", Load("u8", BEGIN))),
+            need(add(BEGIN, 1), i64("n")),
+            Var("p", Binary("add", add(BEGIN, 1), i64("n"))),
+            need(i64("p"), 8),
+            SetField(Place(0, ROW), Load("i64", i64("p"))),
+            Assign("p", add(i64("p"), 8)),
+            need(i64("p"), 16),
+            SetField(Place(0, ROW, 8), Load("i64", add(i64("p"), 8))),
+            Return(BEGIN),
+        )
+    ),
     "a check behind a branch that returns": kernel(
         (need(BEGIN, 1), If(compare("gt", END, 99), (Return(BEGIN),)), need(add(BEGIN, 1), 8), Return(BEGIN))
     ),

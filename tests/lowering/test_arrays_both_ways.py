@@ -133,7 +133,7 @@ def test_arrays_whose_elements_become_wider(rules, narrow, wide, values, beyond,
     assert (error.kind, error.path) == ("range", f".v[{len(values)}]")
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_an_element_that_a_field_of_each_message_tells(backend):
     files = {
         "lab/msg/P.msg": "int32 i\nfloat64[] l\n",

@@ -13,7 +13,7 @@ from PIL import Image
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "raw.proto": """syntax = "proto2"; package p;
 message Raw {
@@ -203,7 +203,7 @@ def test_a_warm_start_and_lifetimes(monkeypatch):
     assert bytes(first(message).data) == picture("RGB").tobytes()
 
 
-@pytest.mark.parametrize("backend", ["numba", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "interpreter"])
 def test_without_the_library(monkeypatch, backend):
     monkeypatch.setattr("rosetta_jit.runtime.images.find_spec", lambda _: None)
     files = {

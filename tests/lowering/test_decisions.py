@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "wire.bottle-schema": '"wire" (("encoding" :string) ("count" :int) ("level" :double) ("values" (:list :double)))',
     "holder.proto": """syntax = "proto2"; package h;

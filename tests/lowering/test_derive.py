@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "wire.bottle-schema": """"wire" (("kind" :string) ("count" :int) ("steps" :int64) ("celsius" :double) ("flags" :int) ("yaw" :double)
     ("values" (:list :double)) ("points" (:list (:bottle ("x" :double) ("y" :int)))))""",

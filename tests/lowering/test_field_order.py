@@ -22,7 +22,7 @@ message Mixed {{
 }}
 """
 
-pytestmark = pytest.mark.parametrize("backend", ["llvm", "numba", "python", "interpreter"])
+pytestmark = pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 
 
 def field(number, value):

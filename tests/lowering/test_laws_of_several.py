@@ -310,7 +310,7 @@ CHOSEN = (
 )
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_digits_of_each_element(backend):
     totals = [0, -1, 59, 60, -61, 10**12]
     pairs = [divmod(total, 60) for total in totals]
@@ -335,7 +335,7 @@ def test_digits_of_each_element(backend):
         back.packed({"p": [{"h": 0, "m": -1}]})
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_digits_that_are_chosen(backend):
     both = Both(*CHOSEN, backend)
     assert str(both.laws) == "messages: exact inverse\nholders: exact inverse"
@@ -345,7 +345,7 @@ def test_digits_that_are_chosen(backend):
         both.assert_message({"k": kind, "a": 0, "b": base}, None)
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_a_rejection_that_asks_each_element(backend):
     """In both directions, with the value of the first element that is refused."""
     both = Both(
@@ -367,7 +367,7 @@ reject "{.b[]} is above {.c[]}" when .b[] > .c[]""",
         both.unpacked({"b": [1], "c": [1, 5]})
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_what_is_known_of_elements_is_used_for_others(backend):
     """`.f[]` is known when `.a[]` is packed."""
     wire = '("a" (:list :double)) ("f" (:list :double))'

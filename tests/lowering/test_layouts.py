@@ -12,7 +12,7 @@ from rosetta_jit.pipeline import Build
 from rosetta_jit.request import Request
 from tests.lowering.pairs import pair
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 WIRE = {"w.bottle-schema": '"w" (("k" :int) ("a" (:list :int)))'}
 BLOB = {
     "w.bottle-schema": '"w" (("k" :int) ("a" :blob))',

@@ -14,7 +14,7 @@ FILES = {
 message Holder { optional int32 a = 1; optional double b = 2; optional string c = 3; repeated double d = 4; optional string note = 5; }""",
 }
 HEAD = 'import "wire.bottle-schema"\nimport "holder.proto"\ndata-holder: h.Holder\nwire-schema: wire\n'
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ message One { required int32 x = 1; }
 FIELDS = ("a", "f", "s", "b", "t", "e", "da", "ds", "db", "de", "m", "n", "tree", "o", "om")
 
 
-@pytest.mark.parametrize("backend", ["interpreter", "python", "numba"])
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
 def test_defaults_of_required_fields_are_there(backend):
     """What proto2 requires is there, 0, empty or with the schema's default; what is optional is not."""
     rules = "".join(f"default .{name}\n" for name in FIELDS)
@@ -108,7 +108,7 @@ def test_defaults_of_required_fields_are_there(backend):
     assert read(encode(encode.holder_type.from_dict({"x": 7}))).to_dict() == wanted
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_required_bytes_have_their_default_whatever_they_are(backend):
     files = {
         "w.bottle-schema": '"w" (("x" :int))',

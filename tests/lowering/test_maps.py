@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "w.bottle-schema": '"w" (("options" (:dict :double)) ("inner" (:bottle ("more" (:dict :string)))))',
     "h.proto": """syntax = "proto3";

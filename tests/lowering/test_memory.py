@@ -25,7 +25,7 @@ PACK = FILES["m.mapping"].replace("t/Out\nwire", "t/In\nwire").replace("wire-sch
 TOO_MANY = [2**45, 2**56, 2**62, 2**63 - 1]
 
 
-@pytest.mark.parametrize("backend", ["llvm", "numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 @pytest.mark.parametrize("count", [2**26, *TOO_MANY])
 def test_more_elements_than_there_is_memory_for(count, backend):
     decode = rj.Decoder("m.mapping", schema=FILES, encoding="ros1", backend=backend)

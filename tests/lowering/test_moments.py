@@ -11,7 +11,7 @@ import pytest
 import rosetta_jit as rj
 from tests.lowering.texts import HEAD, SCHEMAS, decoder
 
-BACKENDS = ["numba", "llvm", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 SECOND = 10**9
 LEAST, MOST = -(2**63), 2**63 - 1
 HEADER = 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\nrules:\n'

@@ -9,7 +9,7 @@ import rosetta_jit as rj
 WORDS = ["begin", "end", "row", "position", "message", "for", "when", "list", "names", "of", "len", "to", "rules", "true", "not"]
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_fields_have_any_names(backend):
     wire = " ".join(f'("{name}" :int)' for name in WORDS)
     holder = " ".join(f"required int32 {name} = {number};" for number, name in enumerate(WORDS, 1))

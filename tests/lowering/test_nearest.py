@@ -98,7 +98,7 @@ def test_every_integer_comes_back(wire):
     assert str(programs(wire)[0].mapping.laws.holders) == "exact inverse"
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_backends_agree(backend):
     decode, encode = programs("int8", backend=backend)
     for value in all_of("int8")[::17]:

@@ -8,7 +8,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 CODES = {"int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q"}
 CODES |= {"float32": "f", "float64": "d"}
 OF_PROTO = {"int8": "int32", "uint8": "int32", "int16": "int32", "uint16": "int32", "float32": "float", "float64": "double"}

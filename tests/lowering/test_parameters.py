@@ -10,7 +10,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.cli import main
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 HEAD = 'import "w.bottle-schema"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\n'
 SCHEMAS = {
     "w.bottle-schema": '"w" (("a" :double) ("n" :int) ("xs" (:list :double)) ("names" (:list :string)))',

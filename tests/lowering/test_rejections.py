@@ -119,7 +119,7 @@ def test_mistakes(text, code):
     assert problem.span.source.line_column(problem.span.start)[0] == 6
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_errors_in_loops_name_the_element(backend):
     """With what was wrong first, also where a check does not change from round to round."""
     files = {

@@ -13,7 +13,7 @@ WIRE = '("n" :int64) ("i" :int) ("l" (:list :int64)) ("f" :float32) ("b" :int8)'
 HOLDER = "required int32 n = 1; required int64 i = 2; repeated int32 l = 3; required float f = 4; required int64 b = 5;"
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_integers_of_other_widths(backend):
     both = Both(WIRE, HOLDER, "same names", backend)
     assert str(both.laws) == "messages: exact inverse\nholders: exact inverse"

@@ -9,7 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "llvm", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 SCHEMAS = {
     "lab/msg/Pair.msg": "string key\nstring value\n",
     "lab/msg/Device.msg": "int32 id\nfloat64 level\nPair[] values\n",

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "llvm", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 SEPARATORS = {"one": ",", "two": ", ", "alike": "aa", "wide": "é€"}
 SCHEMAS = {
     "lab/msg/Robot.msg": "string[] names\nstring line\n",

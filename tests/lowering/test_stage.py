@@ -7,7 +7,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "llvm", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 
 PROTO = """syntax = "proto3"; package lab;
 message Point { double x = 1; double y = 2; string name = 3; repeated string tags = 4; }
@@ -117,7 +117,7 @@ SCENES = [
 ]
 
 
-def wire(backend="numba"):
+def wire(backend="llvm"):
     imports = ["lab.proto"]
     return rj.Decoder.of("lab.Scene", schema=FILES, imports=imports), rj.Encoder.of("lab.Scene", schema=FILES, imports=imports)
 
@@ -179,7 +179,7 @@ def test_broken_messages(backend):
     decode, encode = programs(backend)
     message = encode(encode.holder_type.from_dict(SCENES[1]))
     kinds = set()
-    for cut in range(0, len(message), 1 if backend == "numba" else 37):
+    for cut in range(0, len(message), 1 if backend == "llvm" else 37):
         try:
             decode(message[:cut])
         except rj.DecodeError as error:

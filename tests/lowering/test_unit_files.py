@@ -16,7 +16,7 @@ from rosetta_jit.lowering.annotate import annotated
 from rosetta_jit.model.types import Schema, Struct
 
 UREG = pint.UnitRegistry()
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 IMU = {
     "robot.proto": """syntax = "proto3"; package robot; import "rosetta_jit/unit.proto";
 message Gyro { double x = 1 [(rosetta_jit.unit) = "degree/s"]; double y = 2 [(rosetta_jit.unit) = "degree/s"]; double up = 3; }""",

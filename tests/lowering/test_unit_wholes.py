@@ -16,7 +16,7 @@ from rosetta_jit.lowering.typed import EachElement, Rescale
 from rosetta_jit.lowering.unit_changes import inserted
 
 UREG = pint.UnitRegistry()
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 HEAD = 'import "w.bottle-schema"\nimport "h.bottle-schema"\ndata-holder: h\nwire-schema: w\n'
 
 

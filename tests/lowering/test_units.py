@@ -28,7 +28,7 @@ def write(tmp_path, value):
     return encode(encode.holder_type.from_dict({"x": value}))
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 @pytest.mark.parametrize(
     ("source", "target", "value", "expected"),
     [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 SCHEMAS = {
     "w.bottle-schema": '"w" (("s" :string) ("t" :string) ("b" :blob) ("i" :int64) ("j" :int64) ("x" :double) ("f" :float32))',
     "h.proto": """syntax = "proto2";

@@ -20,7 +20,7 @@ from rosetta_jit.explain import operations as table
 from tests.operations.cases import CASES, OPERATIONS, Refused
 
 FOLDER = Path(__file__).parent / "mappings"
-BACKENDS = ["numba", "llvm", "python", "interpreter"]
+BACKENDS = ["numba", "python", "interpreter"]
 MESSAGES = 16
 ONE_WAY = {"generators"}
 """What a mapping generates the other side does not have, so that there is nothing of it to pack."""

@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["interpreter", "python", "llvm", "numba"]
+BACKENDS = ["interpreter", "python", "llvm"]
 PLAIN, LIST = {"cdr": "00010000", "cdr2": "00070000"}, {"cdr": "00030000", "cdr2": "000b0000"}
 EMPTY = {"cdr": LIST["cdr"] + "027f0000", "cdr2": LIST["cdr2"] + "00000000"}
 

@@ -45,7 +45,7 @@ def test_optional_members(data, value):
     assert holder.to_dict().get("there") == value
 
 
-@pytest.mark.parametrize("backend", ["interpreter", "python", "numba"])
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
 def test_long_heads_are_written(backend):
     encode = encoder("Plain", backend)
     for _, data, value in PLAINS[:2]:
@@ -75,7 +75,7 @@ def test_mutable_structs(data, value):
     assert decoder("Loose")(bytes.fromhex(LIST + data + END)).to_dict() == value
 
 
-@pytest.mark.parametrize("backend", ["interpreter", "python", "numba"])
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
 def test_mutable_structs_are_written(backend):
     encode = encoder("Loose", backend)
     for _, data, value in (LOOSE[0], LOOSE[4]):

@@ -25,7 +25,7 @@ def ros2(order):
     return bytes((0, ORDERS[order][2], 0, 0, 1, 0, 0, 0)) + len(units).to_bytes(4, order) + b"".join(units) + bytes(4) + b"\x02"
 
 
-@pytest.mark.parametrize("backend", ["interpreter", "python", "numba"])
+@pytest.mark.parametrize("backend", ["interpreter", "python", "llvm"])
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("lenient", "expected"), [((), specified), (("wstring",), ros2)])
 def test_both_ways(lenient, expected, order, backend):

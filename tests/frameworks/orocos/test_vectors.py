@@ -13,7 +13,7 @@ import rosetta_jit as rj
 
 RECORDED = json.loads((Path(__file__).parents[2] / "vectors" / "orocos" / "rtt-mqueue.json").read_text())
 RECORDS = RECORDED["records"]
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 
 
 @cache

@@ -10,7 +10,7 @@ import pytest
 import rosetta_jit as rj
 from tests.frameworks.protobuf.proto_files import varint
 
-BACKENDS = ["numba", "llvm", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 MANY = 70
 """Fields of a message: more than the calls of a routine that stay in place."""
 

@@ -12,7 +12,7 @@ pytest.importorskip("rosbags")
 from rosbags.typesys import Stores, get_typestore
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FLOAT32, FLOAT64, UINT16 = 7, 8, 4
 
 

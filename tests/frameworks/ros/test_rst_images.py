@@ -15,7 +15,7 @@ pytest.importorskip("rosbags")
 from rosbags.typesys import Stores, get_typestore
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 WIDTH, HEIGHT = 5, 3
 
 
