@@ -94,6 +94,17 @@ def test_nested_messages(what, against_plain):
     against_plain(f"1,000 poses, {what}", body, [m.poses for m in ours], [m.poses for m in others], 4, times=times, each=each)
 
 
+def test_read_beside_a_built_in(effort, compare, record):
+    """The same lookup of an attribute, and the same new float, where C has written the class."""
+    ours, numbers, whose = both("Quaternion")[0], [complex(each, 1.0) for each in range(KEPT)], "`complex.real`"
+    contenders = [
+        contender(effort, OURS, "ours", "a float", "m.w", ours, times=TIMES),
+        contender(effort, whose, "limit", "a float", "m.real", numbers, times=TIMES),
+    ]
+    outcome = compare(CHAPTER, "`.w`, read, against a built-in class", contenders)
+    record("`.w`, read, against a built-in class", outcome.ratio(OURS, whose), None, f"x {whose}", detail(outcome, whose))
+
+
 def test_text(effort, compare, record):
     made = varied.string()
     ours, raw = made.holders(KEPT), [each["data"].encode() for each in made.plain[:KEPT]]

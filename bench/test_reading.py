@@ -10,6 +10,7 @@ import pytest
 
 from bench import varied
 from bench.loops import contender, found, same
+from bench.messages import anew
 from bench.peers import peers_of
 from bench.report import words
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from bench.varied import Varied
 
-CHAPTER, OURS, COLUMNS = "Decoding and reading", "rosetta_jit", "rosetta_jit, columns"
+CHAPTER, OURS, COLUMNS, REPEATED = "Decoding and reading", "rosetta_jit", "rosetta_jit, columns", "one message repeated"
 PACKAGES = ("mcap-ros1-support", "rosbags", "lcm", "protobuf")
 
 STAMP = "h = m.header.stamp; read(h.secs); read(h.nsecs)"
@@ -93,6 +94,11 @@ JOBS = {
     "protobuf, 200 fields, each": Job(varied.many_fields, "; ".join(f"read(m.f{each})" for each in range(varied.FIELDS)), 1, "upb"),
     "protobuf, 1,000 texts, each": Job(varied.many_texts, _each("texts"), 1, "upb"),
 }
+DIFFERENT = {
+    "Imu": lambda: varied.imu(1),
+    "JointState, 32 joints": lambda: varied.joint_state(1),
+    "protobuf, 200 fields": varied.many_fields,
+}
 
 
 @pytest.mark.parametrize("name", JOBS)
@@ -151,3 +157,17 @@ def _gives_a_message(peer):
 def _in_its_words(who, made, body):
     """The body as a peer names its fields: rosbags calls times as ROS 2 does."""
     return body.replace(".secs", ".sec").replace(".nsecs", ".nanosec") if who == "rosbags" and made.subject.encoding == "ros1" else body
+
+
+@pytest.mark.parametrize("name", DIFFERENT)
+def test_different_messages(name, effort, compare, record):
+    """What a decode takes when each message is another one, against one message over and over, each time in another place."""
+    made = DIFFERENT[name]()
+    decode, copies = made.subject.decoder(), [anew(made.messages[0]) for _ in made.messages]
+    contenders = [
+        contender(effort, OURS, "ours", "a holder, used again", "decode(m)", made.messages, decode=decode),
+        contender(effort, REPEATED, "limit", "a holder, used again", "decode(m)", copies, decode=decode),
+    ]
+    outcome = compare(CHAPTER, f"{name}, each message another one", contenders)
+    took = words.time(outcome.took(OURS).median)
+    record(f"{name}, decode, each message another one", outcome.ratio(OURS, REPEATED), None, "x one message repeated", took)
