@@ -51,8 +51,8 @@ def against_plain(effort, compare, record):
             CHAPTER,
             what,
             [
-                contender(effort, OURS, "ours", "", body, ours, times=times, each=each),
-                contender(effort, PLAIN, "limit", "", body, others, times=times, each=each),
+                contender(effort, OURS, "ours", "values made when they are read; stored in lanes", body, ours, times=times, each=each),
+                contender(effort, PLAIN, "limit", "values made before; references stored", body, others, times=times, each=each),
             ],
         )
         record(what, outcome.ratio(OURS, PLAIN), at_most, "x objects with slots", detail(outcome, PLAIN))
@@ -126,7 +126,7 @@ def test_text_set(effort, compare, record):
     ours, texts = made.holders(KEPT), [each["data"] for each in made.plain]
     making, other = ".encode()", texts[KEPT]
     contenders = [
-        contender(effort, OURS, "ours", "", "m.data = text", ours, times=TIMES, text=other),
+        contender(effort, OURS, "ours", "UTF-8 in lanes", "m.data = text", ours, times=TIMES, text=other),
         contender(effort, making, "limit", "bytes", "m.encode()", texts[:KEPT], times=TIMES),
     ]
     outcome = compare(CHAPTER, "a text, set", contenders)

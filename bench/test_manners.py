@@ -76,14 +76,14 @@ def test_serialising(name, effort, compare, record):
     decode, encode = made.subject.decoder(), made.subject.encoder()
     given = {"b": BytesIO(), "encode": encode, "decode": decode, "into": decode.into, "new": decode.new, "made": decode.holder_type}
     messages = made.messages if job.reads else made.holders(KEPT)
-    direct = f"{job.program}, the same"
+    direct, makes = f"{job.program}, the same", "a message" if job.reads else "bytes, anew"
     contenders = [
-        contender(effort, OURS, "ours", "", job.body, messages, x=decode.new(), **given),
-        contender(effort, direct, "limit", "", job.direct, messages, **given),
+        contender(effort, OURS, "ours", makes, job.body, messages, x=decode.new(), **given),
+        contender(effort, direct, "limit", makes, job.direct, messages, **given),
     ]
     for who, class_, its in _peers(made, job):
         assert job.reads or same(found(job.body, its, b=BytesIO()), found(job.body, messages, b=BytesIO()))
-        contenders.append(contender(effort, who, "peer", "", job.body, its, x=class_(), made=class_, b=BytesIO()))
+        contenders.append(contender(effort, who, "peer", makes, job.body, its, x=class_(), made=class_, b=BytesIO()))
     outcome = compare(METHODS, name, contenders)
     record(name, outcome.ratio(OURS, direct), 2, f"x {job.program}", _detail(outcome, direct))
     for who, _, _ in _peers(made, job):
@@ -111,8 +111,8 @@ def test_as_a_dataclass(name, what, effort, compare, record):
     from_dict = made.subject.decoder().holder_type.from_dict
     assert found(mine, values, make=from_dict, **GIVEN) == found(its, other, make=of_plain, **GIVEN)
     contenders = [
-        contender(effort, OURS, "ours", "", mine, values, make=from_dict, **GIVEN),
-        contender(effort, PLAIN, "limit", "", its, other, make=of_plain, **GIVEN),
+        contender(effort, OURS, "ours", "of a holder", mine, values, make=from_dict, **GIVEN),
+        contender(effort, PLAIN, "limit", "of an object", its, other, make=of_plain, **GIVEN),
     ]
     outcome = compare(VALUES, f"{name}, {what}", contenders)
     record(f"{name}, {what}", outcome.ratio(OURS, PLAIN), 2, "x a dataclass", _detail(outcome, PLAIN))
