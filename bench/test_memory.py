@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import rosetta_jit as rj
+from bench import varied
 from bench.figures import Spread
 from bench.messages import joints_mapping, repeated, specialised
 from bench.processes import run
@@ -39,6 +40,17 @@ def test_decoders(tmp_path, record):
 def test_holders(decoder, record):
     message = specialised(24)
     record("memory of 10,000 holders of 24 angles, each", held(lambda: decoder.into(message, decoder.new()), COUNT), None, "KB")
+
+
+def test_a_holder_built_again(record, effort):
+    """Texts that are assigned take the place of others, sooner or later."""
+    made, times = varied.joint_state(1), COUNT // 10 if effort.quick else COUNT
+    holder, encode = made.subject.decoder().new(), made.subject.encoder()
+    for number in range(times):
+        holder.name = made.plain[number % len(made.plain)]["name"]
+        encode(holder)
+    size = sum(buffer.nbytes for buffer in holder.lanes_.buffers) / 1000
+    record("memory of a holder of 32 names, assigned again and again", Spread.of([size]), None, "KB", f"{times:,} times, each encoded")
 
 
 @pytest.mark.parametrize("how", ["compiled", "from the cache"])

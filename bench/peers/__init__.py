@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from bench.peers import betterproto, by_hand, cyclone, lcm_gen, mcap, protobuf, pybag, rosbags
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from bench.peers.base import Peer
     from bench.subjects import Subject
@@ -41,5 +41,9 @@ def installed() -> tuple[str, ...]:
 
 def python_peers(subject: Subject) -> tuple[Peer, ...]:
     """All that read the subject's message in this process; what a person writes by hand comes last."""
-    found = [peer for name in installed() for peer in _PACKAGES[name][1](subject)]
-    return (*found, *by_hand.peers(subject))
+    return (*peers_of(subject, installed()), *by_hand.peers(subject))
+
+
+def peers_of(subject: Subject, packages: Sequence[str]) -> tuple[Peer, ...]:
+    """Those that some packages have, if they are installed."""
+    return tuple(peer for name in installed() if name in packages for peer in _PACKAGES[name][1](subject))

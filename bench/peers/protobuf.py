@@ -15,15 +15,13 @@ from bench.peers.base import Peer
 if TYPE_CHECKING:
     from bench.subjects import Subject
 
-ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = (ROOT / "bench" / "native", ROOT / "idl")
-FILES = ("angles.proto", "rst/vision/Image.proto")
+IDL = Path(__file__).resolve().parents[2] / "idl"
 
 
 def peers(subject: Subject) -> tuple[Peer, ...]:
     if subject.encoding != "protobuf":
         return ()
-    made = _message_class(subject.type)
+    made = message_class(subject)
     from google.protobuf.internal import api_implementation
 
     who = f"protobuf ({api_implementation.Type()})"
@@ -40,16 +38,21 @@ def _array_of(made: Any) -> Any:
     return lambda message: np.array(made.FromString(message).angles)
 
 
-def _message_class(name: str) -> Any:
+def message_class(subject: Subject) -> Any:
+    """The class of a subject's type, from the schema that it brings or the file that has the type's name."""
     from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
-    pool, files = descriptor_pool.DescriptorPool(), descriptor_pb2.FileDescriptorSet()
+    pool, found = descriptor_pool.DescriptorPool(), descriptor_pb2.FileDescriptorSet()
+    schema: dict[str, str] = subject.options.get("schema", {})
+    files = [*schema] or [subject.type.replace(".", "/") + ".proto"]
     with TemporaryDirectory() as folder:
         target = Path(folder) / "set"
+        for name, text in schema.items():
+            (Path(folder) / name).write_text(text, "utf-8")
         # In a process of its own: it brings another libprotobuf than the C++ peer, and a process bears but one.
-        protoc = [sys.executable, "-m", "grpc_tools.protoc", *(f"-I{each}" for each in FOLDERS)]
-        subprocess.run([*protoc, f"--descriptor_set_out={target}", *FILES], check=True)
-        files.ParseFromString(target.read_bytes())
-    for file in files.file:
+        protoc = [sys.executable, "-m", "grpc_tools.protoc", f"-I{folder}", f"-I{IDL}"]
+        subprocess.run([*protoc, f"--descriptor_set_out={target}", *files], check=True)
+        found.ParseFromString(target.read_bytes())
+    for file in found.file:
         pool.Add(file)
-    return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName(subject.type))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.peers.base import Peer
@@ -11,14 +12,19 @@ if TYPE_CHECKING:
 
     from bench.subjects import Subject
 
+TRANSFORMS = Path(__file__).resolve().parents[2] / "idl" / "ros1" / "tf2_msgs" / "TFMessage.msg"
 MAKES = "a dataclass, anew; arrays are numpy views of the message, lists for the rest"
 
 
 def store(encoding: str) -> Typestore:
-    """The types of a ROS, as rosbags knows them."""
-    from rosbags.typesys import Stores, get_typestore
+    """The types of a ROS, as rosbags knows them, and of ROS 1 the one that it does not."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-    return get_typestore(Stores.ROS1_NOETIC if encoding == "ros1" else Stores.ROS2_HUMBLE)
+    if encoding != "ros1":
+        return get_typestore(Stores.ROS2_HUMBLE)
+    found = get_typestore(Stores.ROS1_NOETIC)
+    found.register(get_types_from_msg(TRANSFORMS.read_text("utf-8"), "tf2_msgs/msg/TFMessage"))
+    return found
 
 
 def type_name(subject: Subject) -> str:
