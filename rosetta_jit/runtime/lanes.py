@@ -59,6 +59,9 @@ MOST_AT_ONCE = 1 << 16
 """Bytes that a holder may have from the start because others needed them. It costs little to make room for more than that, compared with
 filling it."""
 
+MOST_UNASKED = 1 << 12
+"""The same of a holder that is not made for a decoder."""
+
 MAX_WASTE = 1 << 16
 """Bytes that a holder may leave unused before it tidies up, at least."""
 
@@ -281,6 +284,19 @@ class Lanes:
         self.words[WASTED] = 0
         self.words[VALID] = CLEAN
 
+    def copied(self) -> Lanes:
+        """Lanes of their own with the same rows. Nothing may be borrowed."""
+        made = Lanes(self.plan, self.array_type)
+        with made:
+            for lane, stride in enumerate(self.plan.strides):
+                used = self.used(lane)
+                if used > made.capacity(lane):
+                    made.grow(lane, used - made.capacity(lane))
+                made.memory[lane][: used * stride] = self.memory[lane][: used * stride]
+                made.words[lane_word(lane, USED)] = used
+            made.words[VALID], made.words[WASTED], made.rows = self.words[VALID], self.words[WASTED], self.rows
+        return made
+
     def adopt(self, other: Lanes) -> None:
         """Take over the rows of other lanes of the same layout, which are not used any more."""
         for lane, buffer in enumerate(other.buffers):
@@ -377,10 +393,11 @@ def born(plan: Plan) -> Plan:
     return replace(plan, begin=bytes(prototype.memory.first).rstrip(b"\0"))
 
 
-def roomier(plan_: Plan, lanes: Lanes) -> Plan:
-    """The plan of one message with the room that others of its layout have come to, as long as that is little."""
+def roomier(plan_: Plan, lanes: Lanes, most: int = MOST_AT_ONCE) -> Plan:
+    """The plan of one message with the room that others of its layout have come to, as long as that is no more than so many bytes."""
     room = [lanes.capacity(lane) for lane in range(len(plan_.strides))]
-    if all(size <= plan_.sizes[lane] for lane, size in enumerate(map(operator.mul, room, plan_.strides))):
+    sizes = tuple(map(operator.mul, room, plan_.strides))
+    if sum(sizes) > most or all(map(operator.le, sizes, plan_.sizes)):
         return plan_
     wanted = plan(plan_.layout, births=plan_.births, room=room)
-    return born(wanted) if wanted.size_bytes <= MOST_AT_ONCE else plan_
+    return born(wanted) if wanted.size_bytes <= most else plan_

@@ -204,6 +204,7 @@ def _make_room(message: Any, lane: int, rows: int) -> None:
     """Make room for so many rows more of a lane, whose words lie at an offset in the state."""
     with message.lanes_ as lanes:
         lanes.grow((lane // 8 - LANES) // LANE_WORDS, rows)
+    message.access_.family.learn_room(lanes)
 
 
 def _lengths(node: Spanned) -> tuple[int, int]:

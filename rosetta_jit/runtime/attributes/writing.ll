@@ -1,7 +1,8 @@
 ; Assignment to fields whose content lies in a lane of its own, by values of exactly the common types: str, bytes, lists of numbers or of texts, arrays.
 ;
 ; New content is written where the old one lies if it is as long, or ends its lane; else behind the lane's last row, and the old rows are wasted
-; (word 15 of the state). Whether there is room is asked first. Where there is none, Python makes it; then all is looked up again.
+; (word 15 of the state): where that is much, the next encode tidies up. Whether there is room is asked first. Where there is none, Python makes it;
+; then all is looked up again.
 
 @PyUnicode_Type = external global i8
 @PyList_Type = external global i8
@@ -10,13 +11,12 @@ declare void @PyErr_Clear()
 declare void @llvm.memmove.p0.p0.i64(ptr, ptr, i64, i1)
 declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
 
-; How many rows a lane lacks so that a span can have so many; -1 if Python must do it, because much is wasted or the span is borrowed.
-define internal i64 @lacking(ptr %state, ptr %lane, ptr %span, i64 %count) {
+; How many rows a lane lacks so that a span can have so many; -1 if Python must do it, because the span is borrowed.
+define internal i64 @lacking(ptr %lane, ptr %span, i64 %count) {
   %start = load i64, ptr %span
   %old = call i64 @word(ptr %span, i64 8)
   %capacity = call i64 @word(ptr %lane, i64 8)
   %used = call i64 @word(ptr %lane, i64 16)
-  %stride = call i64 @word(ptr %lane, i64 24)
   %sound = call i1 @is_sound(i64 %start, i64 %old, i64 %used)
   br i1 %sound, label %compare, label %python
 compare:
@@ -31,17 +31,6 @@ differ:
   %last = add i64 %begin, %count
   %missing = sub i64 %last, %capacity
   %fewer = icmp slt i64 %count, %old
-  %left = sub i64 %old, %count
-  %lost = select i1 %fewer, i64 %left, i64 %old
-  %lost.here = select i1 %here, i64 0, i64 %lost
-  %bytes = mul i64 %lost.here, %stride
-  %wasted = call i64 @word(ptr %state, i64 120)
-  %sum = add i64 %wasted, %bytes
-  %much = icmp ugt i64 %sum, 65536
-  %any = icmp ne i64 %bytes, 0
-  %too.much = and i1 %much, %any
-  br i1 %too.much, label %python, label %judge
-judge:
   %fits = icmp sle i64 %missing, 0
   %easy = or i1 %fits, %fewer
   br i1 %easy, label %enough, label %lack
@@ -86,9 +75,7 @@ elsewhere:
   %left = sub i64 %old, %count
   %lost = select i1 %fewer, i64 %left, i64 %old
   %bytes = mul i64 %lost, %stride
-  %wasted = call i64 @word(ptr %state, i64 120)
-  %sum = add i64 %wasted, %bytes
-  call void @put(ptr %state, i64 120, i64 %sum)
+  call void @waste(ptr %state, ptr %lane, i64 %bytes)
   br i1 %fewer, label %place, label %append
 append:
   %behind = add i64 %used, %count
@@ -101,6 +88,27 @@ place:
   %distance = mul i64 %begin, %stride
   %at = getelementptr i8, ptr %address, i64 %distance
   ret ptr %at
+}
+
+; Note that bytes of a lane are not referred to any more. Where that is more than half of what it holds, encoders must not read it as it is
+; (`kernel.state.UNSETTLED`), so that they put all in order.
+define internal void @waste(ptr %state, ptr %lane, i64 %bytes) {
+  %before = call i64 @word(ptr %state, i64 120)
+  %wasted = add i64 %before, %bytes
+  call void @put(ptr %state, i64 120, i64 %wasted)
+  %capacity = call i64 @word(ptr %lane, i64 8)
+  %stride = call i64 @word(ptr %lane, i64 24)
+  %size = mul i64 %capacity, %stride
+  %half = lshr i64 %size, 1
+  %many = icmp ugt i64 %wasted, 65536
+  %most = icmp ugt i64 %wasted, %half
+  %much = and i1 %many, %most
+  br i1 %much, label %unsettle, label %done
+unsettle:
+  store i64 2, ptr %state
+  br label %done
+done:
+  ret void
 }
 
 ; Let Python make room for so many rows more of a lane.
@@ -218,7 +226,7 @@ look:
   %span = getelementptr i8, ptr %row, i64 %offset
   %state = call ptr @pointer(ptr %self, i64 16)
   %lane = call ptr @lane_of(ptr %self, ptr %place)
-  %missing = call i64 @lacking(ptr %state, ptr %lane, ptr %span, i64 %count)
+  %missing = call i64 @lacking(ptr %lane, ptr %span, i64 %count)
   %fits = icmp eq i64 %missing, 0
   br i1 %fits, label %begin, label %grow, !prof !0
 grow:
@@ -517,11 +525,7 @@ look:
   %behind = add i64 %used, %total
   %text.lack = sub i64 %behind, %capacity
   %text.lacks = icmp sgt i64 %text.lack, 0
-  %wasted = call i64 @word(ptr %state, i64 120)
-  %much = icmp ugt i64 %wasted, 65536
-  br i1 %much, label %python, label %compare
-compare:
-  %missing = call i64 @lacking(ptr %state, ptr %lane, ptr %span, i64 %all)
+  %missing = call i64 @lacking(ptr %lane, ptr %span, i64 %all)
   %known = icmp sge i64 %missing, 0
   br i1 %known, label %enough.rows, label %python
 enough.rows:
@@ -553,6 +557,7 @@ begin:
   %begun = call i1 @begin_writing(ptr %self, ptr %place, ptr %row)
   br i1 %begun, label %resize, label %python
 resize:
+  %within = call i64 @word(ptr %place, i64 160)
   %old = call i64 @word(ptr %span, i64 8)
   %old.start = load i64, ptr %span
   %stride = call i64 @word(ptr %lane, i64 24)
@@ -561,6 +566,7 @@ resize:
   ; rows that stayed keep their old texts' places; the others have none
   %fewer = icmp slt i64 %all, %old
   %common = select i1 %fewer, i64 %all, i64 %old
+  call void @waste_texts(ptr %state, ptr %texts, ptr %old.rows, i64 %stride, i64 %within, i64 %all, i64 %old)
   %kept.bytes = mul i64 %common, %stride
   %moved = icmp ne ptr %target, %old.rows
   %any = icmp sgt i64 %common, 0
@@ -575,7 +581,6 @@ zero:
   %new.at = getelementptr i8, ptr %target, i64 %kept.bytes
   call void @llvm.memset.p0.i64(ptr %new.at, i8 0, i64 %new.bytes, i1 false)
   %items = call ptr @pointer(ptr %list, i64 24)
-  %within = call i64 @word(ptr %place, i64 160)
   br label %head
 head:
   %index = phi i64 [ 0, %zero ], [ %next, %put ]
@@ -611,6 +616,32 @@ done:
   ret i1 true
 python:
   ret i1 false
+}
+
+; Note that the texts of rows from one on to another are not referred to any more.
+define internal void @waste_texts(ptr %state, ptr %texts, ptr %rows, i64 %stride, i64 %within, i64 %from, i64 %to) {
+  br label %head
+head:
+  %row = phi i64 [ %from, %0 ], [ %next, %each ]
+  %sum = phi i64 [ 0, %0 ], [ %added, %each ]
+  %more = icmp slt i64 %row, %to
+  br i1 %more, label %each, label %done
+each:
+  %next = add i64 %row, 1
+  %distance = mul i64 %row, %stride
+  %shift = add i64 %distance, %within
+  %span = getelementptr i8, ptr %rows, i64 %shift
+  %count = call i64 @word(ptr %span, i64 8)
+  %added = add i64 %sum, %count
+  br label %head
+done:
+  %any = icmp sgt i64 %sum, 0
+  br i1 %any, label %note, label %end
+note:
+  call void @waste(ptr %state, ptr %texts, i64 %sum)
+  br label %end
+end:
+  ret void
 }
 
 ; extend_texts(sequence, list) -> bool: whether the texts of a list were appended to a sequence; else Python must do it. METH_FASTCALL.

@@ -41,6 +41,7 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
     old = max(old, 0)
     at_end = start + old == lanes.used(lane)
     if count <= old:
+        _waste_in(lanes, node, start + count, old - count)
         if at_end:
             lanes.give_back(lane, start + count)
         elif count < old:
@@ -55,6 +56,38 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
     if node.births and count > old:
         lanes.bear(node.births, start + old, count - old)
     return start
+
+
+def _waste_in(lanes: Lanes, node: Node, start: int, rows: int) -> None:
+    """Note that what elements hold in other lanes is not referred to any more, when so many of them end."""
+    if not rows:
+        return
+    match node:
+        case Items(element=element):
+            _waste_of(lanes, element, start, rows)
+        case Pairs(record=record) | Child(record=record):
+            _waste_of(lanes, record, start, rows)
+        case _:
+            pass
+
+
+def _waste_of(lanes: Lanes, node: Node, row: int, rows: int) -> None:
+    """The same of what a node of each of these rows holds."""
+    match node:
+        case Scalar():
+            pass
+        case Record():
+            for entry in node.entries.values():
+                if not isinstance(entry.presence, Case) or (rows == 1 and present(lanes, entry.presence, row)):
+                    _waste_of(lanes, entry.node, row, rows)
+        case Text(span, lane) | Blob(span, lane) | Numbers(span, lane) | Items(span, lane) | Pairs(span, lane) | Child(span, lane):
+            words = lanes.row_words(span.lane, row, rows)[:, span.index : span.index + 2]
+            lanes.waste(lane, int(words[:, 1].clip(0).sum()))
+            if not isinstance(node, Text | Blob | Numbers):
+                for start, count in words[words[:, 1] > 0].tolist():
+                    _waste_in(lanes, node, start, count)
+        case _:
+            assert_never(node)
 
 
 def _moved(lanes: Lanes, lane: int, start: int, old: int, count: int) -> int:

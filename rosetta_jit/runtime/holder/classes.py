@@ -115,7 +115,12 @@ class Holder(Message):
         return self.__deepcopy__({})
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        return filled(cast("type[Self]", self.family_.holder)(), raw(self))
+        if isinstance(self, View) or self.lanes_.source[0] is not None:
+            return filled(cast("type[Self]", self.family_.holder)(), raw(self))
+        holder_type = cast("type[Self]", self.family_.holder)
+        holder = holder_type.__new__(holder_type)
+        in_row(holder, self.lanes_.consistent(_copied, self), self.family_.root, 0)
+        return holder
 
     def __reduce__(self) -> tuple[Any, ...]:
         from rosetta_jit.runtime.holder.family import revived
@@ -156,6 +161,11 @@ def settle_lanes(holder: Holder) -> None:
     lanes, _ = place(holder)
     if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
         values.settle(holder.family_.tree.root, lanes)
+
+
+def _copied(holder: Holder) -> Lanes:
+    lanes, _ = place(holder)
+    return lanes.copied()
 
 
 def _plain(holder: Holder) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from rosetta_jit.runtime.holder.classes import Holder, filled
 from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row
 from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
-from rosetta_jit.runtime.lanes import Lanes, born
+from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes, born, roomier
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.plan import plan
 from rosetta_jit.sha import sha256
@@ -153,6 +153,10 @@ class Family:
         if access is None:
             access = self._accesses[id(record)] = Access(record, self)
         return access
+
+    def learn_room(self, lanes: Lanes) -> None:
+        """Give new holders the room that one has come to, unless that is much."""
+        self.plan = roomier(self.plan, lanes, MOST_UNASKED)
 
     @cached_property
     def root(self) -> Access:
