@@ -13,6 +13,7 @@ from __future__ import annotations
 import ctypes
 import operator
 from _thread import allocate_lock
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
@@ -59,7 +60,7 @@ MOST_AT_ONCE = 1 << 16
 """Bytes that a holder may have from the start because others needed them. It costs little to make room for more than that, compared with
 filling it."""
 
-MOST_UNASKED = 1 << 12
+MOST_UNASKED = 1 << 14
 """The same of a holder that is not made for a decoder."""
 
 MAX_WASTE = 1 << 16
@@ -216,22 +217,24 @@ class Lanes:
         MemoryError
             If there is no such memory; the lanes are as before.
         """
-        if lane >= len(self.buffers):
+        lanes = len(self.plan.strides)
+        if lane >= lanes:
             self.hidden = self.hidden or Hidden()
-            self.hidden.grow(lane - len(self.buffers), rows)
+            self.hidden.grow(lane - lanes, rows)
             self.words[HIDDEN], self.words[HIDDEN_COUNT] = self.hidden.address, len(self.hidden.buffers)
             return
         stride = self.plan.strides[lane]
         capacity = self.capacity(lane)
         capacity = max(2 * capacity, capacity + rows)
-        old, size = self.buffers[lane], aligned(capacity * stride, 8)
-        self._place(lane, aligned_bytes(size), capacity)
-        self.buffers[lane][: old.size] = old
+        old, buffer = self.memory[lane], aligned_bytes(aligned(capacity * stride, 8))
+        memoryview(cast("Any", buffer))[: len(old)] = old
+        self._place(lane, buffer, capacity)
 
     def _place(self, lane: int, buffer: NDArray[np.uint8], capacity: int) -> None:
         assert self.words[EPOCH] < 0, "a lane moves inside `with lanes:` alone, where no kernel but one's own runs"
-        self.buffers[lane] = buffer
-        self.memory[lane] = memoryview(cast("Any", buffer))
+        with _ONE_AT_A_TIME, suppress(AttributeError):
+            self.memory[lane] = memoryview(cast("Any", buffer))
+            del self.buffers  # made anew when somebody asks for them
         self.words[lane_word(lane, ADDRESS)] = address_of(buffer)
         self.words[lane_word(lane, CAPACITY)] = capacity
         self.cells, self.arrays = _MADE["cells"](self), _MADE["arrays"](self)

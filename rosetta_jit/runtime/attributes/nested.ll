@@ -192,6 +192,16 @@ message:
   %spare = call i1 @is_spare_view(ptr %kept)
   br i1 %spare, label %move.message, label %drop
 move.message:
+  ; most keep nothing themselves
+  %its.table = call ptr @pointer(ptr %kept, i64 48)
+  %its.children = call ptr @pointer(ptr %its.table, i64 -8)
+  %its.count = load i64, ptr %its.children
+  %is.leaf = icmp eq i64 %its.count, 0
+  br i1 %is.leaf, label %move.leaf, label %move.whole
+move.leaf:
+  call void @point_at(ptr %kept, i64 %index, i64 %row, i64 %epoch)
+  br label %again
+move.whole:
   %moved = call i1 @move(ptr %kept, i64 %index, i64 %row, i64 %epoch)
   br i1 %moved, label %again, label %failed
 sequence:

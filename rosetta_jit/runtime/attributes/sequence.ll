@@ -6,7 +6,7 @@ declare i64 @PyLong_AsSsize_t(ptr)
 declare void @PyObject_Free(ptr)
 
 ; The first row of an array and how many elements it has, -1 where Python must say it.
-define internal { i64, i64 } @elements(ptr %self) noinline {
+define internal { i64, i64 } @elements(ptr %self) alwaysinline {
   %place = call ptr @pointer(ptr %self, i64 16)
   %message = call ptr @pointer(ptr %self, i64 32)
   %has.place = icmp ne ptr %place, null
@@ -79,7 +79,7 @@ python:
 }
 
 ; Element `index` of a sequence, which has so many; `key` is the same as an object, or null.
-define internal ptr @element(ptr %self, ptr %key, i64 %start, i64 %index) {
+define internal ptr @element(ptr %self, ptr %key, i64 %start, i64 %index) alwaysinline {
   %place = call ptr @pointer(ptr %self, i64 16)
   %message = call ptr @pointer(ptr %self, i64 32)
   %row = add i64 %start, %index
@@ -144,7 +144,7 @@ none:
   ret { ptr, i64, i64 } zeroinitializer
 }
 
-define internal ptr @view_of_element(ptr %self, ptr %message, ptr %place, i64 %index, i64 %row) {
+define internal ptr @view_of_element(ptr %self, ptr %message, ptr %place, i64 %index, i64 %row) alwaysinline {
   %state = call ptr @pointer(ptr %message, i64 16)
   %now = call i64 @word(ptr %state, i64 8)
   ; while somebody changes the lanes no row is known for long
