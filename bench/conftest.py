@@ -14,7 +14,7 @@ from bench.report.readme import insert_in_readme
 from bench.turns import Call, Effort, Placed
 
 ROOT = Path(__file__).resolve().parent.parent
-ORDER = ("native_bottle", "native_image", "reorder", "mapped", "peers", "start", "memory", "limits", "curves")
+ORDER = ("native_bottle", "native_image", "reorder", "mapped", "peers", "columns", "start", "memory", "limits", "curves")
 """The modules as they are run and reported: what users ask first comes first."""
 
 FOUND = pytest.StashKey[dict[str, list]]()

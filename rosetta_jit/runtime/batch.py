@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.columns import Ragged, column, presence_mask
+from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.family import family_of
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.holder.record import Record
 from rosetta_jit.runtime.holder.values import write_record
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     import numpy as np
+    import pyarrow as pa
     from numpy.typing import NDArray
 
+    from rosetta_jit.runtime.arrow import Form, Octets
     from rosetta_jit.runtime.holder import Family, Holder, Manners
-    from rosetta_jit.runtime.holder.record import Entry, Node
+    from rosetta_jit.runtime.holder.record import Entry
 
 
 class Batch:
@@ -133,31 +135,74 @@ class Batch:
                 record = entry.node
         return present
 
-    def to_arrow(self) -> Any:
-        """A `pyarrow.Table` of the columns; absent values are null, maps are lists of key and value.
+    def to_arrow(
+        self,
+        columns: Sequence[str] | None = None,
+        *,
+        flatten: bool = False,
+        octets: Octets = "string",
+        copy: bool = True,
+    ) -> pa.Table:
+        """The messages as a `pyarrow.Table`, of exactly the types that docs/columns.md lists.
+
+        Parameters
+        ----------
+        columns
+            The fields to take, with dots those of nested messages; all by default.
+        flatten
+            Whether each field of a nested message is a column of its own, named with dots.
+        octets
+            What becomes of strings that promise nothing about their bytes: text, which they must be then, or bytes.
+        copy
+            Whether the table has all memory of its own. Otherwise arrays of numbers and bytes that lie together in the lanes are shown
+            there: they change with the next decode into the batch.
 
         Raises
         ------
         ImportError
             If pyarrow is not installed.
+        KeyError
+            If there is no such field.
+        TypeError
+            If messages contain each other: leave that field out.
+        EncodeError
+            If a string is no text that UTF-8 can carry.
+        InvalidHolder
+            If the last decode into the batch failed.
         """
-        import pyarrow as pa  # pyright: ignore[reportMissingImports]
+        from rosetta_jit.runtime import arrow
 
-        arrow: Any = pa
-        messages = [message.to_dict() for message in self] if any(map(self._is_composed, self.family_.tree.root.entries)) else []
-        return arrow.table({name: self._arrow(arrow, name, messages) for name in self.family_.tree.root.entries})
+        table = arrow.table(self._record_batch(columns, octets, copies=copy))
+        return arrow.flat(table) if flatten else table
 
-    def _is_composed(self, name: str) -> bool:
-        return not isinstance(self.family_.tree.root.entries[name].node, Scalar | Numbers)
+    def to_pandas(self, columns: Sequence[str] | None = None, *, flatten: bool = False, octets: Octets = "string", **options: Any) -> Any:
+        """The table of `to_arrow` as a `pandas.DataFrame`; ``options`` are those of `pyarrow.Table.to_pandas`."""
+        return self.to_arrow(columns, flatten=flatten, octets=octets).to_pandas(**options)
 
-    def _arrow(self, arrow: Any, name: str, messages: list[dict[str, Any]]) -> Any:
-        if self._is_composed(name):
-            node = self.family_.tree.root.entries[name].node
-            return arrow.array([for_arrow(node, message[name]) if name in message else None for message in messages])
-        values = self.column(name)
-        if isinstance(values, Ragged):
-            return arrow.LargeListArray.from_arrays(values.offsets, arrow.array(values.flat()))
-        return arrow.array(values, mask=~self.mask(name))
+    def _record_batch(self, columns: Sequence[str] | None, octets: Octets, *, copies: bool) -> pa.RecordBatch:
+        from rosetta_jit.runtime.arrow import Form
+
+        form = Form(octets, copies)
+        names = list(self.family_.tree.root.entries) if columns is None else list(columns)
+        return self.lanes.consistent(lambda taken: self._taken(taken, form), names)
+
+    def _taken(self, names: list[str], form: Form) -> pa.RecordBatch:
+        from rosetta_jit.runtime.arrow import record_batch
+
+        self._check()
+        return record_batch(self.family_.tree.root, self.lanes, len(self), names, form)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The table of `to_arrow` for whoever reads Arrow's stream interface: pyarrow, polars, DuckDB, pandas' `from_arrow`."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def __arrow_c_array__(self, requested_schema: object = None) -> tuple[object, object]:
+        """The same as one array of structs: `pyarrow.record_batch(batch)`."""
+        return self._record_batch(None, "string", copies=True).__arrow_c_array__(requested_schema)
+
+    def __array__(self, *_: object, **__: object) -> NDArray[Any]:
+        """Refused: else `numpy.asarray` and pandas' constructor would make one column of objects, a message each."""
+        raise TypeError("a batch is no array: take a column of it, or `to_pandas()`, `to_arrow()`")
 
     def _check(self) -> None:
         if not self.lanes.words[VALID]:
@@ -171,20 +216,3 @@ def _revived(text: str, manners: Manners, messages: list[dict[str, Any]]) -> Bat
         for row, message in enumerate(messages):
             write_record(batch.family_.tree.root, lanes, row, message)
     return batch
-
-
-def for_arrow(node: Node, value: Any) -> Any:
-    """A plain value with its maps as lists of pairs: Arrow's structs have one set of names, and only text for names."""
-    match node:
-        case Pairs(_, _, _, _, of_key):
-            return [{"key": key, "value": for_arrow(of_key.node, each)} for key, each in value.items()]
-        case Items(_, _, element, _):
-            return [for_arrow(element, each) for each in value]
-        case Record():
-            return {name: for_arrow(node.entries[name].node, each) for name, each in value.items()}
-        case Child():
-            return for_arrow(node.record, value)
-        case Scalar() | Text() | Blob() | Numbers():
-            return value
-        case _:
-            assert_never(node)

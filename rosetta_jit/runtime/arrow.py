@@ -1,0 +1,327 @@
+"""Lanes as Arrow arrays: a node and some rows become one array, with numpy, without Python a message.
+
+    Scalar    its own type; an enum a dictionary of its names      Text     large_string
+    Numbers   large_list, or fixed_size_list                       Blob     large_binary, or fixed_size_binary
+    Items     the same of any element                              Pairs    map
+    Record    struct; a field that can be absent is nullable, and so is each case of a union. All else is not.
+
+Offsets have 64 bits, except in maps, for which Arrow has none of that width.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, assert_never, cast
+
+import numpy as np
+
+try:
+    import pyarrow as pa
+except ModuleNotFoundError as error:
+    raise ImportError("tables take pyarrow: pip install 'rosetta-jit[arrow]'") from error
+from pyarrow.types import is_struct
+
+from rosetta_jit.dataclass import dataclass
+from rosetta_jit.errors import EncodeError
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.runtime.arrow_text import NoTextError, text_array
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, offsets, picked, read, spans
+from rosetta_jit.runtime.run import readable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
+    from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.rows import Flags, Indices
+
+    Arrow = pa.Array
+
+Octets = Literal["string", "binary"]
+
+MOST_PAIRS, MOST_COUNTED = (1 << 31) - 1, 1 << 10
+
+NO_TEXT = (
+    "value {number} of the column is no text that UTF-8 can carry, as Arrow's strings must; "
+    '`to_arrow(octets="binary")` gives strings that promise no encoding as bytes'
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """What the arrays are to be like.
+
+    Attributes
+    ----------
+    octets
+        What becomes of strings that promise nothing about their bytes.
+    copies
+        Whether the arrays have memory of their own; otherwise those of numbers and bytes show the lanes, where they lie together there.
+    """
+
+    octets: Octets = "string"
+    copies: bool = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Place:
+    """Rows of the lanes, the form they take, and their path, for errors."""
+
+    lanes: Lanes
+    form: Form
+    rows: Rows
+    path: str = ""
+
+    def at(self, rows: Rows, path: str) -> _Place:
+        return _Place(self.lanes, self.form, rows, path)
+
+
+def record_batch(root: Record, lanes: Lanes, count: int, names: Sequence[str], form: Form) -> pa.RecordBatch:
+    """Some fields of messages; a field of a nested message is named with dots."""
+    rows = Rows.first(count, room)
+    if len(names) == len(root.entries):
+        rows = rows.reading(lanes, root.lane, root.start, root.end)
+    found = [_column(root, _Place(lanes, form, rows), name) for name in names]
+    fields = [pa.field(name, array.type, nullable) for name, (array, nullable) in zip(names, found, strict=True)]
+    return pa.RecordBatch.from_arrays([array for array, _ in found], schema=pa.schema(fields))
+
+
+def table(batch: pa.RecordBatch) -> pa.Table:
+    """A table of one chunk."""
+    return pa.Table.from_batches([batch])
+
+
+def flat(table: pa.Table) -> pa.Table:
+    """A table with each field of its structs, and of those within, as a column of its own."""
+    while any(is_struct(each.type) for each in table.schema):
+        table = table.flatten()
+    return table
+
+
+def room(words: int) -> Indices:
+    """Memory of Arrow's own allocator, which keeps what it has got: memory anew costs more than what is written there."""
+    return np.frombuffer(cast("Any", pa.allocate_buffer(8 * words)), np.int64) if words else np.empty(0, np.int64)
+
+
+def _column(root: Record, place: _Place, name: str) -> tuple[Arrow, bool]:
+    """The array of a field, and whether it can be null."""
+    record, nullable = root, False
+    *around, last = name.split(".")
+    for each in around:
+        entry = record.entries[each]
+        if not isinstance(entry.node, Record):
+            raise KeyError(f"{each} of {name} is no message")
+        place = place.at(place.rows.with_field(entry.presence, place.lanes), f"{place.path}.{each}")
+        record, nullable = entry.node, nullable or entry.presence is not None
+    entry = record.entries[last]
+    nullable = nullable or entry.presence is not None
+    return _entry(entry, place, nullable=nullable), nullable
+
+
+def _entry(entry: Entry, place: _Place, *, nullable: bool) -> Arrow:
+    inner = place.at(place.rows.with_field(entry.presence, place.lanes), f"{place.path}.{entry.name}")
+    return _array(entry.node, inner, _validity(inner.rows) if nullable else None)
+
+
+def _validity(rows: Rows) -> pa.Buffer | None:
+    return None if rows.live is None or rows.live.all() else _bits(rows.live)
+
+
+def _bits(flags: NDArray[Any]) -> pa.Buffer:
+    return pa.py_buffer(np.packbits(flags, bitorder="little"))
+
+
+def _array(node: Node, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    """The array of a node: one element a row."""
+    match node:
+        case Scalar(cell, Enum(_, values) as type_) if values and place.rows.live is not None:
+            numbers = read(place.lanes, cell, scalar_of(type_), place.rows)
+            return _named(type_, np.where(place.rows.live, numbers, np.int32(values[0][1])), validity)
+        case Scalar(cell, type_):
+            return _scalars(type_, read(place.lanes, cell, scalar_of(type_), place.rows), validity)
+        case Text():
+            return _texts(node, place, validity)
+        case Blob():
+            return _blobs(node, place, validity)
+        case Numbers():
+            return _numbers(node, place, validity)
+        case Items():
+            return _items(node, place, validity)
+        case Pairs():
+            return _pairs(node, place, validity)
+        case Record():
+            return _struct(node, place, validity)
+        case Child():
+            raise _recursive(node.record, place)
+        case _:
+            assert_never(node)
+
+
+def _scalars(type_: ScalarType, values: NDArray[Any], validity: pa.Buffer | None) -> Arrow:
+    match type_:
+        case Bool():
+            return pa.Array.from_buffers(pa.bool_(), len(values), [validity, _bits(values)])
+        case Int() | Float():
+            return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), [validity, pa.py_buffer(values)])
+        case Enum():
+            return _named(type_, values, validity)
+        case _:
+            assert_never(type_)
+
+
+def _named(type_: Enum, values: NDArray[np.int32], validity: pa.Buffer | None) -> Arrow:
+    """The numbers of an enum by name. One that has no name, as open enums allow, is written in digits."""
+    names: dict[int, str] = {}
+    for name, number in type_.values:
+        names.setdefault(number, name)
+    numbers, places = _distinct(values)
+    every = [*names, *(number for number in numbers if number not in names)]
+    code_of = {number: code for code, number in enumerate(every)}
+    codes = np.array([code_of[number] for number in numbers], np.int32)[places]
+    indices = pa.Array.from_buffers(pa.int32(), len(codes), [validity, pa.py_buffer(codes)])
+    return pa.DictionaryArray.from_arrays(indices, pa.array([names.get(each, str(each)) for each in every], pa.string()))
+
+
+def _distinct(values: NDArray[np.int32]) -> tuple[list[int], NDArray[Any]]:
+    """The numbers that there are, and which of them each value is. Few small ones need not be sorted."""
+    low, high = (int(values.min()), int(values.max())) if len(values) else (0, 0)
+    if high - low > len(values) + MOST_COUNTED:
+        numbers, places = np.unique(values, return_inverse=True)
+        return numbers.tolist(), places
+    occurs = np.bincount(values - low, minlength=1) > 0
+    numbers = np.flatnonzero(occurs)
+    return (numbers + low).tolist(), (np.cumsum(occurs) - 1)[values - low]
+
+
+def _texts(node: Text, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    starts, counts = spans(place.lanes, node.span, place.rows)
+    data = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=True)
+    if node.type.encoding == "octets" and place.form.octets == "binary":
+        return pa.Array.from_buffers(pa.large_binary(), len(counts), [validity, pa.py_buffer(offsets(counts, room)), pa.py_buffer(data)])
+    try:
+        return text_array(node.type, data, offsets(counts, room), validity)
+    except NoTextError as wrong:
+        raise EncodeError("text", place.path, NO_TEXT.format(number=wrong.number)) from None
+
+
+def _blobs(node: Blob, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    starts, counts = spans(place.lanes, node.span, place.rows)
+    data, counts = _octets(node, place, starts, counts)
+    if node.length is None:
+        buffers = [validity, pa.py_buffer(offsets(counts, room)), pa.py_buffer(data)]
+        return pa.Array.from_buffers(pa.large_binary(), len(counts), buffers)
+    return pa.Array.from_buffers(pa.binary(node.length), len(counts), [validity, pa.py_buffer(_padded(data, counts, node.length))])
+
+
+def _octets(node: Blob, place: _Place, starts: Indices, counts: Indices) -> tuple[NDArray[np.uint8], Indices]:
+    """The bytes of all rows, and how many each has."""
+    own = _values(place.lanes, node.lane)
+    borrowed = counts < 0
+    if not borrowed.any():
+        return _kept(picked(own, starts, counts), copies=place.form.copies), counts
+    lender = place.lanes.source[0]
+    if lender is None:
+        raise ValueError("what was borrowed from is gone")
+    source = readable(lender)
+    counts = np.where(borrowed, ~counts, counts)
+    if borrowed.all():
+        return _kept(picked(source, starts, counts), copies=place.form.copies), counts
+    both = np.concatenate([source, own])
+    return picked(both, np.where(borrowed, starts, starts + len(source)), counts), counts
+
+
+def _kept(values: NDArray[Any], *, copies: bool) -> NDArray[Any]:
+    """Values that are the arrays' own if copies are wanted."""
+    if not copies or values.base is None:
+        return values
+    own = room(-(-values.nbytes // 8)).view(values.dtype)[: values.size]
+    own[:] = values
+    return own
+
+
+def _values(lanes: Lanes, lane: int) -> NDArray[Any]:
+    return lanes.arrays[lane][: lanes.used(lane)].view(np.ndarray)
+
+
+def _padded(data: NDArray[Any], counts: Indices, length: int) -> NDArray[Any]:
+    """Arrays of fixed length one after the other: zeros for those that are not there."""
+    there = counts == length
+    if there.all():
+        return data
+    every = np.zeros((len(counts), length), data.dtype)
+    every[there] = data[np.repeat(there, counts)].reshape(-1, length)
+    return every.reshape(-1)
+
+
+def _numbers(node: Numbers, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    starts, counts = spans(place.lanes, node.span, place.rows)
+    values = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=place.form.copies)
+    if node.length is not None:
+        return _fixed(node.length, _scalars(node.type, _padded(values, counts, node.length), None), len(counts), validity)
+    return _listed(counts, _scalars(node.type, values, None), validity)
+
+
+def _items(node: Items, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    starts, counts = spans(place.lanes, node.span, place.rows)
+    path, used = f"{place.path}[]", place.lanes.used(node.lane)
+    if node.length is not None:
+        within = _array(node.element, place.at(fixed_elements(starts, counts, node.length, used, room), path), None)
+        return _fixed(node.length, within, len(counts), validity)
+    return _listed(counts, _array(node.element, place.at(elements(starts, counts, used, room), path), None), validity)
+
+
+def _listed(counts: Indices, values: Arrow, validity: pa.Buffer | None) -> Arrow:
+    type_ = pa.large_list(pa.field("item", values.type, nullable=False))
+    return pa.Array.from_buffers(type_, len(counts), [validity, pa.py_buffer(offsets(counts, room))], children=[values])
+
+
+def _fixed(length: int, values: Arrow, count: int, validity: pa.Buffer | None) -> Arrow:
+    type_ = pa.list_(pa.field("item", values.type, nullable=False), length)
+    return pa.Array.from_buffers(type_, count, [validity], children=[values])
+
+
+def _pairs(node: Pairs, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    """A map. Of equal keys in one row, the last counts."""
+    starts, counts = spans(place.lanes, node.span, place.rows)
+    inner = place.at(elements(starts, counts, place.lanes.used(node.lane), room), f"{place.path}[]")
+    last = _last_of_equal(_array(node.key, inner, None), counts)
+    if not last.all():
+        kept = offsets(last.astype(np.int64))
+        inner, counts = inner.at(inner.rows.only(last), inner.path), np.diff(kept[offsets(counts)])
+    pair = _struct(node.record, inner, None)
+    if inner.rows.count > MOST_PAIRS:
+        raise EncodeError("count", place.path, f"{inner.rows.count} entries, and Arrow's maps have at most {MOST_PAIRS} in a column")
+    places = offsets(counts).astype(np.int32)
+    type_ = pa.map_(pair.type.field(0).type, pair.type.field(1))
+    return pa.Array.from_buffers(type_, len(counts), [validity, pa.py_buffer(places)], children=[pair])
+
+
+def _last_of_equal(keys: Arrow, counts: Indices) -> Flags:
+    """Which keys come not again in the same row."""
+    codes = np.asarray(keys.dictionary_encode().indices.to_numpy(zero_copy_only=False), np.int64)
+    rows = np.repeat(np.arange(len(counts)), counts)
+    _, behind = np.unique((rows * (len(codes) + 1) + codes)[::-1], return_index=True)
+    last = np.zeros(len(codes), np.bool_)
+    last[len(codes) - 1 - behind] = True
+    return last
+
+
+def _struct(record: Record, place: _Place, validity: pa.Buffer | None) -> Arrow:
+    lane = place.lanes.plan.layout.lanes[record.lane]
+    if lane.links is not None and record.lane:
+        raise _recursive(record, place)
+    nullable = [entry.presence is not None for entry in record.entries.values()]
+    place = place.at(place.rows.reading(place.lanes, record.lane, record.start, record.end), place.path)
+    arrays = [_entry(entry, place, nullable=can_be) for entry, can_be in zip(record.entries.values(), nullable, strict=True)]
+    fields = [pa.field(name, each.type, can_be) for name, each, can_be in zip(record.entries, arrays, nullable, strict=True)]
+    return pa.Array.from_buffers(pa.struct(fields), place.rows.count, [validity], children=arrays)
+
+
+def _recursive(record: Record, place: _Place) -> TypeError:
+    return TypeError(
+        f"`{place.path.lstrip('.')}`: messages of {record.struct} contain each other, for which Arrow has no type; "
+        "name the other columns, `to_arrow(columns=[...])`, and read this one message by message"
+    )
