@@ -26,8 +26,7 @@ from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.runtime.arrow_text import NoTextError, text_array
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, offsets, picked, read, spans
-from rosetta_jit.runtime.run import readable
+from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, spans
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -208,29 +207,12 @@ def _texts(node: Text, place: _Place, validity: pa.Buffer | None) -> Arrow:
 
 
 def _blobs(node: Blob, place: _Place, validity: pa.Buffer | None) -> Arrow:
-    starts, counts = spans(place.lanes, node.span, place.rows)
-    data, counts = _octets(node, place, starts, counts)
+    octets, starts, counts = lent(place.lanes, node.lane, *spans(place.lanes, node.span, place.rows))
+    data = _kept(picked(octets, starts, counts), copies=place.form.copies)
     if node.length is None:
         buffers = [validity, pa.py_buffer(offsets(counts, room)), pa.py_buffer(data)]
         return pa.Array.from_buffers(pa.large_binary(), len(counts), buffers)
     return pa.Array.from_buffers(pa.binary(node.length), len(counts), [validity, pa.py_buffer(_padded(data, counts, node.length))])
-
-
-def _octets(node: Blob, place: _Place, starts: Indices, counts: Indices) -> tuple[NDArray[np.uint8], Indices]:
-    """The bytes of all rows, and how many each has."""
-    own = _values(place.lanes, node.lane)
-    borrowed = counts < 0
-    if not borrowed.any():
-        return _kept(picked(own, starts, counts), copies=place.form.copies), counts
-    lender = place.lanes.source[0]
-    if lender is None:
-        raise ValueError("what was borrowed from is gone")
-    source = readable(lender)
-    counts = np.where(borrowed, ~counts, counts)
-    if borrowed.all():
-        return _kept(picked(source, starts, counts), copies=place.form.copies), counts
-    both = np.concatenate([source, own])
-    return picked(both, np.where(borrowed, starts, starts + len(source)), counts), counts
 
 
 def _kept(values: NDArray[Any], *, copies: bool) -> NDArray[Any]:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.kernel.state import VALID
+from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
+from rosetta_jit.runtime.parts import settled
 from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
 
 if TYPE_CHECKING:
@@ -68,9 +69,17 @@ class EncoderBase(Program):
             The messages, one behind the other.
         offsets : ndarray of int64, shape (n + 1,)
             Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
+
+        Raises
+        ------
+        EncodeError
+            A message has values that the wire cannot carry; its path begins with the number of the message, ``[17]``.
+        InvalidHolder
+            The last decode into the batch failed.
         """
         lanes = self._lanes_of(batch)
         with lanes:
+            self._settle(lanes)
             self._tell(lanes, lanes.rows)
             offsets = np.zeros(lanes.rows + 1, np.int64)
             self._all(lanes, lambda first: self._sizes(lanes, offsets, first))
@@ -78,6 +87,13 @@ class EncoderBase(Program):
                 buffer = np.empty(int(offsets[-1]), np.uint8)
             self._all(lanes, lambda first: self._written(lanes, buffer, offsets, first))
         return buffer, offsets
+
+    def _settle(self, lanes: Lanes) -> None:
+        """Bring the messages of a batch, whose lanes are one's own, into the form that kernels read."""
+        if not lanes.words[VALID]:
+            raise lanes.invalid()
+        if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
+            lanes.adopt(settled(lanes))
 
     def _all(self, lanes: Lanes, step: Callable[[int], int]) -> None:
         """Go on from where a lane was too small, until all are done."""

@@ -16,6 +16,7 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import SPAN_BYTES
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Case
+from rosetta_jit.runtime.run import readable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -181,6 +182,27 @@ def fixed_elements(starts: Indices, counts: Indices, length: int, used: int, roo
     numbers = (starts[:, None] + np.arange(length)).astype(np.int64)
     numbers[~there] = 0
     return Rows(numbers.reshape(-1), numbers.size, np.repeat(there, length), room=room)
+
+
+def lent(lanes: Lanes, lane: int, starts: Indices, counts: Indices) -> tuple[NDArray[Any], Indices, Indices]:
+    """The numbers of a lane with the bytes that are borrowed, and where those of each span are among them.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to borrow from.
+    """
+    own = lanes.arrays[lane][: lanes.used(lane)].view(np.ndarray)
+    borrowed = counts < 0
+    if not borrowed.any():
+        return own, starts, counts
+    lender = lanes.source[0]
+    if lender is None:
+        raise ValueError("what was borrowed from is gone")
+    source, sizes = readable(lender), np.where(borrowed, ~counts, counts)
+    if borrowed.all():
+        return source, starts, sizes
+    return np.concatenate([source, own]), np.where(borrowed, starts, starts + len(source)), sizes
 
 
 def picked(values: NDArray[Any], starts: Indices, counts: Indices) -> NDArray[Any]:
