@@ -29,10 +29,11 @@ from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs
 from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, spans
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags, Indices
@@ -98,6 +99,12 @@ def flat(table: pa.Table) -> pa.Table:
     while any(is_struct(each.type) for each in table.schema):
         table = table.flatten()
     return table
+
+
+def with_errors(table: pa.Table, name: str, errors: Mapping[int, DecodeError], numbers: Iterable[int]) -> pa.Table:
+    """A table with one column more: the errors of messages of such numbers, as text."""
+    texts = [str(errors[number]) if number in errors else None for number in numbers]
+    return table.append_column(name, pa.array(texts, pa.large_string()))
 
 
 def room(words: int) -> Indices:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import ArrayLike, NDArray
 
+    from rosetta_jit.errors import DecodeError
     from rosetta_jit.runtime.arrow import Form, Octets
     from rosetta_jit.runtime.holder import Family, Holder, Manners
     from rosetta_jit.runtime.holder.record import Entry
@@ -36,13 +37,20 @@ class Batch:
     ----------
     lanes : Lanes
         Message i is row i of lane 0.
+    errors : dict of DecodeError
+        Those of the last ``many(…, on_error="skip")`` or ``"mask"`` into the batch, by the number of the message among all that were
+        given. A part of a batch has none.
+    kept : ndarray of int64, shape (n,)
+        Which of the messages that were given each row is.
     """
 
-    __slots__ = ("family_", "lanes")
+    __slots__ = ("errors", "family_", "kept_", "lanes")
 
     def __init__(self, family: Family, lanes: Lanes) -> None:
         self.family_ = family
         self.lanes = lanes
+        self.errors: dict[int, DecodeError] = {}
+        self.kept_: NDArray[np.int64] | None = None
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -62,6 +70,12 @@ class Batch:
         """So many empty messages, in the memory that is there."""
         with self.lanes:
             self.lanes.reset(count)
+            self.errors, self.kept_ = {}, None
+
+    @property
+    def kept(self) -> NDArray[np.int64]:
+        """Which of the messages that were given each row is: ``timestamps[batch.kept]`` are those of the rows."""
+        return np.arange(len(self)) if self.kept_ is None else self.kept_
 
     def __len__(self) -> int:
         return self.lanes.rows
@@ -110,7 +124,7 @@ class Batch:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """By lanes: their bytes, which protocol 5 of pickle hands on without a copy."""
-        return _revived, (self.family_.text, self.family_.manners, contents(self[:].lanes))
+        return _revived, (self.family_.text, self.family_.manners, contents(self[:].lanes), self.errors, self.kept_)
 
     def __getattr__(self, name: str) -> Any:
         if name in self.__slots__:
@@ -154,12 +168,17 @@ class Batch:
         self._check()
         return column(self.family_.tree.root, self.lanes, len(self), name.split("."))
 
-    def mask(self, name: str) -> NDArray[np.bool_]:
-        """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it."""
+    def mask(self, name: str | None = None) -> NDArray[np.bool_]:
+        """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it.
+
+        Without a name, which messages could be decoded: all, unless ``many(…, on_error="mask")`` has left some empty.
+        """
         return self.lanes.consistent(self._mask, name)
 
-    def _mask(self, name: str) -> NDArray[np.bool_]:
+    def _mask(self, name: str | None) -> NDArray[np.bool_]:
         self._check()
+        if name is None:
+            return ~np.isin(self.kept, list(self.errors))
         record: Record = self.family_.tree.root
         present = presence_mask(None, self.lanes, len(self))
         for each in name.split("."):
@@ -176,6 +195,7 @@ class Batch:
         flatten: bool = False,
         octets: Octets = "string",
         copy: bool = True,
+        errors: str | None = None,
     ) -> pa.Table:
         """The messages as a `pyarrow.Table`, of exactly the types that docs/columns.md lists.
 
@@ -190,6 +210,8 @@ class Batch:
         copy
             Whether the table has all memory of its own. Otherwise arrays of numbers and bytes that lie together in the lanes are shown
             there: they change with the next decode into the batch.
+        errors
+            The name of a further column, which says why a message could not be decoded, and is null where it could.
 
         Raises
         ------
@@ -207,11 +229,20 @@ class Batch:
         from rosetta_jit.runtime import arrow
 
         table = arrow.table(self._record_batch(columns, octets, copies=copy))
-        return arrow.flat(table) if flatten else table
+        table = arrow.flat(table) if flatten else table
+        return table if errors is None else arrow.with_errors(table, errors, self.errors, self.kept.tolist())
 
-    def to_pandas(self, columns: Sequence[str] | None = None, *, flatten: bool = False, octets: Octets = "string", **options: Any) -> Any:
+    def to_pandas(
+        self,
+        columns: Sequence[str] | None = None,
+        *,
+        flatten: bool = False,
+        octets: Octets = "string",
+        errors: str | None = None,
+        **options: Any,
+    ) -> Any:
         """The table of `to_arrow` as a `pandas.DataFrame`; ``options`` are those of `pyarrow.Table.to_pandas`."""
-        return self.to_arrow(columns, flatten=flatten, octets=octets).to_pandas(**options)
+        return self.to_arrow(columns, flatten=flatten, octets=octets, errors=errors).to_pandas(**options)
 
     def _record_batch(self, columns: Sequence[str] | None, octets: Octets, *, copies: bool) -> pa.RecordBatch:
         from rosetta_jit.runtime.arrow import Form
@@ -243,7 +274,11 @@ class Batch:
             raise self.lanes.invalid()
 
 
-def _revived(text: str, manners: Manners, found: list[NDArray[np.uint8]]) -> Batch:
+def _revived(
+    text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: dict[int, DecodeError], kept: NDArray[np.int64] | None
+) -> Batch:
     """Unpickle, or copy."""
     family = family_of(text, manners)
-    return Batch(family, revived(family.layout, family.tree.births, family.array_type, found))
+    batch = Batch(family, revived(family.layout, family.tree.births, family.array_type, found))
+    batch.errors, batch.kept_ = errors, kept
+    return batch

@@ -101,10 +101,10 @@ def test_pickles_hand_on_lanes_without_a_copy():
 
 
 def test_lanes_of_another_version():
-    function, (text, manners, found) = Batch.new(flat(), 2).__reduce__()
+    function, (text, manners, found, *rest) = Batch.new(flat(), 2).__reduce__()
     for wrong in (found[:-1], [found[0][:-1], *found[1:]]):
         with pytest.raises(ValueError, match="another version"):
-            function(text, manners, wrong)
+            function(text, manners, wrong, *rest)
 
 
 def test_borrowed_bytes_come_along():
