@@ -153,7 +153,7 @@ def test_pyarrow_is_imported_when_somebody_asks_for_a_table():
     assert not wrong
 
 
-ARROW = ("arrow", "arrow_text")
+ARROW = ("arrow", "arrow_back", "arrow_leaves", "arrow_text")
 
 
 def imports_pyarrow(path):

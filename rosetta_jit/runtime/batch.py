@@ -66,6 +66,33 @@ class Batch:
         family = holder_class.family_
         return cls(family, Lanes(plan(family.layout, count, family.tree.births), family.array_type))
 
+    @classmethod
+    def from_arrow(cls, holder_class: type[Holder], source: Any) -> Batch:
+        """The rows of a table as messages of a type; the inverse of `to_arrow`.
+
+        Parameters
+        ----------
+        source
+            A table, or whatever has Arrow's stream or array interface: frames of pandas and polars, relations of DuckDB. A field
+            without a column is as in a new message.
+
+        Raises
+        ------
+        ImportError
+            If pyarrow is not installed.
+        ValuesError
+            If a column is of no field, or a field cannot take exactly its values. Its path says which, its detail which value.
+        TypeError
+            If the source is no table, or messages contain each other: leave that column out.
+        """
+        from rosetta_jit.runtime import arrow_back
+
+        table = arrow_back.table_of(source)
+        batch = cls.room(holder_class, table.num_rows)
+        with batch.lanes as lanes:
+            arrow_back.write_table(batch.family_.tree.root, lanes, table)
+        return batch
+
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""
         with self.lanes:

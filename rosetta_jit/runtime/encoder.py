@@ -60,8 +60,13 @@ class EncoderBase(Program):
             self._tell(lanes, 0)
             return self._measured(lanes)
 
-    def many(self, batch: Batch) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    def many(self, batch: Any) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
         """Encode all messages of a batch.
+
+        Parameters
+        ----------
+        batch : Batch
+            Or a table or frame with Arrow's interface, as `Batch.from_arrow` takes it.
 
         Returns
         -------
@@ -76,8 +81,10 @@ class EncoderBase(Program):
             A message has values that the wire cannot carry; its path begins with the number of the message, ``[17]``.
         InvalidHolder
             The last decode into the batch failed.
+        ValuesError
+            A column of the table is of no field, or its values are not those that the field can have.
         """
-        lanes = self._lanes_of(batch)
+        lanes = self._lanes_of(self._batch_of(batch))
         with lanes:
             self._settle(lanes)
             self._tell(lanes, lanes.rows)
@@ -87,6 +94,11 @@ class EncoderBase(Program):
                 buffer = np.empty(int(offsets[-1]), np.uint8)
             self._all(lanes, lambda first: self._written(lanes, buffer, offsets, first))
         return buffer, offsets
+
+    def _batch_of(self, source: Any) -> Batch:
+        from rosetta_jit.runtime.batch import Batch
+
+        return source if isinstance(source, Batch) else Batch.from_arrow(self._loaded.holder_type, source)
 
     def _settle(self, lanes: Lanes) -> None:
         """Bring the messages of a batch, whose lanes are one's own, into the form that kernels read."""
