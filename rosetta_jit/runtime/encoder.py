@@ -11,7 +11,6 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
-from rosetta_jit.runtime.parts import settled
 from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
 
 if TYPE_CHECKING:
@@ -105,6 +104,8 @@ class EncoderBase(Program):
         if not lanes.words[VALID]:
             raise lanes.invalid()
         if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
+            from rosetta_jit.runtime.parts import settled
+
             lanes.adopt(settled(lanes))
 
     def _all(self, lanes: Lanes, step: Callable[[int], int]) -> None:
