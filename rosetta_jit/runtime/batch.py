@@ -15,13 +15,14 @@ from rosetta_jit.runtime.parts import contents, joined, revived
 from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     import pyarrow as pa
     from numpy.typing import ArrayLike, NDArray
 
     from rosetta_jit.errors import DecodeError
-    from rosetta_jit.runtime.arrow import Form, Octets
+    from rosetta_jit.runtime.arrow.arrays import Form, Octets
+    from rosetta_jit.runtime.arrow.times import Unit
     from rosetta_jit.runtime.holder import Family, Holder, Manners
     from rosetta_jit.runtime.holder.record import Entry
 
@@ -85,12 +86,12 @@ class Batch:
         TypeError
             If the source is no table, or messages contain each other: leave that column out.
         """
-        from rosetta_jit.runtime import arrow_back
+        from rosetta_jit.runtime.arrow import back
 
-        table = arrow_back.table_of(source)
+        table = back.table_of(source)
         batch = cls.room(holder_class, table.num_rows)
         with batch.lanes as lanes:
-            arrow_back.write_table(batch.family_.tree.root, lanes, table)
+            back.write_table(batch.family_.tree.root, lanes, table)
         return batch
 
     def reset(self, count: int) -> None:
@@ -222,6 +223,7 @@ class Batch:
         flatten: bool = False,
         octets: Octets = "string",
         copy: bool = True,
+        times: Iterable[str] | Mapping[str, Unit] = (),
         errors: str | None = None,
     ) -> pa.Table:
         """The messages as a `pyarrow.Table`, of exactly the types that docs/columns.md lists.
@@ -237,6 +239,9 @@ class Batch:
         copy
             Whether the table has all memory of its own. Otherwise arrays of numbers and bytes that lie together in the lanes are shown
             there: they change with the next decode into the batch.
+        times
+            Fields that are moments, and become timestamps: structs of seconds and a part of one in ns, integers in ns or in the unit
+            that a mapping gives, ``{"utime": "us"}``.
         errors
             The name of a further column, which says why a message could not be decoded, and is null where it could.
 
@@ -247,17 +252,17 @@ class Batch:
         KeyError
             If there is no such field.
         TypeError
-            If messages contain each other: leave that field out.
+            If messages contain each other: leave that field out. If a field that is to be a moment is none.
         EncodeError
-            If a string is no text that UTF-8 can carry.
+            If a string is no text that UTF-8 can carry, or a moment too far for a timestamp.
         InvalidHolder
             If the last decode into the batch failed.
         """
-        from rosetta_jit.runtime import arrow
+        from rosetta_jit.runtime.arrow import arrays, tables
 
-        table = arrow.table(self._record_batch(columns, octets, copies=copy))
-        table = arrow.flat(table) if flatten else table
-        return table if errors is None else arrow.with_errors(table, errors, self.errors, self.kept.tolist())
+        table = tables.table(self._record_batch(columns, arrays.Form(octets, copy, arrays.units_of(times))))
+        table = tables.flat(table) if flatten else table
+        return table if errors is None else tables.with_errors(table, errors, self.errors, self.kept.tolist())
 
     def to_pandas(
         self,
@@ -265,21 +270,19 @@ class Batch:
         *,
         flatten: bool = False,
         octets: Octets = "string",
+        times: Iterable[str] | Mapping[str, Unit] = (),
         errors: str | None = None,
         **options: Any,
     ) -> Any:
         """The table of `to_arrow` as a `pandas.DataFrame`; ``options`` are those of `pyarrow.Table.to_pandas`."""
-        return self.to_arrow(columns, flatten=flatten, octets=octets, errors=errors).to_pandas(**options)
+        return self.to_arrow(columns, flatten=flatten, octets=octets, times=times, errors=errors).to_pandas(**options)
 
-    def _record_batch(self, columns: Sequence[str] | None, octets: Octets, *, copies: bool) -> pa.RecordBatch:
-        from rosetta_jit.runtime.arrow import Form
-
-        form = Form(octets, copies)
+    def _record_batch(self, columns: Sequence[str] | None, form: Form) -> pa.RecordBatch:
         names = list(self.family_.tree.root.entries) if columns is None else list(columns)
         return self.lanes.consistent(lambda taken: self._taken(taken, form), names)
 
     def _taken(self, names: list[str], form: Form) -> pa.RecordBatch:
-        from rosetta_jit.runtime.arrow import record_batch
+        from rosetta_jit.runtime.arrow.tables import record_batch
 
         self._check()
         return record_batch(self.family_.tree.root, self.lanes, len(self), names, form)
@@ -290,7 +293,9 @@ class Batch:
 
     def __arrow_c_array__(self, requested_schema: object = None) -> tuple[object, object]:
         """The same as one array of structs: `pyarrow.record_batch(batch)`."""
-        return self._record_batch(None, "string", copies=True).__arrow_c_array__(requested_schema)
+        from rosetta_jit.runtime.arrow.arrays import Form
+
+        return self._record_batch(None, Form()).__arrow_c_array__(requested_schema)
 
     def __array__(self, *_: object, **__: object) -> NDArray[Any]:
         """Refused: else `numpy.asarray` and pandas' constructor would make one column of objects, a message each."""

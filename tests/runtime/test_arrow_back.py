@@ -10,7 +10,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import ValuesError
-from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Schema, String, Struct, Union
+from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Optional, Ref, Schema, String, Struct, Union
 from rosetta_jit.runtime.batch import Batch
 from rosetta_jit.runtime.holder import holder_class
 
@@ -204,3 +204,62 @@ def test_encoders_take_tables():
         assert offsets.tolist() == [len(message) * number for number in range(6)]
     with pytest.raises(TypeError, match="a batch, or a table or frame"):
         encode.many(message)
+
+
+TIME = Struct("t.Time", (Field("sec", Int(32)), Field("nanosec", Int(32, signed=False))))
+MICROS = Struct("t.Micros", (Field("seconds", Int(64)), Field("usec", Int(32))))
+STAMPED = Struct(
+    "t.Stamped",
+    (
+        Field("stamp", Optional(Ref("t.Time"))),
+        Field("micros", Ref("t.Micros")),
+        Field("utime", Int(64, signed=False)),
+        Field("stamps", Array(Ref("t.Time"))),
+        Field("seconds", Float(64)),
+    ),
+)
+
+
+def stamped():
+    return holder_class(STAMPED, Schema({"t.Time": TIME, "t.Micros": MICROS, "t.Stamped": STAMPED}))
+
+
+def test_times():
+    batch = Batch.new(stamped(), 2)
+    batch[0].stamp.sec, batch[0].stamp.nanosec, batch[0].micros.usec, batch[0].utime = -1, 5, 7, 3_000_001
+    batch[1].stamps = [{"sec": 1}, {"nanosec": 2}]
+    table = batch.to_arrow(times={"stamp": "ns", "micros": "ns", "utime": "us", "stamps": "ns"})
+    assert [str(table[name].type) for name in ("stamp", "micros", "utime", "stamps")] == [
+        "timestamp[ns]",
+        "timestamp[ns]",
+        "timestamp[us]",
+        "large_list<item: timestamp[ns] not null>",
+    ]
+    assert table["stamp"].cast(pa.int64()).to_pylist() == [-999_999_995, None]
+    assert table["micros"].cast(pa.int64()).to_pylist() == [7000, 0]
+    assert table["utime"].cast(pa.int64()).to_pylist() == [3_000_001, 0]
+    assert table["stamps"].chunk(0).flatten().cast(pa.int64()).to_pylist() == [1_000_000_000, 2]
+    assert batch.to_arrow(["utime"], times=["utime"])["utime"].type == pa.timestamp("ns")
+    assert plain(Batch.from_arrow(stamped(), table.drop_columns(["utime"]))) == [{**row, "utime": 0} for row in plain(batch)]
+
+
+def test_what_is_no_time():
+    batch = Batch.new(stamped(), 1)
+    with pytest.raises(TypeError, match="`seconds` is no time"):
+        batch.to_arrow(times=["seconds"])
+    for name in ("nothing", "stamp.nothing", "utime.sec"):
+        with pytest.raises(KeyError):
+            batch.to_arrow(times=[name])
+    batch[0].micros.seconds = 1 << 40
+    batch[0].utime = (1 << 64) - 1
+    for name in ("micros", "utime"):
+        with pytest.raises(rj.EncodeError, match="further from 1970"):
+            batch.to_arrow(times=[name])
+    late = pa.table({"stamp": pa.array([1 << 40], pa.timestamp("s"))})
+    for table, path in ((late, ".stamp"), (pa.table({"micros": pa.array([1], pa.timestamp("ns"))}), ".micros")):
+        with pytest.raises(ValuesError) as caught:
+            Batch.from_arrow(stamped(), table)
+        assert caught.value.path == path
+    early = pa.table({"stamp": pa.array([-(1 << 32)], pa.timestamp("s"))})
+    with pytest.raises(ValuesError, match="out of range"):
+        Batch.from_arrow(stamped(), early)

@@ -18,7 +18,8 @@ from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ValuesError
 from rosetta_jit.model.births import MAX_BORN_BYTES
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.runtime.arrow_leaves import blob_of, listed_of, numbers_of, refused, solid, text_of
+from rosetta_jit.runtime.arrow.leaves import blob_of, listed_of, numbers_of, refused, solid, text_of
+from rosetta_jit.runtime.arrow.times import moment_columns
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import offsets
@@ -161,6 +162,9 @@ def _write(node: Node, array: pa.Array, target: _Target) -> None:
 def _write_struct(record: Record, array: pa.Array, target: _Target) -> None:
     if target.lanes.plan.layout.lanes[record.lane].links is not None:
         raise _recursive(record, target)
+    if types.is_timestamp(array.type):
+        _write_record(record, moment_columns(record, array, target.path), target)
+        return
     if not types.is_struct(array.type):
         raise refused("a struct", array, target.path)
     names = [array.type.field(index).name for index in range(array.type.num_fields)]

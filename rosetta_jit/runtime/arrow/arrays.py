@@ -10,30 +10,28 @@ Offsets have 64 bits, except in maps, for which Arrow has none of that width.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal, assert_never, cast
 
 import numpy as np
-
-try:
-    import pyarrow as pa
-except ModuleNotFoundError as error:
-    raise ImportError("tables take pyarrow: pip install 'rosetta-jit[arrow]'") from error
-from pyarrow.types import is_struct
+import pyarrow as pa
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
-from rosetta_jit.runtime.arrow_text import NoTextError, text_array
+from rosetta_jit.runtime.arrow.texts import NoTextError, text_array
+from rosetta_jit.runtime.arrow.times import time_array
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, spans
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.errors import DecodeError
+    from rosetta_jit.runtime.arrow.times import Unit
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.rows import Flags, Indices
@@ -60,51 +58,35 @@ class Form:
         What becomes of strings that promise nothing about their bytes.
     copies
         Whether the arrays have memory of their own; otherwise those of numbers and bytes show the lanes, where they lie together there.
+    times
+        The units of fields that become timestamps, by their names.
     """
 
     octets: Octets = "string"
     copies: bool = True
+    times: Mapping[str, Unit] = field(default_factory=dict[str, "Unit"])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Place:
-    """Rows of the lanes, the form they take, and their path, for errors."""
+class Place:
+    """Rows of the lanes, the form that they take, and the path to them, for errors."""
 
     lanes: Lanes
     form: Form
     rows: Rows
     path: str = ""
 
-    def at(self, rows: Rows, path: str) -> _Place:
-        return _Place(self.lanes, self.form, rows, path)
+    def at(self, rows: Rows, path: str) -> Place:
+        return Place(self.lanes, self.form, rows, path)
 
 
-def record_batch(root: Record, lanes: Lanes, count: int, names: Sequence[str], form: Form) -> pa.RecordBatch:
-    """Some fields of messages; a field of a nested message is named with dots."""
-    rows = Rows.first(count, room)
-    if len(names) == len(root.entries):
-        rows = rows.reading(lanes, root.lane, root.start, root.end)
-    found = [_column(root, _Place(lanes, form, rows), name) for name in names]
-    fields = [pa.field(name, array.type, nullable) for name, (array, nullable) in zip(names, found, strict=True)]
-    return pa.RecordBatch.from_arrays([array for array, _ in found], schema=pa.schema(fields))
-
-
-def table(batch: pa.RecordBatch) -> pa.Table:
-    """A table of one chunk."""
-    return pa.Table.from_batches([batch])
-
-
-def flat(table: pa.Table) -> pa.Table:
-    """A table with each field of its structs, and of those within, as a column of its own."""
-    while any(is_struct(each.type) for each in table.schema):
-        table = table.flatten()
-    return table
-
-
-def with_errors(table: pa.Table, name: str, errors: Mapping[int, DecodeError], numbers: Iterable[int]) -> pa.Table:
-    """A table with one column more: the errors of messages of such numbers, as text."""
-    texts = [str(errors[number]) if number in errors else None for number in numbers]
-    return table.append_column(name, pa.array(texts, pa.large_string()))
+def units_of(times: Iterable[str] | Mapping[str, Unit]) -> dict[str, Unit]:
+    """The units of fields that become timestamps: ns where none is given."""
+    match times:
+        case Mapping():
+            return dict(cast("Mapping[str, Unit]", times))
+        case _:
+            return dict.fromkeys(times, "ns")
 
 
 def room(words: int) -> Indices:
@@ -112,24 +94,14 @@ def room(words: int) -> Indices:
     return np.frombuffer(cast("Any", pa.allocate_buffer(8 * words)), np.int64) if words else np.empty(0, np.int64)
 
 
-def _column(root: Record, place: _Place, name: str) -> tuple[Arrow, bool]:
-    """The array of a field, and whether it can be null."""
-    record, nullable = root, False
-    *around, last = name.split(".")
-    for each in around:
-        entry = record.entries[each]
-        if not isinstance(entry.node, Record):
-            raise KeyError(f"{each} of {name} is no message")
-        place = place.at(place.rows.with_field(entry.presence, place.lanes), f"{place.path}.{each}")
-        record, nullable = entry.node, nullable or entry.presence is not None
-    entry = record.entries[last]
-    nullable = nullable or entry.presence is not None
-    return _entry(entry, place, nullable=nullable), nullable
-
-
-def _entry(entry: Entry, place: _Place, *, nullable: bool) -> Arrow:
+def entry_array(entry: Entry, place: Place, *, nullable: bool) -> Arrow:
+    """The array of a field of records, which is null where the field, or what is around it, is absent."""
     inner = place.at(place.rows.with_field(entry.presence, place.lanes), f"{place.path}.{entry.name}")
     return _array(entry.node, inner, _validity(inner.rows) if nullable else None)
+
+
+def _name(place: Place) -> str:
+    return place.path.replace("[]", "").lstrip(".")
 
 
 def _validity(rows: Rows) -> pa.Buffer | None:
@@ -140,8 +112,11 @@ def _bits(flags: NDArray[Any]) -> pa.Buffer:
     return pa.py_buffer(np.packbits(flags, bitorder="little"))
 
 
-def _array(node: Node, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _array(node: Node, place: Place, validity: pa.Buffer | None) -> Arrow:
     """The array of a node: one element a row."""
+    unit = place.form.times.get(_name(place)) if place.form.times else None
+    if unit is not None and not isinstance(node, Items):
+        return time_array(node, place.lanes, place.rows, unit, validity, place.path)
     match node:
         case Scalar(cell, Enum(_, values) as type_) if values and place.rows.live is not None:
             numbers = read(place.lanes, cell, scalar_of(type_), place.rows)
@@ -202,7 +177,7 @@ def _distinct(values: NDArray[np.int32]) -> tuple[list[int], NDArray[Any]]:
     return (numbers + low).tolist(), (np.cumsum(occurs) - 1)[values - low]
 
 
-def _texts(node: Text, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _texts(node: Text, place: Place, validity: pa.Buffer | None) -> Arrow:
     starts, counts = spans(place.lanes, node.span, place.rows)
     data = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=True)
     if node.type.encoding == "octets" and place.form.octets == "binary":
@@ -213,7 +188,7 @@ def _texts(node: Text, place: _Place, validity: pa.Buffer | None) -> Arrow:
         raise EncodeError("text", place.path, NO_TEXT.format(number=wrong.number)) from None
 
 
-def _blobs(node: Blob, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _blobs(node: Blob, place: Place, validity: pa.Buffer | None) -> Arrow:
     octets, starts, counts = lent(place.lanes, node.lane, *spans(place.lanes, node.span, place.rows))
     data = _kept(picked(octets, starts, counts), copies=place.form.copies)
     if node.length is None:
@@ -245,7 +220,7 @@ def _padded(data: NDArray[Any], counts: Indices, length: int) -> NDArray[Any]:
     return every.reshape(-1)
 
 
-def _numbers(node: Numbers, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _numbers(node: Numbers, place: Place, validity: pa.Buffer | None) -> Arrow:
     starts, counts = spans(place.lanes, node.span, place.rows)
     values = _kept(picked(_values(place.lanes, node.lane), starts, counts), copies=place.form.copies)
     if node.length is not None:
@@ -253,7 +228,7 @@ def _numbers(node: Numbers, place: _Place, validity: pa.Buffer | None) -> Arrow:
     return _listed(counts, _scalars(node.type, values, None), validity)
 
 
-def _items(node: Items, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _items(node: Items, place: Place, validity: pa.Buffer | None) -> Arrow:
     starts, counts = spans(place.lanes, node.span, place.rows)
     path, used = f"{place.path}[]", place.lanes.used(node.lane)
     if node.length is not None:
@@ -272,7 +247,7 @@ def _fixed(length: int, values: Arrow, count: int, validity: pa.Buffer | None) -
     return pa.Array.from_buffers(type_, count, [validity], children=[values])
 
 
-def _pairs(node: Pairs, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _pairs(node: Pairs, place: Place, validity: pa.Buffer | None) -> Arrow:
     """A map. Of equal keys in one row, the last counts."""
     starts, counts = spans(place.lanes, node.span, place.rows)
     inner = place.at(elements(starts, counts, place.lanes.used(node.lane), room), f"{place.path}[]")
@@ -298,18 +273,18 @@ def _last_of_equal(keys: Arrow, counts: Indices) -> Flags:
     return last
 
 
-def _struct(record: Record, place: _Place, validity: pa.Buffer | None) -> Arrow:
+def _struct(record: Record, place: Place, validity: pa.Buffer | None) -> Arrow:
     lane = place.lanes.plan.layout.lanes[record.lane]
     if lane.links is not None and record.lane:
         raise _recursive(record, place)
     nullable = [entry.presence is not None for entry in record.entries.values()]
     place = place.at(place.rows.reading(place.lanes, record.lane, record.start, record.end), place.path)
-    arrays = [_entry(entry, place, nullable=can_be) for entry, can_be in zip(record.entries.values(), nullable, strict=True)]
+    arrays = [entry_array(entry, place, nullable=can_be) for entry, can_be in zip(record.entries.values(), nullable, strict=True)]
     fields = [pa.field(name, each.type, can_be) for name, each, can_be in zip(record.entries, arrays, nullable, strict=True)]
     return pa.Array.from_buffers(pa.struct(fields), place.rows.count, [validity], children=arrays)
 
 
-def _recursive(record: Record, place: _Place) -> TypeError:
+def _recursive(record: Record, place: Place) -> TypeError:
     return TypeError(
         f"`{place.path.lstrip('.')}`: messages of {record.struct} contain each other, for which Arrow has no type; "
         "name the other columns, `to_arrow(columns=[...])`, and read this one message by message"
