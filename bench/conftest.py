@@ -24,6 +24,7 @@ ORDER = (
     "reading",
     "building",
     "manners",
+    "columns",
     "start",
     "memory",
     "limits",

@@ -16,7 +16,7 @@ Errors of the caller (an object of the wrong type, a read-only output) are Pytho
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -83,6 +83,9 @@ class MessageError(RosettaError, ValueError):
     def describe(self) -> str:
         return _placed(f"{self.kind}: {self.detail}", self.path)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.path, self.detail)
+
 
 class DecodeError(MessageError):
     """Bytes that are not what the schema promises.
@@ -99,6 +102,9 @@ class DecodeError(MessageError):
 
     def describe(self) -> str:
         return _placed(f"{self.kind}: {self.detail}", self.path, f"byte {self.offset}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.path, self.detail, self.offset)
 
 
 class EncodeError(MessageError):
@@ -124,6 +130,9 @@ class ValuesError(RosettaError, ValueError):
         self.path = path
         self.detail = detail
         super().__init__(_placed(detail, path))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.path, self.detail)
 
 
 def _placed(text: str, path: str, *more: str) -> str:

@@ -145,6 +145,26 @@ def test_no_framework_knows_another():
     assert not wrong, "\n".join(wrong)
 
 
+def test_pyarrow_is_imported_when_somebody_asks_for_a_table():
+    """It is an extra, and takes as long to import as numpy: its modules alone name it, and nothing imports those when it is imported."""
+    own = {module for module in modules() if within(module, {"runtime.arrow"})}
+    wrong = [module for module, path in modules().items() if module not in own and imports_pyarrow(path)]
+    wrong += [module for module, path in modules().items() if module not in own and own & set(top_level(path))]
+    assert not wrong
+
+
+def imports_pyarrow(path):
+    """Where that is more than the name of a type."""
+    typing = {id(each) for node in ast.walk(parsed(path)) if is_for_types(node) for each in ast.walk(node)}
+    imports = [node for node in ast.walk(parsed(path)) if isinstance(node, ast.Import | ast.ImportFrom) and id(node) not in typing]
+    names = [node.module or "" if isinstance(node, ast.ImportFrom) else alias.name for node in imports for alias in node.names]
+    return any(name.split(".")[0] == "pyarrow" for name in names)
+
+
+def is_for_types(node):
+    return isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+
+
 def test_nothing_is_imported_in_a_circle():
     """Imports that run when a module is imported; those inside functions and under TYPE_CHECKING may close a circle."""
     graph = {module: {target for target in top_level(path) if target in modules()} - {module} for module, path in modules().items()}

@@ -2,44 +2,56 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
 
 from rosetta_jit.kernel.state import VALID
-from rosetta_jit.runtime.columns import Ragged, column, presence_mask
-from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.columns import column, presence_mask
 from rosetta_jit.runtime.holder.family import family_of
-from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.holder.values import write_record
+from rosetta_jit.runtime.holder.record import Record
 from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.parts import contents, joined, revived
 from rosetta_jit.runtime.plan import plan
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    import numpy as np
-    from numpy.typing import NDArray
+    import pyarrow as pa
+    from numpy.typing import ArrayLike, NDArray
 
+    from rosetta_jit.errors import DecodeError
+    from rosetta_jit.runtime.arrow.arrays import Form, Octets
+    from rosetta_jit.runtime.arrow.times import Unit
     from rosetta_jit.runtime.holder import Family, Holder, Manners
-    from rosetta_jit.runtime.holder.record import Entry, Node
+    from rosetta_jit.runtime.holder.record import Entry
 
 
 class Batch:
     """``n`` messages.
 
     ``batch[i]`` is a view of one, with the manners of its holder; ``batch.angles`` is a column (``batch.column("angles")`` where the
-    name is taken). Both show the lanes as they are: they do not outlive the next decode into the batch.
+    name is taken). Both show the lanes as they are: they do not outlive the next decode into the batch. ``batch[5:10]``,
+    ``batch[mask]`` and ``batch[[7, 3]]`` are batches of their own.
 
     Attributes
     ----------
     lanes : Lanes
         Message i is row i of lane 0.
+    errors : dict of DecodeError
+        Those of the last ``many(…, on_error="skip")`` or ``"mask"`` into the batch, by the number of the message among all that were
+        given. A part of a batch has none.
+    kept : ndarray of int64, shape (n,)
+        Which of the messages that were given each row is.
     """
 
-    __slots__ = ("family_", "lanes")
+    __slots__ = ("errors", "family_", "kept_", "lanes")
 
     def __init__(self, family: Family, lanes: Lanes) -> None:
         self.family_ = family
         self.lanes = lanes
+        self.errors: dict[int, DecodeError] = {}
+        self.kept_: NDArray[np.int64] | None = None
 
     @classmethod
     def new(cls, holder_class: type[Holder], count: int) -> Batch:
@@ -55,26 +67,92 @@ class Batch:
         family = holder_class.family_
         return cls(family, Lanes(plan(family.layout, count, family.tree.births), family.array_type))
 
+    @classmethod
+    def from_arrow(cls, holder_class: type[Holder], source: Any) -> Batch:
+        """The rows of a table as messages of a type; the inverse of `to_arrow`.
+
+        Parameters
+        ----------
+        source
+            A table, or whatever has Arrow's stream or array interface: frames of pandas and polars, relations of DuckDB. A field
+            without a column is as in a new message.
+
+        Raises
+        ------
+        ImportError
+            If pyarrow is not installed.
+        ValuesError
+            If a column is of no field, or a field cannot take exactly its values. Its path says which, its detail which value.
+        TypeError
+            If the source is no table, or messages contain each other: leave that column out.
+        """
+        from rosetta_jit.runtime.arrow import back
+
+        table = back.table_of(source)
+        batch = cls.room(holder_class, table.num_rows)
+        with batch.lanes as lanes:
+            back.write_table(batch.family_.tree.root, lanes, table)
+        return batch
+
     def reset(self, count: int) -> None:
         """So many empty messages, in the memory that is there."""
         with self.lanes:
             self.lanes.reset(count)
+            self.errors, self.kept_ = {}, None
+
+    @property
+    def kept(self) -> NDArray[np.int64]:
+        """Which of the messages that were given each row is: ``timestamps[batch.kept]`` are those of the rows."""
+        return np.arange(len(self)) if self.kept_ is None else self.kept_
 
     def __len__(self) -> int:
         return self.lanes.rows
 
-    def __getitem__(self, index: int) -> Any:
+    @overload
+    def __getitem__(self, index: int | np.integer[Any]) -> Any: ...
+    @overload
+    def __getitem__(self, index: slice | ArrayLike) -> Batch: ...
+    def __getitem__(self, index: int | np.integer[Any] | slice | ArrayLike) -> Any:
+        """A view of one message; or a new batch with copies of those that a slice, a mask or an array of numbers chooses."""
+        match index:
+            case int() | np.integer():
+                return self._row(int(index))
+            case _:
+                return Batch(self.family_, joined([(self.lanes, index)]))
+
+    def _row(self, index: int) -> Any:
         try:
             row = range(len(self))[index]
         except IndexError:
             raise IndexError(f"message {index} of {len(self)}") from None
         return self.family_.row(self.lanes, row)
 
+    @classmethod
+    def concatenate(cls, batches: Iterable[Batch]) -> Batch:
+        """The messages of some batches of one type, one batch behind the other.
+
+        Raises
+        ------
+        ValueError
+            If there is no batch.
+        TypeError
+            If they are of different types.
+        """
+        parts = list(batches)
+        if not parts:
+            raise ValueError("there is no batch, whose type would be that of the whole")
+        family = parts[0].family_
+        if any(each.family_ is not family for each in parts):
+            names = ", ".join(sorted({each.family_.struct.name for each in parts}))
+            raise TypeError(f"batches of one type are needed, not of {names}")
+        return cls(family, joined([(each.lanes, slice(None)) for each in parts]))
+
     def __iter__(self) -> Iterator[Any]:
         return (self.family_.row(self.lanes, row) for row in range(len(self)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _revived, (self.family_.text, self.family_.manners, [raw(message) for message in self])
+        """By lanes: their bytes, which protocol 5 of pickle hands on without a copy."""
+        return _revived, (self.family_.text, self.family_.manners, contents(self[:].lanes), self.errors, self.kept_)
 
     def __getattr__(self, name: str) -> Any:
         if name in self.__slots__:
@@ -118,12 +196,17 @@ class Batch:
         self._check()
         return column(self.family_.tree.root, self.lanes, len(self), name.split("."))
 
-    def mask(self, name: str) -> NDArray[np.bool_]:
-        """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it."""
+    def mask(self, name: str | None = None) -> NDArray[np.bool_]:
+        """Which messages have a field, shape (n,): all, where it cannot be absent. A nested field needs those around it.
+
+        Without a name, which messages could be decoded: all, unless ``many(…, on_error="mask")`` has left some empty.
+        """
         return self.lanes.consistent(self._mask, name)
 
-    def _mask(self, name: str) -> NDArray[np.bool_]:
+    def _mask(self, name: str | None) -> NDArray[np.bool_]:
         self._check()
+        if name is None:
+            return ~np.isin(self.kept, list(self.errors))
         record: Record = self.family_.tree.root
         present = presence_mask(None, self.lanes, len(self))
         for each in name.split("."):
@@ -133,58 +216,101 @@ class Batch:
                 record = entry.node
         return present
 
-    def to_arrow(self) -> Any:
-        """A `pyarrow.Table` of the columns; absent values are null, maps are lists of key and value.
+    def to_arrow(
+        self,
+        columns: Sequence[str] | None = None,
+        *,
+        flatten: bool = False,
+        octets: Octets = "string",
+        copy: bool = True,
+        times: Iterable[str] | Mapping[str, Unit] = (),
+        errors: str | None = None,
+    ) -> pa.Table:
+        """The messages as a `pyarrow.Table`, of exactly the types that docs/columns.md lists.
+
+        Parameters
+        ----------
+        columns
+            The fields to take, with dots those of nested messages; all by default.
+        flatten
+            Whether each field of a nested message is a column of its own, named with dots.
+        octets
+            What becomes of strings that promise nothing about their bytes: text, which they must be then, or bytes.
+        copy
+            Whether the table has all memory of its own. Otherwise arrays of numbers and bytes that lie together in the lanes are shown
+            there: they change with the next decode into the batch.
+        times
+            Fields that are moments, and become timestamps: structs of seconds and a part of one in ns, integers in ns or in the unit
+            that a mapping gives, ``{"utime": "us"}``.
+        errors
+            The name of a further column, which says why a message could not be decoded, and is null where it could.
 
         Raises
         ------
         ImportError
             If pyarrow is not installed.
+        KeyError
+            If there is no such field.
+        TypeError
+            If messages contain each other: leave that field out. If a field that is to be a moment is none.
+        EncodeError
+            If a string is no text that UTF-8 can carry, or a moment too far for a timestamp.
+        InvalidHolder
+            If the last decode into the batch failed.
         """
-        import pyarrow as pa  # pyright: ignore[reportMissingImports]
+        from rosetta_jit.runtime.arrow import arrays, tables
 
-        arrow: Any = pa
-        messages = [message.to_dict() for message in self] if any(map(self._is_composed, self.family_.tree.root.entries)) else []
-        return arrow.table({name: self._arrow(arrow, name, messages) for name in self.family_.tree.root.entries})
+        table = tables.table(self._record_batch(columns, arrays.Form(octets, copy, arrays.units_of(times))))
+        table = tables.flat(table) if flatten else table
+        return table if errors is None else tables.with_errors(table, errors, self.errors, self.kept.tolist())
 
-    def _is_composed(self, name: str) -> bool:
-        return not isinstance(self.family_.tree.root.entries[name].node, Scalar | Numbers)
+    def to_pandas(
+        self,
+        columns: Sequence[str] | None = None,
+        *,
+        flatten: bool = False,
+        octets: Octets = "string",
+        times: Iterable[str] | Mapping[str, Unit] = (),
+        errors: str | None = None,
+        **options: Any,
+    ) -> Any:
+        """The table of `to_arrow` as a `pandas.DataFrame`; ``options`` are those of `pyarrow.Table.to_pandas`."""
+        return self.to_arrow(columns, flatten=flatten, octets=octets, times=times, errors=errors).to_pandas(**options)
 
-    def _arrow(self, arrow: Any, name: str, messages: list[dict[str, Any]]) -> Any:
-        if self._is_composed(name):
-            node = self.family_.tree.root.entries[name].node
-            return arrow.array([for_arrow(node, message[name]) if name in message else None for message in messages])
-        values = self.column(name)
-        if isinstance(values, Ragged):
-            return arrow.LargeListArray.from_arrays(values.offsets, arrow.array(values.flat()))
-        return arrow.array(values, mask=~self.mask(name))
+    def _record_batch(self, columns: Sequence[str] | None, form: Form) -> pa.RecordBatch:
+        names = list(self.family_.tree.root.entries) if columns is None else list(columns)
+        return self.lanes.consistent(lambda taken: self._taken(taken, form), names)
+
+    def _taken(self, names: list[str], form: Form) -> pa.RecordBatch:
+        from rosetta_jit.runtime.arrow.tables import record_batch
+
+        self._check()
+        return record_batch(self.family_.tree.root, self.lanes, len(self), names, form)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The table of `to_arrow` for whoever reads Arrow's stream interface: pyarrow, polars, DuckDB, pandas' `from_arrow`."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def __arrow_c_array__(self, requested_schema: object = None) -> tuple[object, object]:
+        """The same as one array of structs: `pyarrow.record_batch(batch)`."""
+        from rosetta_jit.runtime.arrow.arrays import Form
+
+        return self._record_batch(None, Form()).__arrow_c_array__(requested_schema)
+
+    def __array__(self, *_: object, **__: object) -> NDArray[Any]:
+        """Refused: else `numpy.asarray` and pandas' constructor would make one column of objects, a message each."""
+        raise TypeError("a batch is no array: take a column of it, or `to_pandas()`, `to_arrow()`")
 
     def _check(self) -> None:
         if not self.lanes.words[VALID]:
             raise self.lanes.invalid()
 
 
-def _revived(text: str, manners: Manners, messages: list[dict[str, Any]]) -> Batch:
+def _revived(
+    text: str, manners: Manners, found: list[NDArray[np.uint8]], errors: dict[int, DecodeError], kept: NDArray[np.int64] | None
+) -> Batch:
     """Unpickle, or copy."""
-    batch = Batch.new(family_of(text, manners).holder, len(messages))
-    with batch.lanes as lanes:
-        for row, message in enumerate(messages):
-            write_record(batch.family_.tree.root, lanes, row, message)
+    family = family_of(text, manners)
+    batch = Batch(family, revived(family.layout, family.tree.births, family.array_type, found))
+    batch.errors, batch.kept_ = errors, kept
     return batch
-
-
-def for_arrow(node: Node, value: Any) -> Any:
-    """A plain value with its maps as lists of pairs: Arrow's structs have one set of names, and only text for names."""
-    match node:
-        case Pairs(_, _, _, _, of_key):
-            return [{"key": key, "value": for_arrow(of_key.node, each)} for key, each in value.items()]
-        case Items(_, _, element, _):
-            return [for_arrow(element, each) for each in value]
-        case Record():
-            return {name: for_arrow(node.entries[name].node, each) for name, each in value.items()}
-        case Child():
-            return for_arrow(node.record, value)
-        case Scalar() | Text() | Blob() | Numbers():
-            return value
-        case _:
-            assert_never(node)

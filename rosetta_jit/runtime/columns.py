@@ -14,11 +14,14 @@ from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import String
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder import coerce
+from rosetta_jit.runtime.holder.message import place
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.rows import elements
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from rosetta_jit.runtime.holder.message import Message
     from rosetta_jit.runtime.holder.record import Node, Presence
     from rosetta_jit.runtime.lanes import Lanes
 
@@ -100,7 +103,7 @@ class Ragged:
         return self.source[start : start + ~count] if count < 0 and self.source is not None else self.values[start : start + count]
 
     def to_numpy(self) -> NDArray[Any]:
-        """The elements as a matrix, one row a message; not copied if they already lie so.
+        """The elements as an array, one row a message, and one dimension more for each array within; not copied if they already lie so.
 
         Raises
         ------
@@ -110,7 +113,22 @@ class Ragged:
         if len(self) and (self.counts != self.counts[0]).any():
             raise ValueError("rows of different lengths are no matrix; use `values`, `starts` and `counts`, or `to_list`")
         width = self.offsets[1] if len(self) else 0
+        if isinstance(self.values, Ragged):
+            inner = self._inner(self.values).to_numpy()
+            return inner.reshape(len(self), int(width), *inner.shape[1:])
         return self.flat().reshape(len(self), int(width))
+
+    def _inner(self, values: Ragged) -> Ragged:
+        """The arrays within the rows, one after the other."""
+        at = elements(self.starts, self.counts, len(values)).at
+        return Ragged(values.values, values.starts[at], values.counts[at], values.kind, values.source)
+
+    def __dlpack__(self, **options: Any) -> Any:
+        """`to_numpy` for whoever reads DLPack: ``torch.from_dlpack(batch.angles)``. Columns of numbers are numpy's, and have this."""
+        return self.to_numpy().__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return 1, 0  # the processor's memory
 
     def to_list(self) -> list[Any]:
         """Python's own values, row by row."""
@@ -186,6 +204,21 @@ def column(node: Node, lanes: Lanes, rows: int, path: list[str]) -> Any:
             raise TypeError(f"messages of {node.record.struct} contain each other: read them one by one")
         case _:
             assert_never(node)
+
+
+def column_of(message: Message, path: str) -> Any:
+    """The column of an array of structs, or whatever else a path names, of one message."""
+    lanes, row = place(message)
+    first, *rest = path.split(".")
+    return _at(column(message.access_.record.entries[first].node, lanes, row + 1, rest), row)
+
+
+def _at(found: Any, row: int) -> Any:
+    match found:
+        case dict():
+            return {name: _at(each, row) for name, each in found.items()}  # pyright: ignore[reportUnknownVariableType]
+        case _:
+            return found[row]
 
 
 def presence_mask(presence: Presence | None, lanes: Lanes, rows: int) -> NDArray[np.bool_]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from threading import get_ident, local
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
 
@@ -15,12 +15,16 @@ from rosetta_jit.runtime.lanes import roomier
 from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
+
+OnError = Literal["raise", "skip", "mask"]
 
 
 class DecoderBase(Program):
@@ -50,17 +54,31 @@ class DecoderBase(Program):
         """
         return self(message, holder)
 
-    def many(self, buffer: Buffer, offsets: NDArray[np.int64], *, into: Batch | None = None) -> Batch:
-        """Decode many messages that lie in one buffer, without the interpreter lock.
+    @overload
+    def many(self, messages: Buffer, offsets: NDArray[np.int64], *, into: Batch | None = None, on_error: OnError = "raise") -> Batch: ...
+    @overload
+    def many(self, messages: Iterable[Buffer], *, into: Batch | None = None, on_error: OnError = "raise") -> Batch: ...
+    def many(
+        self,
+        messages: Buffer | Iterable[Buffer],
+        offsets: NDArray[np.int64] | None = None,
+        *,
+        into: Batch | None = None,
+        on_error: OnError = "raise",
+    ) -> Batch:
+        """Decode many messages, without the interpreter lock.
 
         Parameters
         ----------
-        buffer
-            Any bytes-like object.
+        messages
+            A bytes-like object in which they lie, with ``offsets``; or one such object for each, which costs a copy.
         offsets : ndarray of int64, shape (n + 1,)
             Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
         into
             A batch to fill again, so that no memory is taken; a new one by default.
+        on_error
+            What becomes of a message that is not what the schema promises: the whole call raises its error, or the batch has no such
+            row (``"skip"``), or an empty message there (``"mask"``). `Batch.errors` has the errors then.
 
         Raises
         ------
@@ -71,13 +89,19 @@ class DecoderBase(Program):
         InUse
             Another thread is filling, changing or encoding the batch.
         """
-        source, places = _source(buffer), _offsets(offsets)
+        if on_error not in ("raise", "skip", "mask"):
+            raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
+        source, places = laid_out(cast("Any", messages), offsets)
         data = run.readable(source)
         batch = self._batch(len(places) - 1) if into is None else into
         lanes = self._lanes_of(batch)
         before = lanes.source[0]
         with lanes:
-            self._fill(lanes, data, places)
+            batch.errors, batch.kept_ = {}, None
+            self._fill(lanes, data, places, None if on_error == "raise" else batch.errors)
+            if on_error == "skip" and batch.errors:
+                batch.kept_ = _leave_out(lanes, list(batch.errors))
+            lanes.words[VALID] = CLEAN
             lanes.source[0] = source if self._loaded.borrow else None
         del before  # outside: what ends with it may run any code
         return batch
@@ -87,21 +111,35 @@ class DecoderBase(Program):
 
         return Batch.room(self._loaded.holder_type, max(count, 1))
 
-    def _fill(self, lanes: Lanes, data: NDArray[np.uint8], places: NDArray[np.int64]) -> None:
-        """Decode all messages, making room on the way."""
+    def _fill(self, lanes: Lanes, data: NDArray[np.uint8], places: NDArray[np.int64], errors: dict[int, DecodeError] | None) -> None:
+        """Decode all messages, making room on the way. Where errors are collected, messages that have one are left empty."""
         count = len(places) - 1
         _make_rows(lanes, count)
         self._tell(lanes, count)
         done = self._many(data, places, 0, lanes)
         while done < count:
-            result = run.result_of(lanes)
-            if result != run.GROW:
-                raise self._many_error(result, data, places, done, lanes)
+            error = self._unstuck(lanes, data, places, done)
+            if isinstance(error, DecodeError) and errors is not None:
+                errors[done] = error
+                lanes.row_words(0, done, 1)[:] = 0
+                lanes.bear(lanes.plan.births, done, 1)
+                done += 1
+            elif error is not None:
+                raise error
+            done = self._many(data, places, done, lanes)
+
+    def _unstuck(self, lanes: Lanes, data: NDArray[np.uint8], places: NDArray[np.int64], done: int) -> Exception | None:
+        """Make the room that was missing, if it was that; otherwise what is wrong with the message."""
+        result = run.result_of(lanes)
+        if result != run.GROW:
+            return self._many_error(result, data, places, done, lanes)
+        try:
             with run.decoding():
                 self._limit(lanes, places, done)
-                _grow_for_all(lanes, done, count)
-            done = self._many(data, places, done, lanes)
-        lanes.words[VALID] = CLEAN
+                _grow_for_all(lanes, done, len(places) - 1)
+        except DecodeError as error:
+            return error
+        return None
 
     def _limit(self, lanes: Lanes, offsets: NDArray[np.int64], done: int) -> None:
         """As `run.limit`, of the message behind those that the lanes hold."""
@@ -165,9 +203,30 @@ class DecoderBase(Program):
         return holders.own
 
 
+def laid_out(messages: Any, offsets: NDArray[np.int64] | None) -> tuple[bytes | memoryview, NDArray[np.int64]]:
+    """Messages in one buffer, and where each begins and the last ends."""
+    if offsets is not None:
+        return _source(messages), _offsets(offsets)
+    try:
+        memoryview(messages)
+    except TypeError:
+        pieces = list(messages)
+    else:
+        raise TypeError("messages in one buffer take offsets, which say where each begins; without them, give a list of messages")
+    sizes = [len(each) if type(each) is bytes else memoryview(each).nbytes for each in pieces]
+    return b"".join(pieces), np.cumsum([0, *sizes], dtype=np.int64)
+
+
 def _source(message: Any) -> bytes | memoryview:
     """What has the bytes of a message: asked once, because an object need not give out the same memory twice."""
     return message if isinstance(message, bytes) else memoryview(message)
+
+
+def _offsets(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+    places = np.ascontiguousarray(offsets)
+    if places.dtype != np.int64 or places.ndim != 1 or not places.size:
+        raise ValueError("offsets are an int64 array of one dimension, one longer than there are messages")
+    return places
 
 
 def _make_rows(lanes: Lanes, count: int) -> None:
@@ -191,8 +250,10 @@ def _grow_for_all(lanes: Lanes, done: int, count: int) -> None:
     lanes.grow(lane, max(rows, (used * count) // (done + 1) + rows - lanes.words[lane_word(lane, CAPACITY)]))
 
 
-def _offsets(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
-    places = np.ascontiguousarray(offsets)
-    if places.dtype != np.int64 or places.ndim != 1 or not places.size:
-        raise ValueError("offsets are an int64 array of one dimension, one longer than there are messages")
-    return places
+def _leave_out(lanes: Lanes, numbers: list[int]) -> NDArray[np.int64]:
+    """Do without some rows of lane 0, which refer to nothing; the numbers of the others."""
+    kept = np.delete(np.arange(lanes.rows), numbers)
+    words = lanes.row_words(0, 0, lanes.rows)
+    words[: len(kept)] = words[kept]
+    lanes.words[lane_word(0, USED)] = lanes.rows = len(kept)
+    return kept

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.kernel.state import VALID
+from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
@@ -59,8 +59,13 @@ class EncoderBase(Program):
             self._tell(lanes, 0)
             return self._measured(lanes)
 
-    def many(self, batch: Batch) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    def many(self, batch: Any) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
         """Encode all messages of a batch.
+
+        Parameters
+        ----------
+        batch : Batch
+            Or a table or frame with Arrow's interface, as `Batch.from_arrow` takes it.
 
         Returns
         -------
@@ -68,9 +73,19 @@ class EncoderBase(Program):
             The messages, one behind the other.
         offsets : ndarray of int64, shape (n + 1,)
             Message i is bytes ``offsets[i]`` to ``offsets[i + 1]``.
+
+        Raises
+        ------
+        EncodeError
+            A message has values that the wire cannot carry; its path begins with the number of the message, ``[17]``.
+        InvalidHolder
+            The last decode into the batch failed.
+        ValuesError
+            A column of the table is of no field, or its values are not those that the field can have.
         """
-        lanes = self._lanes_of(batch)
+        lanes = self._lanes_of(self._batch_of(batch))
         with lanes:
+            self._settle(lanes)
             self._tell(lanes, lanes.rows)
             offsets = np.zeros(lanes.rows + 1, np.int64)
             self._all(lanes, lambda first: self._sizes(lanes, offsets, first))
@@ -78,6 +93,20 @@ class EncoderBase(Program):
                 buffer = np.empty(int(offsets[-1]), np.uint8)
             self._all(lanes, lambda first: self._written(lanes, buffer, offsets, first))
         return buffer, offsets
+
+    def _batch_of(self, source: Any) -> Batch:
+        from rosetta_jit.runtime.batch import Batch
+
+        return source if isinstance(source, Batch) else Batch.from_arrow(self._loaded.holder_type, source)
+
+    def _settle(self, lanes: Lanes) -> None:
+        """Bring the messages of a batch, whose lanes are one's own, into the form that kernels read."""
+        if not lanes.words[VALID]:
+            raise lanes.invalid()
+        if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
+            from rosetta_jit.runtime.parts import settled
+
+            lanes.adopt(settled(lanes))
 
     def _all(self, lanes: Lanes, step: Callable[[int], int]) -> None:
         """Go on from where a lane was too small, until all are done."""

@@ -10,12 +10,10 @@ Compiled entries keep to the same rule by themselves (`backends/*.ll`).
 
 from __future__ import annotations
 
-import ctypes
 import operator
 from _thread import allocate_lock
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache
 from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
 
 import numpy as np
@@ -37,7 +35,7 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.model.births import FirstCase, FixedArray
-from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
 from rosetta_jit.runtime.locks import shared_lock
@@ -137,7 +135,7 @@ class Lanes:
         self.arena = arena = bytearray(plan.size_bytes + ALIGNMENT)
         self.plan = plan
         self.array_type = array_type
-        self.address = _beginning()(arena, plan.begin, plan.places)
+        self.address = begin()(arena, plan.begin, plan.places)
         self.is_filled = True
         self.rows = plan.rows
 
@@ -346,30 +344,8 @@ def in_use() -> InUse:
 def _memory(lanes: Lanes) -> Memory:
     """The first memory, from where it is aligned."""
     whole = memoryview(lanes.arena)
-    shift = lanes.address - _address_of(lanes.arena)
+    shift = lanes.address - address_of_bytes(lanes.arena)
     return Memory(whole[shift : shift + lanes.plan.size_bytes], lanes.plan.offsets, lanes.plan.sizes)
-
-
-def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:
-    """Copy how the first memory of lanes begins to where it is aligned, and write where each lane lies; where the state does."""
-    address = _address_of(arena)
-    shift = -address % ALIGNMENT
-    arena[shift : shift + len(begin)] = begin
-    words = memoryview(arena)[shift:][: len(arena) - shift & -8].cast("q")
-    pairs = np.frombuffer(places, np.int64).reshape(-1, 2)
-    for word, offset in zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), strict=True):
-        words[word] = address + shift + offset
-    return address + shift
-
-
-@cache
-def _beginning() -> Callable[[bytearray, bytes, bytes], int]:
-    """What does so: compiled code where there is such."""
-    return _begun_in_python if library() is None else functions()["begin"]
-
-
-def _address_of(arena: bytearray) -> int:
-    return ctypes.addressof(ctypes.c_char.from_buffer(arena))
 
 
 _MADE: dict[str, Callable[[Lanes], Any]] = {

@@ -240,6 +240,31 @@ def columns(turns):
 
 
 @kind
+def tables(turns):
+    """Tables and parts of a batch are made while it is filled again."""
+    decode = of(rj.Decoder)
+    sent = messages(40)
+    buffers = [(b"".join(sent[:count]), np.cumsum([0, *(len(each) for each in sent[:count])])) for count in (5, 40)]
+    shared = decode.many(*buffers[0])
+
+    def refill(rng):
+        decode.many(*buffers[rng.randrange(2)], into=shared)
+
+    def table(rng):
+        for number, row in enumerate(shared.to_arrow().to_pylist()):
+            check(row, number)
+
+    def part(rng):
+        for number, message in enumerate(shared[2:5], 2):
+            check(message.to_dict(), number)
+
+    def pickled(rng):
+        assert len(pickle.loads(pickle.dumps(shared))) in (5, 40)  # noqa: S301 - our own
+
+    turns.run(refill, table, part, pickled)
+
+
+@kind
 def views(turns):
     """Texts, arrays of texts and nested messages are read while their holder is decoded into."""
     sent, decode = messages(40), of(rj.Decoder)

@@ -105,14 +105,3 @@ def test_recursive_messages_have_rows_but_no_columns():
     with pytest.raises(TypeError):
         batch.column("children.small")
     batch.lanes.unsettle()
-
-
-def test_arrow(batch):
-    pytest.importorskip("pyarrow")
-    table = batch.to_arrow()
-    assert table["small"].to_pylist() == [0, 1, 2, 3]
-    assert table["maybe"].to_pylist() == [None, 1.0, None, 3.0]
-    assert table["angles"].to_pylist() == batch.angles.to_list()
-    assert table["text"].to_pylist() == batch.text.to_list()
-    assert table["counts"].to_pylist() == [[{"key": index, "value": 1}] for index in range(4)]
-    assert table["parts"].to_pylist()[1][0]["x"] == 1

@@ -65,6 +65,20 @@ class Holder(Message):
         """
         return self.lanes_.consistent(lambda entry: _shown(self, entry), self.access_.record.entries[name])
 
+    def column(self, name: str) -> Any:
+        """An array of messages as columns: one numpy view a field, or that of one field alone, ``points.x``; as `Batch.column` has it.
+
+        Raises
+        ------
+        KeyError
+            If there is no such field.
+        TypeError
+            If messages contain each other without bound there.
+        """
+        from rosetta_jit.runtime.columns import column_of
+
+        return self.lanes_.consistent(lambda path: column_of(self, path), name)
+
     def has(self, name: str) -> bool:
         """Whether a field is present: KeyError where there is none of that name."""
         lanes, row = place(self)

@@ -1,0 +1,76 @@
+"""Batches as Arrow tables: which columns they have, and what they are called."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+from pyarrow.types import is_struct
+
+from rosetta_jit.runtime.arrow.arrays import Place, entry_array, room
+from rosetta_jit.runtime.holder.record import Items, Record
+from rosetta_jit.runtime.rows import Rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosetta_jit.errors import DecodeError
+    from rosetta_jit.runtime.arrow.arrays import Form
+    from rosetta_jit.runtime.holder.record import Node
+    from rosetta_jit.runtime.lanes import Lanes
+
+
+def record_batch(root: Record, lanes: Lanes, count: int, names: Sequence[str], form: Form) -> pa.RecordBatch:
+    """Some fields of messages; a field of a nested message is named with dots."""
+    for each in form.times:
+        _demand(root, each)
+    rows = Rows.first(count, room)
+    if len(names) == len(root.entries):
+        rows = rows.reading(lanes, root.lane, root.start, root.end)
+    found = [_column(root, Place(lanes, form, rows), name) for name in names]
+    fields = [pa.field(name, array.type, nullable) for name, (array, nullable) in zip(names, found, strict=True)]
+    return pa.RecordBatch.from_arrays([array for array, _ in found], schema=pa.schema(fields))
+
+
+def _demand(root: Record, name: str) -> None:
+    """KeyError if there is no field of that name, in arrays or not."""
+    node: Node = root
+    for each in name.split("."):
+        while isinstance(node, Items):
+            node = node.element
+        if not isinstance(node, Record) or each not in node.entries:
+            raise KeyError(name)
+        node = node.entries[each].node
+
+
+def table(batch: pa.RecordBatch) -> pa.Table:
+    """A table of one chunk."""
+    return pa.Table.from_batches([batch])
+
+
+def flat(table: pa.Table) -> pa.Table:
+    """A table with each field of its structs, and of those within, as a column of its own."""
+    while any(is_struct(each.type) for each in table.schema):
+        table = table.flatten()
+    return table
+
+
+def with_errors(table: pa.Table, name: str, errors: Mapping[int, DecodeError], numbers: Iterable[int]) -> pa.Table:
+    """A table with one column more: the errors of messages of such numbers, as text."""
+    texts = [str(errors[number]) if number in errors else None for number in numbers]
+    return table.append_column(name, pa.array(texts, pa.large_string()))
+
+
+def _column(root: Record, place: Place, name: str) -> tuple[pa.Array, bool]:
+    """The array of a field, and whether it can be null."""
+    record, nullable = root, False
+    *around, last = name.split(".")
+    for each in around:
+        entry = record.entries[each]
+        if not isinstance(entry.node, Record):
+            raise KeyError(f"{each} of {name} is no message")
+        place = place.at(place.rows.with_field(entry.presence, place.lanes), f"{place.path}.{each}")
+        record, nullable = entry.node, nullable or entry.presence is not None
+    entry = record.entries[last]
+    nullable = nullable or entry.presence is not None
+    return entry_array(entry, place, nullable=nullable), nullable

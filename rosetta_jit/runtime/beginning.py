@@ -1,0 +1,38 @@
+"""How the first memory of lanes begins: what a plan says, where it is aligned, with the addresses of the lanes."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.memory import ALIGNMENT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def _begun_in_python(arena: bytearray, begin: bytes, places: bytes) -> int:
+    """Copy how the first memory of lanes begins to where it is aligned, and write where each lane lies; where the state does."""
+    address = address_of_bytes(arena)
+    shift = -address % ALIGNMENT
+    arena[shift : shift + len(begin)] = begin
+    words = memoryview(arena)[shift:][: len(arena) - shift & -8].cast("q")
+    pairs = np.frombuffer(places, np.int64).reshape(-1, 2)
+    for word, offset in zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), strict=True):
+        words[word] = address + shift + offset
+    return address + shift
+
+
+@cache
+def begin() -> Callable[[bytearray, bytes, bytes], int]:
+    """What does so: compiled code where there is such."""
+    return _begun_in_python if library() is None else functions()["begin"]
+
+
+def address_of_bytes(arena: bytearray) -> int:
+    """Where bytes of ours lie."""
+    return ctypes.addressof(ctypes.c_char.from_buffer(arena))

@@ -1,0 +1,163 @@
+"""Many messages in one call: as a list, and with some that are not what the schema promises."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+
+SCHEMA = {"p/A.msg": "int32 n\nfloat64[3] fixed\nstring s\nstring[] names\nB[] items\n", "p/B.msg": "int32 k\nstring t\n"}
+BROKEN = {1: -2, 4: 3, 5: -1}
+
+
+def of(program, **options):
+    return program.of("p/A", schema=SCHEMA, encoding="ros1", imports=["p/A.msg"], **options)
+
+
+def plain(number):
+    return {
+        "n": number,
+        "fixed": [float(number), 0.0, 1.0],
+        "s": "s" * number,
+        "names": [str(number)] * (number % 3),
+        "items": [{"k": number, "t": "t" * number}] * (number % 4),
+    }
+
+
+EMPTY = {"n": 0, "fixed": [0.0] * 3, "s": "", "names": [], "items": []}
+
+
+@pytest.fixture(scope="module")
+def encode():
+    return of(rj.Encoder)
+
+
+@pytest.fixture(scope="module", params=["llvm", "python"])
+def decode(request):
+    return of(rj.Decoder, backend=request.param)
+
+
+@pytest.fixture(scope="module")
+def messages(encode):
+    return [encode(encode.holder_type.from_dict(plain(number))) for number in range(8)]
+
+
+@pytest.fixture(scope="module")
+def broken(messages):
+    return [message[: BROKEN[number]] if number in BROKEN else message for number, message in enumerate(messages)]
+
+
+def read(batch):
+    return [message.to_dict() for message in batch]
+
+
+def test_a_list_of_messages(decode, messages):
+    batch = decode.many(messages)
+    assert read(batch) == [plain(number) for number in range(8)]
+    mixed = [bytearray(messages[1]), memoryview(messages[2]), np.frombuffer(messages[3], np.uint8)]
+    assert read(decode.many(iter(mixed), into=batch)) == [plain(1), plain(2), plain(3)]
+    assert len(decode.many([])) == 0
+    assert len(batch.errors) == 0
+    assert batch.kept.tolist() == [0, 1, 2]
+
+
+def test_what_is_no_list_of_messages(decode, messages):
+    for wrong in (messages[0], np.frombuffer(messages[0], np.uint8)):
+        with pytest.raises(TypeError, match="take offsets"):
+            decode.many(wrong)
+    for wrong in ([1, 2], ["text"], None, 5):
+        with pytest.raises(TypeError):
+            decode.many(wrong)
+    with pytest.raises(ValueError, match="on_error"):
+        decode.many(messages, on_error="ignore")
+
+
+def test_errors_are_raised(decode, broken):
+    with pytest.raises(rj.DecodeError, match=r"^truncated.*\[1\]"):
+        decode.many(broken)
+
+
+def test_messages_are_left_out(decode, broken):
+    batch = decode.many(broken, on_error="skip")
+    assert batch.kept.tolist() == [0, 2, 3, 6, 7]
+    assert read(batch) == [plain(number) for number in batch.kept]
+    assert batch.mask().all()
+    assert list(batch.errors) == [1, 4, 5]
+    assert {error.kind for error in batch.errors.values()} == {"truncated"}
+    assert batch.errors[4].path.startswith("[4].")
+    assert read(decode.many(broken[:1], into=batch)) == [plain(0)]
+    assert batch.errors == {}
+    assert batch.kept.tolist() == [0]
+
+
+def test_messages_are_left_empty(decode, broken):
+    batch = decode.many(broken, on_error="mask")
+    assert read(batch) == [EMPTY if number in BROKEN else plain(number) for number in range(8)]
+    assert batch.mask().tolist() == [number not in BROKEN for number in range(8)]
+    assert read(batch[batch.mask()]) == read(decode.many(broken, on_error="skip"))
+    batch[1].fixed[:] = 1, 2, 3
+    batch[4].s = "set"
+    assert batch.column("fixed").to_numpy()[:3].tolist() == [[0, 0, 1], [1, 2, 3], [2, 0, 1]]
+
+
+def test_errors_are_a_column(decode, broken):
+    pytest.importorskip("pyarrow")
+    batch = decode.many(broken, on_error="mask")
+    column = batch.to_arrow(["n"], errors="error")["error"].to_pylist()
+    assert [text is not None for text in column] == [number in BROKEN for number in range(8)]
+    assert column[1] == str(batch.errors[1])
+    assert batch.to_pandas(errors="why")["why"].isna().sum() == 5
+    assert decode.many(broken, on_error="skip").to_arrow(errors="error")["error"].null_count == 5
+
+
+def test_errors_survive_pickling(decode, broken):
+    batch = decode.many(broken, on_error="skip")
+    again = pickle.loads(pickle.dumps(batch))  # noqa: S301 - our own
+    assert read(again) == read(batch)
+    assert {number: str(each) for number, each in again.errors.items()} == {number: str(each) for number, each in batch.errors.items()}
+    assert again.errors[4].offset == batch.errors[4].offset
+    assert again.kept.tolist() == batch.kept.tolist()
+
+
+def test_all_are_broken(decode):
+    assert len(decode.many([b"", b"x"], on_error="skip")) == 0
+    batch = decode.many([b"", b"x"], on_error="mask")
+    assert read(batch) == [EMPTY] * 2
+    assert not batch.mask().any()
+
+
+def test_messages_that_ask_for_too_much_are_left_out_too():
+    """The room for it is not made."""
+    files = {
+        "t/In.msg": "int64 n\n",
+        "t/Out.msg": "float64[] a\n",
+        "m.mapping": """import "t/In.msg"
+import "t/Out.msg"
+data-holder: t/Out
+wire-schema: t/In
+unpack-rules:
+  len(.a) = .n
+  for i from 0 to .n
+    .a[i] = 1.0
+  end
+""",
+    }
+    decode = rj.Decoder("m.mapping", schema=files, encoding="ros1")
+    batch = decode.many([number.to_bytes(8, "little") for number in (2, 1 << 40, 3)], on_error="skip")
+    assert [len(each) for each in batch.a.to_list()] == [2, 3]
+    assert (batch.errors[1].kind, batch.errors[1].path) == ("count", "[1].a")
+
+
+def test_wrong_offsets_are_no_error_of_a_message(decode, messages):
+    with pytest.raises(ValueError, match="offsets"):
+        decode.many(messages[1], np.array([0, 1000]), on_error="skip")
+
+
+def test_borrowed_messages_are_left_out():
+    decode = rj.Decoder.of("rst.vision.Image", encoding="protobuf", borrow=True)
+    message = b"\x0a\x06\x01\x02\x03\x04\x05\x06\x10\x02\x18\x01"
+    batch = decode.many([message, message[:5], message], on_error="skip")
+    assert [bytes(each.data) for each in batch] == [bytes(range(1, 7))] * 2
