@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import subprocess
 import sys
+import warnings
 import weakref
 from pathlib import Path
 
@@ -250,7 +251,9 @@ def test_arrays_that_somebody_changed_are_not_given_out_again():
         lambda array: setattr(array, "dtype", np.int64),
         lambda array: array.setflags(write=False),
     ):
-        change(holder.position)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of numpy, which will refuse some of them
+            change(holder.position)
         assert (holder.position.tolist(), holder.position.flags.writeable) == ([1, 2, 3, 4], True)
     held = holder.position
     assert holder.position is not held
