@@ -114,7 +114,7 @@ class Program:
         """A holder of one's own, with room for what has been decoded until now, unless that is much."""
         holder_type = self._loaded.holder_type
         holder = holder_type.__new__(holder_type)
-        holder.lay_out_(self._plan)
+        holder.lay_out_(max(self._plan, holder_type.family_.roomy, key=lambda plan: plan.size_bytes))
         return holder
 
     def _checked(self, holder: object) -> Holder:

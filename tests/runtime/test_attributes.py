@@ -14,9 +14,15 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import InUse, InvalidHolder
+from rosetta_jit.kernel.state import ADDRESS, EPOCH, UNSETTLED, VALID, WASTED, lane_word
 from rosetta_jit.runtime.attributes.code import SYMBOLS, library, text
 from rosetta_jit.runtime.callable import is_native
+from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.access import raw
+from rosetta_jit.runtime.holder.message import Message
+from rosetta_jit.runtime.holder.sequence import Sequence
+from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.specs import slot_offset
 
 sys.path.insert(0, str(Path(__file__).parent))
 from schemas import flat, whole
@@ -174,6 +180,22 @@ def live_twice(name, seed):
 def test_every_accessor_is_compiled():
     assert all(library()[symbol] for symbol in SYMBOLS)
     assert text() == text()
+
+
+@needs_code
+def test_objects_lie_in_memory_as_the_code_expects():
+    """The offsets that `rosetta_jit/runtime/attributes/*.ll` name."""
+
+    def offsets(made, *names):
+        return tuple(slot_offset(vars(made)[name]) for name in names)
+
+    assert offsets(Message, "access_", "entry_", "lanes_", "parent_") == (72, 80, 88, 96)
+    assert Message.__weakrefoffset__ == 104
+    assert offsets(Sequence, "entry", "message", "node", "spare_one", "spare_two") == (24, 32, 40, 48, 56)
+    assert offsets(Lanes, "arrays") == (40,)
+    assert lane_word(0, ADDRESS) * 8 == 128
+    assert (8 * WASTED, 8 * EPOCH, VALID, UNSETTLED) == (120, 8, 0, 2)
+    assert (SCALARS.index("i8"), SCALARS.index("u64"), SCALARS.index("f32"), SCALARS.index("f64")) == (1, 8, 9, 10)
 
 
 def poses(count):

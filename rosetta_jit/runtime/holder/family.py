@@ -84,6 +84,7 @@ class Family:
         self.layout = layout(self.type, self.schema)
         self.tree = Tree(self.type, self.schema, self.layout)
         self.plan = born(plan(self.layout, births=self.tree.births))
+        self.roomy = self.plan
         self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
@@ -155,8 +156,8 @@ class Family:
         return access
 
     def learn_room(self, lanes: Lanes) -> None:
-        """Give new holders the room that one has come to, unless that is much."""
-        self.plan = roomier(self.plan, lanes, MOST_UNASKED)
+        """Give new holders the room that assignments have taken, unless that is much; more to those that programs make."""
+        self.plan, self.roomy = roomier(self.plan, lanes, MOST_UNASKED), roomier(self.roomy, lanes)
 
     @cached_property
     def root(self) -> Access:
