@@ -69,7 +69,7 @@ VALUES = [
     *("", "a", "é", "RED", "A", "x" * 100, "\0", "\udc80", "sixbytes"),
     *(b"", b"a", b"\xff\xfe", bytes(100), bytearray(b"xy"), memoryview(b"abc")),
     *([], [1], [1, 2, 3], [1.5, 2], [1, "a"], [None], [1 << 70], [float(each) for each in range(200)], list(range(-5, 5))),
-    *(["a", "bc", ""], ["é" * 50] * 20, ["a", 1], ["\udc80"], ("a", "b"), (1, 2)),
+    *(["abc", "xyz"], ["abcd"], ["é", "éé"], ["a", "bc", ""], ["é" * 50] * 20, ["a", 1], ["\udc80"], ("a", "b"), (1, 2)),
     *(np.arange(3.0), np.arange(3), np.arange(9.0), np.arange(6.0).reshape(2, 3), np.arange(10.0)[::2], np.arange(3, dtype=np.int32)),
     *(np.arange(3, dtype=np.float32), np.arange(4, dtype=np.uint8), np.array([True, False]), np.array("x"), np.array(["a"])),
     *(np.arange(3, dtype=">f8"), {}, {"x": 1.0}, {"number": 3, "name": "n"}, [{"x": 1}, {"y": 2.0}], {"k": {"number": 4}}),
@@ -296,6 +296,16 @@ def test_texts_of_a_list_that_changes_meanwhile():
     assert list(holder.name) == [*names, "b"]
     holder.name = []
     assert not list(holder.name)
+
+
+def test_texts_of_an_array_have_their_own_limit():
+    holder = made_of("t::All")()
+    holder.few = ["abc"]
+    with pytest.raises(ValueError, match="3"):
+        holder.few.extend(["abcd"])
+    assert list(holder.few) == ["abc"]
+    with pytest.raises(ValueError, match="3"):
+        holder.few = ["abcd"]
 
 
 @needs_code

@@ -71,6 +71,8 @@ class Place(IntEnum):
     """The class of arrays, and up to two formats of buffers that have the same numbers, of two bytes each."""
     ITEM_BYTES = 26
     DTYPE = 27
+    LONGEST = 28
+    """How many bytes each text of an array may have."""
 
 
 class Kept(IntEnum):
@@ -93,7 +95,7 @@ class Shown(IntEnum):
     PYTHON = 9
 
 
-WORDS = 28
+WORDS = 30
 _ANY = (1 << 63) - 1
 PLACE_BYTES = 8 * WORDS
 
@@ -196,6 +198,7 @@ class Places:
             case Text(span, lane, type_) if type_.encoding != "utf-16":
                 words[Place.KIND] = Shown.UTF_8 if type_.encoding == "utf-8" else Shown.OCTETS
                 words[Place.ELEMENT_OFFSET], words[Place.ELEMENT_TARGET] = 8 * span.index, 8 * lane_word(lane, ADDRESS)
+                _, words[Place.LONGEST] = _lengths(node.element)
             case _:
                 pass
 

@@ -459,7 +459,8 @@ sort:
 list:
   %count = call i64 @word(ptr %value, i64 16)
   %items = call ptr @pointer(ptr %value, i64 24)
-  %total = call i64 @total_size(ptr %items, i64 %count)
+  %longest = call i64 @word(ptr %place, i64 224)
+  %total = call i64 @total_size(ptr %items, i64 %count, i64 %longest)
   %good = icmp sge i64 %total, 0
   br i1 %good, label %make, label %python
 make:
@@ -472,8 +473,8 @@ python:
   ret i32 %told
 }
 
-; How many bytes texts have together; -1 if one is none.
-define internal i64 @total_size(ptr %items, i64 %count) {
+; How many bytes texts have together; -1 if one is none, or has more bytes than it may.
+define internal i64 @total_size(ptr %items, i64 %count, i64 %most) {
   br label %head
 head:
   %index = phi i64 [ 0, %0 ], [ %next, %add ]
@@ -488,7 +489,9 @@ each:
   %data = extractvalue { ptr, i64 } %content, 0
   %size = extractvalue { ptr, i64 } %content, 1
   %is = icmp ne ptr %data, null
-  br i1 %is, label %add, label %no
+  %short = icmp sle i64 %size, %most
+  %allowed = and i1 %is, %short
+  br i1 %allowed, label %add, label %no
 add:
   %added = add i64 %sum, %size
   br label %head
@@ -548,7 +551,8 @@ made:
   %same.count = icmp eq i64 %now.count, %count
   br i1 %same.count, label %sum, label %python
 sum:
-  %now.total = call i64 @total_size(ptr %now.items, i64 %count)
+  %longest = call i64 @word(ptr %place, i64 224)
+  %now.total = call i64 @total_size(ptr %now.items, i64 %count, i64 %longest)
   %same.total = icmp eq i64 %now.total, %total
   br i1 %same.total, label %find.again, label %python
 find.again:
@@ -663,7 +667,8 @@ look:
 measure:
   %count = call i64 @word(ptr %list, i64 16)
   %items = call ptr @pointer(ptr %list, i64 24)
-  %total = call i64 @total_size(ptr %items, i64 %count)
+  %longest = call i64 @word(ptr %place, i64 224)
+  %total = call i64 @total_size(ptr %items, i64 %count, i64 %longest)
   %good = icmp sge i64 %total, 0
   br i1 %good, label %write, label %python
 write:
