@@ -1,7 +1,8 @@
 r"""What is known at one place of a kernel, and what follows from it.
 
 `Facts` keeps, for each sum of atoms, the greatest lower bound that is known. Most questions are answered by a look at that table or by the
-bounds of single atoms; the rest by Fourier-Motzkin elimination on the facts around the question, within a budget. A No means "not proven".
+bounds of single atoms, nearly all others by adding up one or two facts; the rest by Fourier-Motzkin elimination on the facts around the
+question, within a budget. A No means "not proven".
 
 Facts are gained along a path and given up at its end (`mark`, `rollback`), so that the two branches of an If share one table.
 """
@@ -10,22 +11,35 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import field
-from typing import Literal, assert_never
+from heapq import heapify, heappop, heappush
+from typing import Literal, NamedTuple, assert_never
 
 from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.formula import All, Any, Formula, equal, is_vague, negated, said
-from rosetta_jit.kernel.linear import Linear, Terms, contradict, replaced, shifted, tightened, times
+from rosetta_jit.kernel.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, tightened, times
 
-FIRST = (6, 40)
-GLANCE, QUICK, THOROUGH = (0, 0), (32, 300), (96, 4000)
-"""How many facts a proof may look at, and how many it may combine: for what shows, for a question, and for an obligation."""
+
+class Effort(NamedTuple):
+    """How far a proof may go: facts that it adds up, facts among which it eliminates atoms, and how many of those it may combine."""
+
+    summands: int
+    facts: int
+    combinations: int
+
+
+GLANCE, SUMS, QUICK, THOROUGH = Effort(0, 0, 0), Effort(2, 0, 0), Effort(2, 32, 300), Effort(2, 96, 4000)
+"""For what stands in the table, for what takes no elimination, for a question, and for an obligation."""
+
+MAX_TRIED = 8
+"""Facts about one atom, the latest ones, that are tried as a summand."""
 
 CASE_DEPTH = 2
 MAX_PROPAGATED = 4
 
-Procedure = Literal["constants", "unreachable", "bounds", "elimination", "cases", "operations", "paths"]
-"""Who proves: a look at constants, the contradiction of what a path takes as known, the table of bounds, Fourier-Motzkin elimination, or
-that in each case of a choice. What the proof infers comes from the rules of operations (`integers`) and from where paths meet (`paths`)."""
+Procedure = Literal["constants", "unreachable", "bounds", "sums", "elimination", "cases", "operations", "paths"]
+"""Who proves: a look at constants, the contradiction of what a path takes as known, the table of bounds, a sum of few facts,
+Fourier-Motzkin elimination, or that in each case of a choice. What the proof infers comes from the rules of operations (`integers`) and
+from where paths meet (`paths`)."""
 
 
 def _shares_atom(fact: Any, goal: Linear) -> bool:
@@ -251,11 +265,13 @@ class Facts:
             return "unreachable"
         if self._proves(formula, 0, GLANCE):
             return "bounds"
+        if self._proves(formula, 0, SUMS):
+            return "sums"
         if self._proves(formula, 0, THOROUGH):
             return "elimination"
         return "cases" if self.proves_thoroughly(formula) else None
 
-    def _proves(self, formula: Formula, depth: int, effort: tuple[int, int]) -> bool:
+    def _proves(self, formula: Formula, depth: int, effort: Effort) -> bool:
         match formula:
             case Linear():
                 return self.lower(formula) >= 0 or self._follows(formula, effort) or (depth > 0 and self._by_cases(formula, depth, effort))
@@ -274,7 +290,7 @@ class Facts:
             case _:
                 assert_never(formula)
 
-    def _proves_one(self, parts: tuple[Formula, ...], depth: int, effort: tuple[int, int]) -> bool:
+    def _proves_one(self, parts: tuple[Formula, ...], depth: int, effort: Effort) -> bool:
         """Whether the last part holds where all others do not."""
         if depth == 0 or len(parts) < 2:
             return False
@@ -285,7 +301,7 @@ class Facts:
         self.rollback(mark)
         return proven
 
-    def _by_cases(self, goal: Linear, depth: int, effort: tuple[int, int]) -> bool:
+    def _by_cases(self, goal: Linear, depth: int, effort: Effort) -> bool:
         """Whether a goal holds in each case of an atom that is chosen among values, or of a fact that has alternatives.
 
         The youngest atom comes first: what it is chosen among may rest on the others.
@@ -296,37 +312,59 @@ class Facts:
         alternatives = next((fact for fact in reversed(self._either) if _shares_atom(fact, goal)), None)
         return alternatives is not None and all(self._in_case(goal, part, depth, effort) for part in alternatives.parts)
 
-    def _in_case(self, goal: Linear, condition: Formula, depth: int, effort: tuple[int, int]) -> bool:
+    def _in_case(self, goal: Linear, condition: Formula, depth: int, effort: Effort) -> bool:
         mark = self.mark()
         self._take(condition)
         proven = self.impossible or self._proves(goal, depth - 1, effort)
         self.rollback(mark)
         return proven
 
-    def _follows(self, goal: Linear, effort: tuple[int, int]) -> bool:
-        """Whether the facts around a goal contradict its opposite."""
-        opposite = shifted(times(goal, -1), -1)
-        for most, budget in dict.fromkeys((min(FIRST, effort), effort)):
-            nearby = self._nearby(goal, most)
-            if nearby and contradict([*nearby, opposite], budget):
+    def _follows(self, goal: Linear, effort: Effort) -> bool:
+        """Whether a goal is a sum of facts, or the facts around it contradict its opposite."""
+        if effort.summands and self._is_sum(goal, effort.summands):
+            return True
+        nearby = self._nearby(goal, effort.facts) if effort.facts else None
+        return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], effort.combinations)
+
+    def _is_sum(self, goal: Linear, most: int) -> bool:
+        """Whether a goal is a sum of at most so many facts, or multiples of them, and of something that bounds show.
+
+        Each fact must do away with the atom of which the fewest facts are known.
+        """
+        about = [(len(facts), atom, wanted) for atom, wanted in goal.terms if (facts := self._about.get(atom))]
+        if not about:
+            return False
+        _, atom, wanted = min(about)
+        for terms in self._about[atom][: -1 - MAX_TRIED : -1]:
+            fact = Linear(-self._bounds[terms], terms)
+            factor, left = divmod(wanted, coefficient_of(fact, atom))
+            if left or factor < 0:
+                continue
+            rest = minus(goal, times(fact, factor))
+            if self.lower(rest) >= 0 or (most > 1 and self._is_sum(rest, most - 1)):
                 return True
         return False
 
     def _nearby(self, goal: Linear, most: int) -> list[Linear]:
         """Facts that share atoms with a goal, and facts that share atoms with those.
 
-        The youngest atom comes first: of an old one, such as a lane's capacity, very many facts may be known.
+        The atom with the fewest facts comes first, of equals the youngest: what is known of the message's length or of a lane's capacity
+        grows with the kernel, and little of it has to do with the goal.
         """
         sums: dict[Terms, None] = {}
-        atoms = dict.fromkeys(atom for atom, _ in reversed(goal.terms))
-        queue = list(atoms)
-        while queue and len(sums) < most:
-            for terms in reversed(self._about.get(queue.pop(0), ())):
+        about = self._about
+        atoms = {atom for atom, _ in goal.terms}
+        waiting = [(len(about.get(atom, ())), -atom) for atom in atoms]
+        heapify(waiting)
+        while waiting and len(sums) < most:
+            for terms in reversed(about.get(-heappop(waiting)[1], ())):
                 if terms in sums:
                     continue
                 sums[terms] = None
-                queue.extend(a for a, _ in terms if a not in atoms)
-                atoms.update(dict.fromkeys(a for a, _ in terms))
+                for atom, _ in terms:
+                    if atom not in atoms:
+                        atoms.add(atom)
+                        heappush(waiting, (len(about[atom]), -atom))
                 if len(sums) >= most:
                     break
         if not sums:
