@@ -18,7 +18,16 @@ from llvmlite import binding, ir
 from rosetta_jit.backends import llvm
 from rosetta_jit.backends.host_table import TABLE, table_text
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.shape import are_long_and_straight, are_vast, calls_to_host, is_large, is_short_and_straight, is_told, our_functions
+from rosetta_jit.kernel.shape import (
+    are_straight,
+    are_vast,
+    calls_to_host,
+    have_short_counted_loops,
+    is_large,
+    is_short_and_straight,
+    is_told,
+    our_functions,
+)
 from rosetta_jit.runtime.assembler import linked, make_private, run_few_passes, run_passes, target_machine
 from rosetta_jit.runtime.prelink import prelinked
 
@@ -81,16 +90,18 @@ def optimised(
 ) -> binding.ModuleRef:
     """The program's module after one run of LLVM's passes.
 
-    They are those of O3. Where nothing loops, those of O1 find the same, vectors included, and O3's look at every store for every load.
-    Vast kernels get the few passes that take time in proportion to their size.
+    Kernels leave little for LLVM to find, and the passes of O1 find it. Those of O3, which take twice as long, are for loops over elements;
+    making vectors of statements that stand side by side, which looks at all values of loops in one another, for kernels without loops. Vast
+    kernels get the few passes that take time in proportion to their size. docs/performance.md has the figures.
     """
     module = linked(_parts(kernels, entry, with_numba=with_numba, functions=functions))
     make_private(module, (*SYMBOLS[entry], TABLE))
     if are_vast(kernels):
         run_few_passes(module, machine)
         return module
-    options = binding.create_pipeline_tuning_options(speed_level=1 if are_long_and_straight(kernels) else 3)
-    options.loop_vectorization, options.slp_vectorization = True, True
+    thorough = bool(functions) or have_short_counted_loops(kernels)
+    options = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
+    options.loop_vectorization, options.slp_vectorization = True, thorough or are_straight(kernels)
     builder = binding.create_pass_builder(machine, options)
     run_passes(builder.getModulePassManager(), module, builder)
     return module

@@ -103,14 +103,24 @@ def are_vast(kernels: Iterable[Kernel]) -> bool:
     return sum(depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)) > VAST
 
 
-def are_long_and_straight(kernels: Iterable[Kernel]) -> bool:
-    """Whether kernels have many statements, and neither loops nor what stands for loops: each statement runs once at most."""
-    blocks = (block for kernel in kernels for block in (*kernel.bodies, *(routine.body for routine in kernel.routines)))
-    every = [each for block in blocks for each, _ in statements(block)]
-    if len(every) <= LONG or any(isinstance(each, For | While) for each in every):
+def are_straight(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels have neither loops nor what stands for loops: each statement runs once at most."""
+    every = [each for kernel in kernels for each in _every_statement(kernel)]
+    if any(isinstance(each, For | While) for each in every):
         return False
     parts = (part for each in every for expr in expressions_of(each) for part in subexpressions(expr))
     return not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
+
+
+def have_short_counted_loops(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels have loops whose rounds are counted beforehand, those over elements of arrays, and little else."""
+    every = [each for kernel in kernels for each in _every_statement(kernel)]
+    return len(every) <= LONG * 4 and any(isinstance(each, For) for each in every)
+
+
+def _every_statement(kernel: Kernel) -> Iterator[Stmt]:
+    for block in (*kernel.bodies, *(routine.body for routine in kernel.routines)):
+        yield from (each for each, _ in statements(block))
 
 
 def is_short_and_straight(kernel: Kernel) -> bool:

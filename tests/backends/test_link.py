@@ -10,7 +10,7 @@ import pytest
 from rosetta_jit.backends.link import assembly, compile_program, llvm_text, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
-from rosetta_jit.kernel.shape import are_long_and_straight
+from rosetta_jit.kernel.shape import are_straight, have_short_counted_loops
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
 from rosetta_jit.runtime import native
 from rosetta_jit.runtime.allowed import ALLOWED
@@ -54,17 +54,22 @@ def test_no_arithmetic_is_relaxed(with_numba):
 
 
 def test_long_kernels_without_loops_have_vectors_too():
-    """Fewer of LLVM's passes run for them; a loop, or what stands for one, wants all."""
+    """Fewer of LLVM's passes run for them."""
     (body,) = kernels.fixed(300).bodies
     read = tuple(Let(f"value{each}", Load("f64", add(BEGIN, 8 * each))) for each in range(300))
     scaled = [Convert("f32", Binary("mul", Local("f64", f"value{each}"), Const("f64", 0.1))) for each in range(300)]
     written = tuple(SetField(Place(0, ROW, 4 * each), value) for each, value in enumerate(scaled))
     long = replace(kernels.fixed(300), bodies=((*body[:2], *read, *written, body[-1]),))
-    assert are_long_and_straight([long])
-    assert not are_long_and_straight([kernels.fixed(3)])
+    assert are_straight([long])
     for other in (kernels.specialised(), kernels.text()):
-        assert not are_long_and_straight([long, other])
+        assert not are_straight([long, other])
     assert re.search(r"fmul <\d+ x double>", llvm_text([long], "decode", with_numba=False))
+
+
+def test_loops_over_elements_are_worth_more_passes_in_kernels_of_some_size():
+    assert have_short_counted_loops([kernels.specialised()])
+    assert not have_short_counted_loops([kernels.fixed(3)])
+    assert not have_short_counted_loops([kernels.specialised(), kernels.fixed(600)])
 
 
 def test_short_kernels_are_part_of_the_call():

@@ -38,7 +38,16 @@ PROOF = (
 PASSES = ("affine", "bulk", "drop", "fold", "hoist", "merge", "reuse", "simplify", "sink", "unroll", "widen", "__init__")
 MODULES = tuple(f"rosetta_jit.kernel.{name}" for name in PROOF) + tuple(f"rosetta_jit.lowering.passes.{name}" for name in PASSES)
 
-NO_PROOF = {"is_large", "are_long_and_straight", "is_short_and_straight", "calls_to_host", "our_functions", "is_told"}
+NO_PROOF = {
+    "is_large",
+    "are_straight",
+    "have_short_counted_loops",
+    "_every_statement",
+    "is_short_and_straight",
+    "calls_to_host",
+    "our_functions",
+    "is_told",
+}
 """Functions of `shape` that tell backends and passes how large kernels are, and whom they call."""
 DEMANDS = {"oblige", "certify", "demand"}
 LEARNS = {"assume", "derive"}
