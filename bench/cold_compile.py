@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
-    from rosetta_jit.request import Backend
+    from rosetta_jit.pipeline.request import Backend
 
 STAGES = ("import", "import numba", "parse and check", "lower", "verify", "numba", "LLVM", "load")
 
@@ -49,13 +49,13 @@ def main(mapping: str, backend: Backend) -> dict[str, float]:
     clock = Clock()
     with clock.stage("import"):
         from rosetta_jit.kernel.entries import SYMBOLS
-        from rosetta_jit.lowering import passes
-        from rosetta_jit.pipeline import Build
-        from rosetta_jit.request import Request
-        from rosetta_jit.runtime import native
+        from rosetta_jit.kernel.passes import order as passes
+        from rosetta_jit.pipeline.build import Build
+        from rosetta_jit.pipeline.request import Request
+        from rosetta_jit.runtime.code import native
     if backend == "numba":
         with clock.stage("import numba"):
-            from rosetta_jit.backends import numba
+            from rosetta_jit.backends.numba import function as numba
         numba.typed, numba.library = clock.timed("numba", numba.typed), clock.timed("numba", numba.library)
     passes.verify = clock.timed("verify", passes.verify)
     build = Build(Request("decode", mapping=mapping, encoding="yarp3", backend=backend))

@@ -28,8 +28,8 @@ from rosetta_jit.errors import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosetta_jit.checked import CheckedMapping
-    from rosetta_jit.programs import Decoder, Encoder
+    from rosetta_jit.api.programs import Decoder, Encoder
+    from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
 
@@ -55,8 +55,8 @@ __all__ = [
 ]
 
 _LAZY = {
-    "Decoder": "rosetta_jit.programs",
-    "Encoder": "rosetta_jit.programs",
+    "Decoder": "rosetta_jit.api.programs",
+    "Encoder": "rosetta_jit.api.programs",
     "Batch": "rosetta_jit.runtime.batch",
     "Holder": "rosetta_jit.runtime.holder",
 }
@@ -65,7 +65,7 @@ _LAZY = {
 
 def __getattr__(name: str) -> Any:
     if name in _LAZY:
-        from rosetta_jit.garbage import imported
+        from rosetta_jit.startup.garbage import imported
 
         return getattr(imported(_LAZY[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -81,7 +81,7 @@ def check(mapping: str, *, search_path: Iterable[str] = (), parameters: Mapping[
     MappingError
         Everything that is wrong with the mapping and with what it imports.
     """
-    from rosetta_jit.pipeline import check_mapping
+    from rosetta_jit.pipeline.build import check_mapping
 
     return check_mapping(mapping, search_path, parameters)
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.cells import TAB_CELLS, cells, printable
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.terminal import TAB_CELLS, cells, printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,9 +13,9 @@ import struct
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 from rosetta_jit.catalogue import recording as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
-from rosetta_jit.written import named
+from rosetta_jit.file_errors import named
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import pytest
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 PACKAGE = Path(__file__).resolve().parent.parent / "rosetta_jit"
 
@@ -169,7 +169,7 @@ def test_every_module_takes_it():
         for line in path.read_text("utf-8").splitlines()
         if line.startswith("from dataclasses import") and "dataclass" in line.partition("import")[2].replace(",", " ").split()
     ]
-    assert not wrong, "import it from rosetta_jit.dataclass"
+    assert not wrong, "import it from rosetta_jit.startup.dataclass"
 
 
 @dataclass(slots=True, eq=False, repr=False)

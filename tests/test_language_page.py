@@ -11,8 +11,11 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import Kind
 from rosetta_jit.explain.content import explanation
-from rosetta_jit.lowering import calls, layouts, type_images, type_texts
-from rosetta_jit.lowering.chain import UNSHOWN
+from rosetta_jit.language.arrays import layouts
+from rosetta_jit.language.functions import calls
+from rosetta_jit.language.functions import images as type_images
+from rosetta_jit.language.functions import texts as type_texts
+from rosetta_jit.language.laws.chain import UNSHOWN
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 PAGE = (DOCS / "language.md").read_text("utf-8")

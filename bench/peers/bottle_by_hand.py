@@ -61,7 +61,7 @@ def numba_kernel(decoder: Any, holder: Any) -> tuple[Any, Any]:
     """Our kernel, called through numba's dispatcher instead of our entry; and the state of a holder, which must be large enough."""
     import numba
 
-    from rosetta_jit.backends.numba import data_pointer
+    from rosetta_jit.backends.numba.function import data_pointer
 
     kernel = decoder.kernel
 

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Advance, Block, For, If, Kernel, Stmt, Switch, While
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator

@@ -6,7 +6,7 @@ import json
 from argparse import ArgumentTypeError
 from typing import TYPE_CHECKING, Protocol, cast
 
-from rosetta_jit.request import plain_parameters
+from rosetta_jit.pipeline.request import plain_parameters
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace

@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _info(*, as_json: bool) -> int:
-    from rosetta_jit.runtime.cache import Cache
+    from rosetta_jit.runtime.cache.kernels import Cache
 
     info = Cache.default().info()
     facts = asdict(info) | {"folder": str(info.folder) if info.folder else None}
@@ -46,7 +46,7 @@ def _info(*, as_json: bool) -> int:
 
 
 def _verify(*, as_json: bool) -> int:
-    from rosetta_jit.runtime.cache import Cache
+    from rosetta_jit.runtime.cache.kernels import Cache
 
     damaged = Cache.default().verify()
     if as_json:
@@ -57,7 +57,7 @@ def _verify(*, as_json: bool) -> int:
 
 
 def _clear(*, as_json: bool) -> int:
-    from rosetta_jit.runtime.cache import Cache
+    from rosetta_jit.runtime.cache.kernels import Cache
 
     count = Cache.default().clear()
     print(json.dumps({"removed": count}) if as_json else f"{count} files removed")

@@ -7,10 +7,10 @@ import sys
 from collections import Counter
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cells import printable
 from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
 from rosetta_jit.diagnostics import Diagnostic, render_all, to_json
 from rosetta_jit.errors import ReportError
+from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     import argparse

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from rosetta_jit.cli.values import dump
-from rosetta_jit.written import named
+from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -10,8 +10,8 @@ from rosetta_jit.catalogue import values as words
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
 from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
+from rosetta_jit.file_errors import named
 from rosetta_jit.recording import Message, is_recording, read_file, write_recording
-from rosetta_jit.written import named
 
 if TYPE_CHECKING:
     import argparse

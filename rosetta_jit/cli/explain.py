@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
-from rosetta_jit.written import named
+from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
     import argparse

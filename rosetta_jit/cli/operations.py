@@ -6,8 +6,8 @@ import json
 import sys
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cells import columns, printable
 from rosetta_jit.cli.arguments import Commands, add_command, add_mappings
+from rosetta_jit.terminal import columns, printable
 
 if TYPE_CHECKING:
     import argparse

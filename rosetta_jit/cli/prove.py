@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _judge() -> Judge:
-    from rosetta_jit.kernel.opinion import opinions
+    from rosetta_jit.kernel.proof.opinion import opinions
 
     return opinions
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from rosetta_jit.written import named
+from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,10 +9,10 @@ import numpy as np
 from tqdm import tqdm
 
 import rosetta_jit
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.demo.dynamic import dynamic_reader
 from rosetta_jit.demo.start import start_key, start_times_ms
 from rosetta_jit.demo.streams import Stream, load_streams
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.recording import Message, read_messages
+from rosetta_jit.startup.dataclass import dataclass
 
 RECORDINGS = Path(__file__).resolve().parent / "recordings"
 

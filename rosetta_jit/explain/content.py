@@ -12,28 +12,28 @@ from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
 from rosetta_jit.explain.lines import MAX_LINES, Line, Lines
 from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
 from rosetta_jit.frameworks.base import Readers, installed
-from rosetta_jit.frontend.mapping import parse
-from rosetta_jit.frontend.search import SearchPath
-from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.check import Checked, check
-from rosetta_jit.lowering.places import shown_fields, shown_names
-from rosetta_jit.lowering.reads import unread, unset
-from rosetta_jit.pipeline import Build
-from rosetta_jit.request import Request
+from rosetta_jit.language import typed
+from rosetta_jit.language.check.left_out import unread, unset
+from rosetta_jit.language.check.mapping import Checked, check
+from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.language.parse.mapping import parse
+from rosetta_jit.language.places import shown_fields, shown_names
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.lowering.scope import Message
-    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Rule
     from rosetta_jit.model.expr import Side as SideName
     from rosetta_jit.model.mapping import Mapping
 

@@ -13,11 +13,11 @@ from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.counts import count_text, named_counts
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import operands
 from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -6,22 +6,22 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import by_span, names_of, nodes, places, span_of
 from rosetta_jit.explain.notes import Note, notes
-from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.inverse_texts import as_written, for_type
-from rosetta_jit.lowering.places import shown_fields
+from rosetta_jit.language import typed
+from rosetta_jit.language.both_ways.inverse_texts import as_written, for_type
+from rosetta_jit.language.places import shown_fields
 from rosetta_jit.model.expr import Member
 from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.explain.nodes import Key
-    from rosetta_jit.lowering.others import Use
-    from rosetta_jit.lowering.typed import Place, Rule
+    from rosetta_jit.language.imports.mappings import Use
+    from rosetta_jit.language.typed import Place, Rule
     from rosetta_jit.model.expr import Expr, Path, Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.mapping import Rule as Untyped

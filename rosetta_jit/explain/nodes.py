@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.lowering import typed
+from rosetta_jit.language import typed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosetta_jit.lowering.typed import Place, Rule
+    from rosetta_jit.language.typed import Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
 

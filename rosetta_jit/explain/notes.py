@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.explain.nodes import nodes, places
-from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.conversions import describe, rounded_constant
-from rosetta_jit.lowering.unit_places import unit_at
-from rosetta_jit.lowering.units import TAKES, shown, unit_of
+from rosetta_jit.language import typed
+from rosetta_jit.language.conversions import describe, rounded_constant
+from rosetta_jit.language.units.conversion import TAKES, shown, unit_of
+from rosetta_jit.language.units.places import unit_at
 from rosetta_jit.model.types import Float, Int
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.lowering.typed import Change, ConversionRule, Rule
-    from rosetta_jit.lowering.unit_places import Unit
+    from rosetta_jit.language.typed import Change, ConversionRule, Rule
+    from rosetta_jit.language.units.places import Unit
 
 HOW: dict[ConversionRule, str] = {
     "widen": "without loss",

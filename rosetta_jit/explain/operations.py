@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 from rosetta_jit.explain.nodes import names_of, nodes, places
 from rosetta_jit.frameworks.base import Readers, installed
-from rosetta_jit.frontend.mapping import parse
-from rosetta_jit.frontend.search import SearchPath
-from rosetta_jit.lowering import typed
-from rosetta_jit.lowering.check import check
+from rosetta_jit.language import typed
+from rosetta_jit.language.check.mapping import check
+from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
 from rosetta_jit.model.types import Array, Bytes, Float, Int, String
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosetta_jit.lowering.typed import Expr, Place, Rule
+    from rosetta_jit.language.typed import Expr, Place, Rule
 
 Operation = Literal[
     "arithmetic",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cells import printable
 from rosetta_jit.explain.content import KernelCost
+from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     from rosetta_jit.explain.content import Direction, Explanation, Loss

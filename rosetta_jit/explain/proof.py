@@ -7,24 +7,24 @@ from dataclasses import replace
 from itertools import repeat
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.cells import printable
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.slots import slot_paths
 from rosetta_jit.kernel.ir import SetField
 from rosetta_jit.kernel.printer import statement_text
-from rosetta_jit.kernel.record import Record
-from rosetta_jit.kernel.verify import VerificationError, verify
-from rosetta_jit.pipeline import Build
-from rosetta_jit.request import Request, plain_parameters
+from rosetta_jit.kernel.proof.record import Record
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request, plain_parameters
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosetta_jit.kernel.ir import Kernel
-    from rosetta_jit.kernel.opinion import Opinion
-    from rosetta_jit.kernel.prove import Procedure
-    from rosetta_jit.kernel.record import Obligation
+    from rosetta_jit.kernel.proof.opinion import Opinion
+    from rosetta_jit.kernel.proof.prove import Procedure
+    from rosetta_jit.kernel.proof.record import Obligation
     from rosetta_jit.model.layout import Layout
 
     Judge = Callable[[Iterable[Obligation]], Iterator[Opinion]]
@@ -99,7 +99,7 @@ def proof(
     Parameters
     ----------
     judge
-        Who gives a second opinion: `rosetta_jit.kernel.opinion.opinions`.
+        Who gives a second opinion: `rosetta_jit.kernel.proof.opinion.opinions`.
 
     Raises
     ------

@@ -6,7 +6,7 @@ from collections import Counter
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cells import columns, printable
+from rosetta_jit.terminal import columns, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,15 +5,15 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
-from rosetta_jit.lowering.places import shown_names
+from rosetta_jit.language.places import shown_names
 from rosetta_jit.model.printer import show_expr, show_type, show_way
 from rosetta_jit.model.types import Array, Optional, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.lowering.scope import Message
+    from rosetta_jit.language.scope import Message
     from rosetta_jit.model.types import Field, Type
 
 MAX_ROWS = 200

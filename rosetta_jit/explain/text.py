@@ -5,9 +5,9 @@ from __future__ import annotations
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cells import cells, columns, cut, padded, wrapped
 from rosetta_jit.diagnostics import render
 from rosetta_jit.explain.phrases import cost, heading, kind, loss, missing, shown
+from rosetta_jit.terminal import cells, columns, cut, padded, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,16 +7,16 @@ from fnmatch import fnmatch
 from functools import cache
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
-from rosetta_jit.dataclass import dataclass
-from rosetta_jit.garbage import imported
 from rosetta_jit.model.types import name_parts
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosetta_jit.frameworks.features import Probes
-    from rosetta_jit.frontend.idl import FrontEnd
     from rosetta_jit.model.types import Schema, Struct
+    from rosetta_jit.parsing.idl import FrontEnd
     from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
 
@@ -204,8 +204,8 @@ def manners_of(place: str) -> Manners:
 @cache
 def installed() -> Mapping[str, Framework]:
     """Every framework by name: ours, and those of installed packages."""
-    from rosetta_jit.frameworks.offered import may_be_offered
     from rosetta_jit.frameworks.table import FRAMEWORKS
+    from rosetta_jit.startup.entry_points import may_be_offered
 
     frameworks = (*FRAMEWORKS, *_offered()) if may_be_offered(GROUP) else FRAMEWORKS
     return {framework.name: framework for framework in frameworks}

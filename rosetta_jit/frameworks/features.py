@@ -12,13 +12,13 @@ from dataclasses import field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import Choices
 from rosetta_jit.frameworks.feature_list import FEATURES
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts
 from rosetta_jit.source import Source
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Framework

@@ -1,4 +1,4 @@
-"""What a program's object code defines: its kernels, and the entries from CPython that stand around them (`backends/*.ll`)."""
+"""What a program's object code defines: its kernels, and the entries from CPython that stand around them (`backends/entry/*.ll`)."""
 
 from __future__ import annotations
 

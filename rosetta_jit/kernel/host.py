@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.arithmetic import FLOATS, Value, constant, limits
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Scalar

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import arithmetic, decimals
 from rosetta_jit.kernel.arithmetic import demand
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
@@ -67,6 +66,7 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

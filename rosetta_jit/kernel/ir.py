@@ -72,7 +72,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 Scalar = Literal["bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"]
 Order = Literal["<", ">"]

@@ -1,7 +1,7 @@
 """From an encoding to a kernel: once for each direction, by the same walk.
 
 Without rules, the fields of the wire are the fields of the holder. With rules, the walk finds the wire's fields, and the rules
-relate them to the holder's; where they cannot do so in place, the wire's message is staged (`rosetta_jit.lowering.stage`). Each attempt
+relate them to the holder's; where they cannot do so in place, the wire's message is staged (`rosetta_jit.lowering.staging`). Each attempt
 of an encoding becomes a body of the kernel.
 """
 
@@ -10,34 +10,34 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Kernel, Return
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
-from rosetta_jit.lowering.bear import bear, opened_lanes, places_left
-from rosetta_jit.lowering.bound import Found, NotInPlaceError, WireFields
-from rosetta_jit.lowering.defaults import has_array
-from rosetta_jit.lowering.discriminators import discriminators_first, told_unions
-from rosetta_jit.lowering.ending import end
-from rosetta_jit.lowering.fields import root_fields
-from rosetta_jit.lowering.rules import Runner
-from rosetta_jit.lowering.scope import Message
-from rosetta_jit.lowering.sides import HolderSide, WireSide
-from rosetta_jit.lowering.stage import staged_fields
-from rosetta_jit.lowering.supplies import Supplies, look_up_arrays
-from rosetta_jit.lowering.values import Values
-from rosetta_jit.lowering.walk import walk
+from rosetta_jit.language.check.discriminators import told_unions
+from rosetta_jit.language.resolve.defaults import has_array
+from rosetta_jit.language.scope import Message
+from rosetta_jit.lowering.codec.ending import end
+from rosetta_jit.lowering.codec.fields import root_fields
+from rosetta_jit.lowering.codec.walk import walk
+from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireFields
+from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
+from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
+from rosetta_jit.lowering.rules.sides import HolderSide, WireSide
+from rosetta_jit.lowering.rules.statements import Runner
+from rosetta_jit.lowering.rules.values import Values
+from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.births import Births
+from rosetta_jit.model.initial_values import Births
 from rosetta_jit.model.types import Struct
+from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Tagged
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.lowering.discriminators import Told
-    from rosetta_jit.lowering.fields import HolderFields
-    from rosetta_jit.lowering.typed import Rule
+    from rosetta_jit.language.check.discriminators import Told
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.layout import Layout
     from rosetta_jit.model.types import Schema, Type
@@ -102,7 +102,11 @@ def _in_order(mapped: Mapped, target: Type) -> Mapped:
     root = mapped.schema.resolve(target)
     assert isinstance(root, Struct)
     unions = told_unions(mapped.rules, Message(root, mapped.schema))
-    return replace(mapped, rules=discriminators_first(mapped.rules, unions, []), unions=unions) if unions else mapped
+    if not unions:
+        return mapped
+    from rosetta_jit.language.check.discriminator_order import discriminators_first
+
+    return replace(mapped, rules=discriminators_first(mapped.rules, unions, []), unions=unions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,21 +144,21 @@ def _own(encoding: Encoding, attempt: Codec, holder: HolderFields) -> None:
     """The holder is of the wire's own type. There are four ways to lower it, and what one of them needs is imported for it alone."""
     writer = holder.writer
     if encoding.nested:
-        from rosetta_jit.lowering.descent import descend
+        from rosetta_jit.lowering.codec.descent import descend
 
         descend(_nested(encoding, attempt), attempt, holder, writer)
     elif not isinstance(attempt, Tagged):
         with writer.whole():
             walk(attempt, holder, writer)
     elif writer.direction == "decode":
-        from rosetta_jit.lowering.recursion import cursors, read_rows
-        from rosetta_jit.lowering.tagged import read_message
+        from rosetta_jit.lowering.codec.recursion import cursors, read_rows
+        from rosetta_jit.lowering.codec.tagged import read_message
 
         rows = cursors(writer, holder.layout)
         read_message(writer, holder, attempt, END, fresh=True, depth=index(0))
         read_rows(encoding, holder, writer, rows)
     else:
-        from rosetta_jit.lowering.recursion_write import write_root
+        from rosetta_jit.lowering.codec.recursion_write import write_root
 
         write_root(encoding, holder, attempt, writer)
 

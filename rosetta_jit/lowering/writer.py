@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel import state
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -37,6 +36,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.shape import subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

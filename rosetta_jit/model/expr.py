@@ -13,7 +13,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Type

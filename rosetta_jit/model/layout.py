@@ -19,7 +19,6 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.types import (
     Array,
     Bool,
@@ -35,6 +34,7 @@ from rosetta_jit.model.types import (
     Struct,
     Union,
 )
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr, Len, Path
@@ -126,7 +126,7 @@ class Reject:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """``.place <-> value``, ``len(.place) <-> value``: what `lowering.derive` makes rules for both directions of."""
+    """``.place <-> value``, ``len(.place) <-> value``: what `language.both_ways.derive` makes rules for both directions of."""
 
     place: Path | Len
     value: Expr

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.runtime import specs
 from rosetta_jit.runtime.specs import (
     BASETYPE,
@@ -36,6 +35,7 @@ from rosetta_jit.runtime.specs import (
     with_attributes,
     write_word,
 )
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

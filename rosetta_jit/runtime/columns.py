@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import String
 from rosetta_jit.runtime.cells import dtype_of
@@ -17,6 +16,7 @@ from rosetta_jit.runtime.holder import coerce
 from rosetta_jit.runtime.holder.message import place
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Cell, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import elements
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.lanes import Lanes
 
 _SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
-"""The compiled `sizes` (`backends/encode.ll`): offsets, first, count, state; the first message that was not measured."""
+"""The compiled `sizes` (`backends/entry/encode.ll`): offsets, first, count, state; the first message that was not measured."""
 
 
 class EncoderBase(Program):

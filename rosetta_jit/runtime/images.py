@@ -12,8 +12,8 @@ from importlib.util import find_spec
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import MappingError
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

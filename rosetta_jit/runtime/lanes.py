@@ -5,7 +5,7 @@ small. A lane that grows moves to memory of its own; whoever still has a view ke
 
 Lanes have one user at a time. Code that changes them, or runs a kernel on them, does so inside ``with lanes:``, which raises `InUse` where
 another thread is inside. Code that only reads takes no lock: `Lanes.consistent` reads again where the lanes have changed meanwhile.
-Compiled entries keep to the same rule by themselves (`backends/*.ll`).
+Compiled entries keep to the same rule by themselves (`backends/entry/*.ll`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from rosetta_jit.kernel.state import (
     WASTED,
     lane_word,
 )
-from rosetta_jit.model.births import FirstCase, FixedArray
+from rosetta_jit.model.initial_values import FirstCase, FixedArray
 from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosetta_jit.model.births import Birth
+    from rosetta_jit.model.initial_values import Birth
     from rosetta_jit.model.layout import Layout
 
 _What = TypeVar("_What")

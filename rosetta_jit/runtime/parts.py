@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.state import USED, VALID, lane_word
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.runtime.lanes import Lanes, in_use
 from rosetta_jit.runtime.plan import plan
 from rosetta_jit.runtime.rows import Rows, elements, lent, offsets, picked
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from rosetta_jit.model.births import Birth
+    from rosetta_jit.model.initial_values import Birth
     from rosetta_jit.model.layout import Layout, Slot
 
     Index: TypeAlias = slice | ArrayLike

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.state import ADDRESS, CLEAN, STRIDE, VALID, lane_word, state_words
-from rosetta_jit.model.births import FixedArray
+from rosetta_jit.model.initial_values import FixedArray
 from rosetta_jit.model.layout import Number
 from rosetta_jit.runtime.cells import BYTES, dtype_of
 from rosetta_jit.runtime.memory import aligned
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosetta_jit.model.births import Birth
+    from rosetta_jit.model.initial_values import Birth
     from rosetta_jit.model.layout import Layout
 
 INITIAL_BYTES = 64

@@ -11,11 +11,11 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.cached import cached_property
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.code.native import Library
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
-    from rosetta_jit.runtime.native import Library
     from rosetta_jit.runtime.plan import Plan
 
 MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
-"""The compiled `many` (`backends/many.ll`): buffer, its size, offsets, first, count, state; the first message that was not done."""
+"""The compiled `many` (`backends/entry/many.ll`): buffer, its size, offsets, first, count, state; the first message that was not done."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import SPAN_BYTES
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Case
 from rosetta_jit.runtime.run import readable
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, GROW, GROW_LANE, GROW_ROWS, RESULT
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence

@@ -11,8 +11,8 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.cli import main
-from rosetta_jit.pipeline import Build
-from rosetta_jit.runtime.cache import NOTE, Cache
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.runtime.cache.kernels import NOTE, Cache
 from rosetta_jit.runtime.functions import kinds
 
 HEAD = 'import "s.bottle-schema"\nimport "r.proto"\nfunction f(float64): float64\ndata-holder: R\nwire-schema: sensor\n'

@@ -294,7 +294,7 @@ def test_two_threads_decode_many():
 def test_the_typed_kernel_serves_users_own_loops():
     from numba import njit
 
-    from rosetta_jit.backends.numba import data_pointer
+    from rosetta_jit.backends.numba.function import data_pointer
 
     decoder = rj.Decoder(TORSO, encoding="yarp3")
     kernel, holder = decoder.kernel, decoder.new()

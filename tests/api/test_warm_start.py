@@ -15,7 +15,7 @@ import rosetta_jit as rj
 decode = rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
 angles = decode(struct.pack("<ii3d", 266, 3, 180, 0, 0)).angles
 assert abs(angles[0] - 3.14159) < 1e-4, angles
-heavy = ("numba", "lark", "rosetta_jit.pipeline", "rosetta_jit.model.expr", "rosetta_jit.lowering.lower", "google.protobuf")
+heavy = ("numba", "lark", "rosetta_jit.pipeline.build", "rosetta_jit.model.expr", "rosetta_jit.lowering.lower", "google.protobuf")
 print(*[name for name in heavy if name in sys.modules])
 print("llvmlite.binding" in sys.modules, file=sys.stderr)
 """
@@ -89,8 +89,9 @@ import numpy, llvmlite.binding
 before = set(sys.modules)
 import rosetta_jit as rj
 rj.Decoder("own.mapping", encoding="yarp3")
-lowering = ("packing", "laws", "tagged", "recursion_write", "descent")
-unused = {"lark", "numba", "difflib", "fractions", "pint", "PIL", *(f"rosetta_jit.lowering.{name}" for name in lowering)}
+codec = (f"lowering.codec.{name}" for name in ("tagged", "recursion_write", "descent"))
+rooms = ("language.both_ways.packing", "language.laws.guarantees", *codec)
+unused = {"lark", "numba", "difflib", "fractions", "pint", "PIL", *(f"rosetta_jit.{name}" for name in rooms)}
 print(*sorted(unused & (set(sys.modules) - before)))
 """
 

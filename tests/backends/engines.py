@@ -6,11 +6,11 @@ import ctypes
 from functools import cache
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.link import compile_program
-from rosetta_jit.backends.python import compile_python
+from rosetta_jit.backends.entry.link import compile_program
+from rosetta_jit.backends.python.function import compile_python
 from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.runtime import native
+from rosetta_jit.runtime.code import native
 from tests.backends.holders import KERNEL
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from threading import get_ident
 import numpy as np
 import pytest
 
-from rosetta_jit.backends.link import compile_program
+from rosetta_jit.backends.entry.link import compile_program
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, VALID
-from rosetta_jit.runtime import native
 from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, is_native, message_base
+from rosetta_jit.runtime.code import native
 from tests.backends import kernels
 from tests.backends.engines import outcome
 from tests.backends.holders import rows

@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import pytest
 
-from rosetta_jit.backends.link import assembly, compile_program, llvm_text, object_file
+from rosetta_jit.backends.entry.link import assembly, compile_program, llvm_text, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.shape import are_straight, have_short_counted_loops
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
-from rosetta_jit.runtime import native
-from rosetta_jit.runtime.allowed import ALLOWED
-from rosetta_jit.runtime.object_file import undefined_symbols
+from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.allowed import ALLOWED
+from rosetta_jit.runtime.code.object_file import undefined_symbols
 from tests.backends import kernels
 
 PROGRAMS = [("decode", (kernels.counted(),)), ("borrow", (kernels.tagged(),)), ("encode", kernels.encoder())]

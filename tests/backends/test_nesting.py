@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from rosetta_jit.backends.link import compile_program
-from rosetta_jit.backends.python import compile_python
+from rosetta_jit.backends.entry.link import compile_program
+from rosetta_jit.backends.python.function import compile_python
 from rosetta_jit.kernel.ir import Binary as Operation
 from rosetta_jit.kernel.ir import Compare, Const, Expr, For, If, Load, Require, Return
 from rosetta_jit.kernel.terms import BEGIN, index

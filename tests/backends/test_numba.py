@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from rosetta_jit.backends.numba import data_pointer, typed
+from rosetta_jit.backends.numba.function import data_pointer, typed
 from tests.backends import kernels
 from tests.backends.holders import rows
 from tests.backends.messages import GOOD

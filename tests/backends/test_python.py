@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from rosetta_jit.backends.base import Namespace
-from rosetta_jit.backends.python import compile_python, python_text
+from rosetta_jit.backends.python.function import compile_python, python_text
 from rosetta_jit.kernel.ir import Let, Local, Require, Return, Site
 from rosetta_jit.kernel.terms import BEGIN, index
 from tests.backends import kernels

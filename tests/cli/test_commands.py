@@ -138,7 +138,7 @@ def test_a_file_that_is_not_there_is_exit_code_1(capsys):
 
 
 def test_cache_commands(tmp_path, monkeypatch, capsys):
-    from rosetta_jit.runtime.cache import ENTRY, Cache
+    from rosetta_jit.runtime.cache.kernels import ENTRY, Cache
 
     monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path / "cache"))
     Cache.default().put("kernel", {}, b"code")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rosetta_jit.cli import main, prove
-from rosetta_jit.kernel import claims, symbolic
+from rosetta_jit.kernel.proof import claims, symbolic
 
 MAPPINGS = Path(__file__).resolve().parent.parent.parent / "mappings"
 SHIPPED = sorted(str(path.relative_to(MAPPINGS)) for path in MAPPINGS.rglob("*.mapping"))

@@ -90,8 +90,8 @@ def test_sums_join_what_is_repeated_as_often():
 def test_the_bytes_of_a_message_are_what_a_decoder_reads(size, count):
     """A decoder of a fixed message reads each byte once."""
     import rosetta_jit as rj
-    from rosetta_jit.pipeline import Build
-    from rosetta_jit.request import Request
+    from rosetta_jit.pipeline.build import Build
+    from rosetta_jit.pipeline.request import Request
 
     text = f'"m" ({" ".join(f"""("f{n}" :double)""" for n in range(count))})'
     request = Request("decode", type="m", files=(("m.bottle-schema", text),), encoding="yarp4", backend="python")

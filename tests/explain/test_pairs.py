@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from rosetta_jit.explain.operations import OPERATIONS, operations
-from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.source import Source
 
 ROOT = Path(__file__).resolve().parents[2]

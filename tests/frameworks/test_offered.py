@@ -9,7 +9,7 @@ from importlib.metadata import entry_points
 
 import pytest
 
-from rosetta_jit.frameworks.offered import may_be_offered
+from rosetta_jit.startup.entry_points import may_be_offered
 
 GROUP = "a.group.of.tests"
 OFFERS = f"[{GROUP}]\nthing = somewhere:THING\n"

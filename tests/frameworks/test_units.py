@@ -9,7 +9,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.frameworks.base import Readers, installed
 from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set
-from rosetta_jit.frontend.search import Reading, SearchPath, shipped_folders
+from rosetta_jit.language.imports.search import Reading, SearchPath, shipped_folders
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref
 from tests.frameworks.protobuf.proto_files import SHIPPED

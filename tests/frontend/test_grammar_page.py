@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from rosetta_jit.frontend.templates import GRAMMAR
+from rosetta_jit.language.parse.templates import GRAMMAR
 from tests.frontend.ebnf import ebnf
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "language.md"

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frontend.mapping import parse
+from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.model.expr import Binary, Call, Index, Len, Literal, Member, Name, Path, Unary
 from rosetta_jit.model.mapping import Assign, For, Import, SetLength
 from rosetta_jit.source import Source

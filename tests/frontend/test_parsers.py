@@ -17,9 +17,10 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.yarp import sexpr
-from rosetta_jit.frontend import parsers, templates
-from rosetta_jit.frontend.lalr import Tree, UnexpectedCharacterError, UnexpectedTokenError
-from rosetta_jit.frontend.tables import lark_of
+from rosetta_jit.language.parse import templates
+from rosetta_jit.parsing import parsers
+from rosetta_jit.parsing.lalr import Tree, UnexpectedCharacterError, UnexpectedTokenError
+from rosetta_jit.parsing.tables import lark_of
 
 ROOT = Path(__file__).resolve().parents[2]
 

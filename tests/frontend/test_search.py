@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.frontend.search import MAX_FILE_BYTES, Reading, SearchPath, shipped_folders
+from rosetta_jit.language.imports.search import MAX_FILE_BYTES, Reading, SearchPath, shipped_folders
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:

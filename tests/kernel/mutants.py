@@ -28,15 +28,16 @@ PROOF = (
     "integers",
     "obligations",
     "scope",
-    "shape",
     "formula",
     "prove",
     "linear",
     "paths",
     "loops",
 )
-PASSES = ("affine", "bulk", "drop", "fold", "hoist", "merge", "reuse", "simplify", "sink", "unroll", "widen", "__init__")
-MODULES = tuple(f"rosetta_jit.kernel.{name}" for name in PROOF) + tuple(f"rosetta_jit.lowering.passes.{name}" for name in PASSES)
+PASSES = ("affine", "bulk", "drop", "fold", "hoist", "merge", "reuse", "simplify", "sink", "unroll", "widen", "order")
+MODULES = tuple(
+    f"rosetta_jit.kernel.{name}" for name in ("shape", *(f"proof.{name}" for name in PROOF), *(f"passes.{name}" for name in PASSES))
+)
 
 NO_PROOF = {
     "is_large",
@@ -66,8 +67,8 @@ COMPARED = {
 }
 PRELUDE = """
 def _by(formula, by):
-    from rosetta_jit.kernel.formula import All, Any
-    from rosetta_jit.kernel.linear import Linear
+    from rosetta_jit.kernel.proof.formula import All, Any
+    from rosetta_jit.kernel.proof.linear import Linear
     match formula:
         case Linear(constant, terms):
             return Linear(constant + by, terms)

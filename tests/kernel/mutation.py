@@ -105,8 +105,8 @@ class Expected:
 
 def _lowered() -> bytes:
     """Kernels of shipped mappings as the passes get them."""
-    from rosetta_jit.pipeline import Build
-    from rosetta_jit.request import Request
+    from rosetta_jit.pipeline.build import Build
+    from rosetta_jit.pipeline.request import Request
 
     made = {}
     for mapping, encoding in MAPPINGS.items():

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.kernel.formula import All, Any, negated
-from rosetta_jit.kernel.linear import Linear, plus, times
+from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
-from rosetta_jit.kernel.prove import Facts
-from rosetta_jit.kernel.record import Record
-from rosetta_jit.kernel.verify import VerificationError, verify
-from rosetta_jit.lowering import passes
+from rosetta_jit.kernel.proof.formula import All, Any, negated
+from rosetta_jit.kernel.proof.linear import Linear, plus, times
+from rosetta_jit.kernel.proof.prove import Facts
+from rosetta_jit.kernel.proof.record import Record
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from tests.kernel import kernels
 from tests.kernel.unsafe import ACCEPTED, REFUSED
 

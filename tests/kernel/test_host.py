@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rosetta_jit.backends.python import compile_python
+from rosetta_jit.backends.python.function import compile_python
 from rosetta_jit.kernel import interpret
 from rosetta_jit.kernel.host import RefusedError
 from rosetta_jit.kernel.ir import (
@@ -29,12 +29,12 @@ from rosetta_jit.kernel.ir import (
     Used,
     Wire,
 )
+from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.kernel.shape import shape_error
 from rosetta_jit.kernel.state import NOW, NUMBER, STRIDE, state_words
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index
-from rosetta_jit.kernel.verify import VerificationError, verify
-from rosetta_jit.lowering import passes
 
 FOUND = Local("i64", "found")
 FAILED = Failure(1, BEGIN)

@@ -6,11 +6,11 @@ from contextlib import suppress
 
 import pytest
 
-from rosetta_jit.kernel import claims, integers, paths, prove
-from rosetta_jit.kernel.linear import minus, shifted
-from rosetta_jit.kernel.opinion import opinions
-from rosetta_jit.kernel.record import Record
-from rosetta_jit.kernel.verify import VerificationError, verify
+from rosetta_jit.kernel.proof import claims, integers, paths, prove
+from rosetta_jit.kernel.proof.linear import minus, shifted
+from rosetta_jit.kernel.proof.opinion import opinions
+from rosetta_jit.kernel.proof.record import Record
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from tests.kernel import kernels
 from tests.kernel.unsafe import ACCEPTED, REFUSED
 

@@ -7,14 +7,14 @@ import z3
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.kernel import integers
-from rosetta_jit.kernel.formula import All, Any, equal, negated
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Load, Local, Select
-from rosetta_jit.kernel.linear import Linear, contradict, minus, plus, shifted, times
-from rosetta_jit.kernel.obligations import UnprovenError
-from rosetta_jit.kernel.prove import Facts
-from rosetta_jit.kernel.scope import entry
-from rosetta_jit.kernel.symbolic import evaluate
+from rosetta_jit.kernel.proof import integers
+from rosetta_jit.kernel.proof.formula import All, Any, equal, negated
+from rosetta_jit.kernel.proof.linear import Linear, contradict, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.obligations import UnprovenError
+from rosetta_jit.kernel.proof.prove import Facts
+from rosetta_jit.kernel.proof.scope import entry
+from rosetta_jit.kernel.proof.symbolic import evaluate
 from rosetta_jit.kernel.terms import index
 from tests.kernel.kernels import kernel
 

@@ -8,8 +8,9 @@ import re
 
 import pytest
 
-from rosetta_jit.kernel import claims, contracts, effects, loops, paths, shape, symbolic, verify
-from rosetta_jit.kernel.record import Record
+from rosetta_jit.kernel import shape
+from rosetta_jit.kernel.proof import claims, contracts, effects, loops, paths, symbolic, verify
+from rosetta_jit.kernel.proof.record import Record
 from tests.kernel import kernels
 from tests.kernel.unsafe import ACCEPTED, REFUSED
 

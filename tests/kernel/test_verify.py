@@ -30,8 +30,8 @@ from rosetta_jit.kernel.ir import (
     While,
     Wire,
 )
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
-from rosetta_jit.kernel.verify import VerificationError, verify
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
 

@@ -21,14 +21,14 @@ from rosetta_jit.catalogue import resolve as resolve_words
 from rosetta_jit.catalogue import texts as texts_words
 from rosetta_jit.catalogue import unit_files as unit_files_words
 from rosetta_jit.catalogue import units as units_words
-from rosetta_jit.cells import cells
 from rosetta_jit.diagnostics import MAX_LINE, render, render_all, to_json
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.base import Readers, installed
-from rosetta_jit.frontend.mapping import parse
-from rosetta_jit.frontend.search import SearchPath
-from rosetta_jit.lowering.check import check
+from rosetta_jit.language.check.mapping import check
+from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.source import Source
+from rosetta_jit.terminal import cells
 from tests.golden import GOLDEN, check_golden
 
 if TYPE_CHECKING:

@@ -196,7 +196,7 @@ pack-rules:
 def test_a_warm_start_and_lifetimes(monkeypatch):
     first = rj.Decoder("m.mapping", schema=FILES, encoding="yarp3")
     message = wire(saved(picture("RGB")))
-    monkeypatch.setattr("rosetta_jit.pipeline.Build.image", None)
+    monkeypatch.setattr("rosetta_jit.pipeline.build.Build.image", None)
     second = rj.Decoder("m.mapping", schema=FILES, encoding="yarp3")
     assert bytes(second(message).data) == picture("RGB").tobytes()
     del second

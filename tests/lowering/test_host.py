@@ -148,7 +148,7 @@ def test_size_and_bytes_agree(backend):
 
 def test_a_warm_start_compiles_nothing(monkeypatch):
     decode = decoder(UNPACK, "numba", f=calibrate)
-    monkeypatch.setattr("rosetta_jit.pipeline.Build.image", None)
+    monkeypatch.setattr("rosetta_jit.pipeline.build.Build.image", None)
     assert decoder(UNPACK, "numba", f=calibrate)(write(x=1.0)).f == decode(write(x=1.0)).f
 
 
@@ -231,7 +231,7 @@ def test_what_does_not_compile(function, why, backend):
 
 @pytest.mark.parametrize("backend", ["numba", "llvm"])
 def test_without_numba(monkeypatch, backend):
-    monkeypatch.setattr("rosetta_jit.given.find_spec", lambda _: None)
+    monkeypatch.setattr("rosetta_jit.pipeline.user_functions.find_spec", lambda _: None)
     (found,) = failed(backend=backend, f=lambda x, i: x - i)
     assert found.code == "no-numba"
 
@@ -244,7 +244,7 @@ def test_results_of_another_type_are_refused(backend):
 
 
 def test_check_needs_no_functions(tmp_path):
-    from rosetta_jit.pipeline import check_mapping
+    from rosetta_jit.pipeline.build import check_mapping
 
     for name, text in {**FILES, "m.mapping": HEAD + UNPACK}.items():
         (tmp_path / name).write_text(text)

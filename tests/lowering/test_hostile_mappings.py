@@ -10,10 +10,10 @@ import rosetta_jit as rj
 from rosetta_jit.diagnostics import MAX_REPORTED, Diagnostic, render, render_all, to_json
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.base import Readers, installed
-from rosetta_jit.frontend.mapping import parse
-from rosetta_jit.frontend.search import SearchPath
+from rosetta_jit.language.check.mapping import check
+from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.lowering import writer
-from rosetta_jit.lowering.check import check
 from rosetta_jit.source import Source, Span
 
 FIELDS = range(300)
@@ -119,7 +119,7 @@ def test_many_diagnostics_are_counted():
 @pytest.mark.parametrize("text", ["\t\t.x", "日本語 .x", "e\u0301e\u0301 .x", "a" * 500 + " .x", "\x00\x1b .x"])
 def test_a_caret_stands_below_its_place(text):
     """As many cells before the caret as before the place, however wide the characters are."""
-    from rosetta_jit.cells import cells
+    from rosetta_jit.terminal import cells
 
     source = Source("m", f"first\n{text} last\n")
     start = source.text.index(".x")

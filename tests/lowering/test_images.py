@@ -6,8 +6,8 @@ import pytest
 
 from rosetta_jit.kernel.ir import Copy, For, Let, SetField, Store
 from rosetta_jit.kernel.shape import statements
-from rosetta_jit.pipeline import Build
-from rosetta_jit.request import Request
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
 
 
 def kernel(mapping, direction):

@@ -15,8 +15,8 @@ import rosetta_jit as rj
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.lowering.chain import Rounding
-    from rosetta_jit.lowering.laws import Laws
+    from rosetta_jit.language.laws.chain import Rounding
+    from rosetta_jit.language.laws.guarantees import Laws
 
 HEAD = 'import "wire.bottle-schema"\nimport "holder.proto"\ndata-holder: h.Holder\nwire-schema: wire\n'
 COLOURS = {"mono8": "GRAY", "rgb8": "RGB", "bgr8": "BGR", "8UC1": "GRAY"}

@@ -18,7 +18,7 @@ from tests.lowering.test_laws import assert_law, files
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.lowering.laws import Laws
+    from rosetta_jit.language.laws.guarantees import Laws
 
 
 @dataclass

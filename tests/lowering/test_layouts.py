@@ -8,8 +8,8 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.kernel.ir import Copy, For, SetField
 from rosetta_jit.kernel.shape import statements
-from rosetta_jit.pipeline import Build
-from rosetta_jit.request import Request
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
 from tests.lowering.pairs import pair
 
 BACKENDS = ["llvm", "python", "interpreter"]

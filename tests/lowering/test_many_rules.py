@@ -8,9 +8,9 @@ import pstats
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.lowering import passes
-from rosetta_jit.pipeline import Build
-from rosetta_jit.request import Request
+from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
 from tests.lowering.texts import BACKENDS
 
 BOTTLE = {"w.bottle-schema": '"w" (("line" :string) ("unit" :string))'}

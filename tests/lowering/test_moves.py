@@ -29,16 +29,16 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
 )
+from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.passes.bulk import bulk
+from rosetta_jit.kernel.passes.drop import drop
+from rosetta_jit.kernel.passes.hoist import hoist
+from rosetta_jit.kernel.passes.reuse import reuse
+from rosetta_jit.kernel.passes.simplify import simplify
+from rosetta_jit.kernel.proof.verify import verify
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.state import ERROR_INDICES
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
-from rosetta_jit.kernel.verify import verify
-from rosetta_jit.lowering import passes
-from rosetta_jit.lowering.passes.bulk import bulk
-from rosetta_jit.lowering.passes.drop import drop
-from rosetta_jit.lowering.passes.hoist import hoist
-from rosetta_jit.lowering.passes.reuse import reuse
-from rosetta_jit.lowering.passes.simplify import simplify
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, expect, i64, kernel, need
 

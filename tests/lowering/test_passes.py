@@ -9,16 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.kernel.ir import Expect, For, If, Let, Load, Local, Place, Require, Return, SetField
+from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.passes.drop import drop
+from rosetta_jit.kernel.passes.hoist import hoist
+from rosetta_jit.kernel.passes.merge import merge
+from rosetta_jit.kernel.passes.simplify import simplify
+from rosetta_jit.kernel.passes.unroll import unroll
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.proof.verify import verify
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.kernel.terms import BEGIN, ROW, add, index, mul
-from rosetta_jit.kernel.verify import verify
-from rosetta_jit.lowering import passes
-from rosetta_jit.lowering.passes.drop import drop
-from rosetta_jit.lowering.passes.hoist import hoist
-from rosetta_jit.lowering.passes.merge import merge
-from rosetta_jit.lowering.passes.simplify import simplify
-from rosetta_jit.lowering.passes.unroll import unroll
 from tests.golden import GOLDEN, check_golden
 from tests.kernel import kernels
 from tests.kernel.kernels import ROW_EXISTS, compare, i64, kernel, need

@@ -10,9 +10,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.frameworks.base import Readers, installed
-from rosetta_jit.frontend.search import Reading, SearchPath
-from rosetta_jit.frontend.unit_file import parse
-from rosetta_jit.lowering.annotate import annotated
+from rosetta_jit.language.imports.search import Reading, SearchPath
+from rosetta_jit.language.parse.unit_file import parse
+from rosetta_jit.language.units.side_files import annotated
 from rosetta_jit.model.types import Schema, Struct
 
 UREG = pint.UnitRegistry()

@@ -9,11 +9,11 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.frameworks.base import Readers, installed
-from rosetta_jit.frontend.mapping import parse
-from rosetta_jit.frontend.search import SearchPath
-from rosetta_jit.lowering.check import check
-from rosetta_jit.lowering.typed import EachElement, Rescale
-from rosetta_jit.lowering.unit_changes import inserted
+from rosetta_jit.language.check.mapping import check
+from rosetta_jit.language.imports.search import SearchPath
+from rosetta_jit.language.parse.mapping import parse
+from rosetta_jit.language.typed import EachElement, Rescale
+from rosetta_jit.language.units.wholes import inserted
 
 UREG = pint.UnitRegistry()
 BACKENDS = ["llvm", "python", "interpreter"]

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.lowering.dimensions import USUAL, conversion
+from rosetta_jit.language.units.dimensions import USUAL, conversion
 
 HEAD = 'import "w.bottle-schema"\nimport "h.bottle-schema"\ndata-holder: h\nwire-schema: w\n'
 

@@ -10,8 +10,8 @@ from hashlib import sha256
 import pytest
 
 from rosetta_jit.errors import CacheWarning
-from rosetta_jit.runtime.cache import ENTRY, MANIFEST, Cache
-from rosetta_jit.runtime.sealed import MAGIC, DamagedError, seal, unseal
+from rosetta_jit.runtime.cache.kernels import ENTRY, MANIFEST, Cache
+from rosetta_jit.runtime.cache.sealed import MAGIC, DamagedError, seal, unseal
 
 NAME = sha256(b"a kernel").hexdigest()
 OTHER = sha256(b"another kernel").hexdigest()

@@ -11,9 +11,9 @@ import warnings
 import pytest
 
 from rosetta_jit.errors import CacheWarning
-from rosetta_jit.runtime import stores
-from rosetta_jit.runtime.cache import ENTRY, Cache
-from rosetta_jit.runtime.usage import MAX_RECORDS, USAGE
+from rosetta_jit.runtime.cache import stores
+from rosetta_jit.runtime.cache.kernels import ENTRY, Cache
+from rosetta_jit.runtime.cache.usage import MAX_RECORDS, USAGE
 
 needs_root = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give a file away")
 

@@ -6,12 +6,12 @@ import subprocess
 import sys
 import time
 
-from rosetta_jit.runtime.cache import ENTRY, Cache
+from rosetta_jit.runtime.cache.kernels import ENTRY, Cache
 
 WRITER = """
 import sys
 from pathlib import Path
-from rosetta_jit.runtime.cache import Cache
+from rosetta_jit.runtime.cache.kernels import Cache
 cache, turn = Cache(Path(sys.argv[1])), 0
 print("ready", flush=True)
 while True:
@@ -22,7 +22,7 @@ while True:
 COLD = """
 import sys, warnings
 from pathlib import Path
-from rosetta_jit.runtime.cache import Cache
+from rosetta_jit.runtime.cache.kernels import Cache
 warnings.simplefilter("error")
 cache = Cache(Path(sys.argv[1]))
 for turn in range(50):
@@ -34,7 +34,7 @@ for turn in range(50):
 
 NAMES = """
 import sys
-from rosetta_jit.runtime.cache_names import entry_name, request_name
+from rosetta_jit.runtime.cache.names import entry_name, request_name
 assert not {"numba", "lark", "importlib.metadata"} & set(sys.modules)
 print(entry_name("a kernel"), request_name({"mapping": "a", "encoding": None}), request_name({"encoding": None, "mapping": "a"}))
 """

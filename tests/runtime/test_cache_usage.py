@@ -8,17 +8,17 @@ import sys
 
 import pytest
 
-from rosetta_jit.runtime.cache import Cache
-from rosetta_jit.runtime.sealed import seal
-from rosetta_jit.runtime.stores import FolderStore
-from rosetta_jit.runtime.usage import MAX_RECORDS, TOTAL, USAGE
+from rosetta_jit.runtime.cache.kernels import Cache
+from rosetta_jit.runtime.cache.sealed import seal
+from rosetta_jit.runtime.cache.stores import FolderStore
+from rosetta_jit.runtime.cache.usage import MAX_RECORDS, TOTAL, USAGE
 
 SIZE = len(seal("000", {}, bytes(1000)))
 
 FILLER = """
 import sys
 from pathlib import Path
-from rosetta_jit.runtime.cache import Cache
+from rosetta_jit.runtime.cache.kernels import Cache
 cache = Cache(Path(sys.argv[1]), max_bytes=int(sys.argv[2]))
 for turn in range(100):
     cache.put(f"{sys.argv[3]}{turn:02}", {}, bytes(1000))

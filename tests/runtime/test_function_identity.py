@@ -343,7 +343,7 @@ from numba.extending import (
     type_callable, typeof_impl,
 )
 from numba.experimental import jitclass
-from rosetta_jit.backends import functions, numba as ours
+from rosetta_jit.backends.numba import function as ours, user_functions as functions
 from rosetta_jit.runtime.functions.registered import doubts
 
 class Own(types.Type): pass

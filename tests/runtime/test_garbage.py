@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from rosetta_jit.garbage import SELDOM, seldom_collected
+from rosetta_jit.startup.garbage import SELDOM, seldom_collected
 
 
 @pytest.fixture(autouse=True)
@@ -47,7 +47,7 @@ IMPORTS = """
 import gc
 import subprocess
 import sys
-from rosetta_jit.garbage import imported
+from rosetta_jit.startup.garbage import imported
 FREEZE
 gc.collect()
 has_frozen = gc.get_freeze_count() > 0

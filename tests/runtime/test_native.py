@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 from llvmlite import binding
 
-from rosetta_jit.backends.link import compile_program, object_file
+from rosetta_jit.backends.entry.link import compile_program, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.runtime import native
-from rosetta_jit.runtime.allowed import ForeignCodeError
-from rosetta_jit.runtime.assembler import target_machine
-from rosetta_jit.runtime.object_file import undefined_symbols
-from rosetta_jit.runtime.prelink import prelinked
-from rosetta_jit.runtime.prelinked import MAGIC, from_bytes
+from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.allowed import ForeignCodeError
+from rosetta_jit.runtime.code.assembler import target_machine
+from rosetta_jit.runtime.code.object_file import undefined_symbols
+from rosetta_jit.runtime.code.prelink import prelinked
+from rosetta_jit.runtime.code.prelinked import MAGIC, from_bytes
 from tests.backends import kernels
 
 LINUX = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="ELF alone is examined")
@@ -76,9 +76,9 @@ def test_loading_imports_no_compiler(image, tmp_path):
     file = tmp_path / "image.o"
     file.write_bytes(image)
     script = (
-        "import sys, pathlib; from rosetta_jit.runtime import native\n"
+        "import sys, pathlib; from rosetta_jit.runtime.code import native\n"
         f"native.load(pathlib.Path({str(file)!r}).read_bytes(), ('kernel',))\n"
-        "print([name for name in ('numba', 'lark', 'rosetta_jit.backends.link', 'rosetta_jit.kernel.ir') if name in sys.modules])"
+        "print([name for name in ('numba', 'lark', 'rosetta_jit.backends.entry.link', 'rosetta_jit.kernel.ir') if name in sys.modules])"
     )
     answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "[]"
@@ -90,7 +90,7 @@ def test_prelinked_code_needs_no_linker(tmp_path):
     if not file.read_bytes().startswith(MAGIC):
         pytest.skip("this system has no prelinked code")
     script = (
-        "import sys, pathlib; from rosetta_jit.runtime import native\n"
+        "import sys, pathlib; from rosetta_jit.runtime.code import native\n"
         f"native.load(pathlib.Path({str(file)!r}).read_bytes(), ('kernel',))\n"
         "print('llvmlite' in sys.modules)"
     )

@@ -11,14 +11,14 @@ from types import SimpleNamespace
 import pytest
 from llvmlite import binding
 
-from rosetta_jit import runtime
-from rosetta_jit.backends.link import compile_program, object_file
+from rosetta_jit.backends.entry.link import compile_program, object_file
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.runtime import linker, native
-from rosetta_jit.runtime.allowed import ALLOWED, ForeignCodeError
-from rosetta_jit.runtime.assembler import target_machine
-from rosetta_jit.runtime.prelink import prelinked
-from rosetta_jit.runtime.prelinked import from_bytes, place, to_bytes
+from rosetta_jit.runtime import code
+from rosetta_jit.runtime.code import linker, native
+from rosetta_jit.runtime.code.allowed import ALLOWED, ForeignCodeError
+from rosetta_jit.runtime.code.assembler import target_machine
+from rosetta_jit.runtime.code.prelink import prelinked
+from rosetta_jit.runtime.code.prelinked import from_bytes, place, to_bytes
 from tests.backends import kernels
 from tests.backends.holders import KERNEL, rows
 from tests.backends.messages import hostile
@@ -118,9 +118,9 @@ def permissions(address):
 
 def test_a_system_that_executes_no_memory_is_told(monkeypatch):
     image = prelinked(compiled(COUNTER))
-    given_up, real = [], runtime.prelinked._system()
+    given_up, real = [], code.prelinked._system()
     refusing = SimpleNamespace(mmap=real.mmap, mprotect=lambda *_: -1, munmap=lambda *extent: given_up.append(real.munmap(*extent)))
-    monkeypatch.setattr(runtime.prelinked, "_system", lambda: refusing)
+    monkeypatch.setattr(code.prelinked, "_system", lambda: refusing)
     with pytest.raises(ForeignCodeError, match='backend="python"'):
         place(image, ("next",))
     assert given_up == [0]

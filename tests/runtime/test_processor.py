@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from rosetta_jit.runtime import processor
+from rosetta_jit.runtime.code import processor
 
-TELL = "from rosetta_jit.runtime.processor import processor; print(processor())"
+TELL = "from rosetta_jit.runtime.code.processor import processor; print(processor())"
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="processes cannot be told where to run")

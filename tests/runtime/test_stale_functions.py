@@ -17,7 +17,7 @@ RUN = """
 import json, sys
 from pathlib import Path
 import rosetta_jit as rj
-from rosetta_jit.pipeline import Build
+from rosetta_jit.pipeline.build import Build
 from rosetta_jit.runtime.functions.identity import identify
 
 files = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import lcm as say
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.model.types import Array, Ref, Struct
 
 if TYPE_CHECKING:

@@ -9,19 +9,19 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import lcm as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.reading import read
 from rosetta_jit.frameworks.lcm.scalars import PRIMITIVES
 from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.tree import Member, StructDeclaration, qualified
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.lcm.tree import Declaration, File, Name
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 MAX_FILES = 4096

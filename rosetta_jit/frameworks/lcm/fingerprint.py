@@ -10,12 +10,12 @@ from collections import Counter
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import lcm as say
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.shape import shape_of, written_sizes
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Enum, Ref, Struct
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Field, Schema

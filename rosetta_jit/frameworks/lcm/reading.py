@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, TypeVar
 
-from rosetta_jit.catalogue import lcm as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS, Token, comment_before, tokens
 from rosetta_jit.frameworks.lcm.tree import Constant, EnumDeclaration, File, Member, Name, StructDeclaration, Word
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import lcm as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.frameworks.lcm.numbers import floating, integer
 from rosetta_jit.frameworks.lcm.scalars import BYTE, CONSTANTS, INTEGERS, PRIMITIVES
 from rosetta_jit.frameworks.lcm.shape import SIZES
@@ -14,6 +13,7 @@ from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.tree import Constant, Member, StructDeclaration, qualified
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

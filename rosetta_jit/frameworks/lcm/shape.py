@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Float, Int, Ref, String
+from rosetta_jit.startup.dataclass import dataclass
 
 SIZES = "sizes"
 """The option of a field that keeps its sizes as they were written, where constant ones were not plain decimals."""

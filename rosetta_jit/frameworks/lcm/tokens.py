@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import lcm as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.lcm import diagnostics as say
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

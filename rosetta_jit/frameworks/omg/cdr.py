@@ -12,11 +12,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import cdr as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.omg import cdr_diagnostics as words
 from rosetta_jit.model.layout import map_entry, recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
 from rosetta_jit.wire.codec import (
     MAX_OPEN_SIZES,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import idl as say
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.expressions import CONDITIONS, Binary, Expr, Literal, Operators, ScopedName, Unary, expression
 from rosetta_jit.frameworks.omg.lexer import Token

@@ -8,12 +8,12 @@ from math import isfinite
 from typing import TYPE_CHECKING, assert_never
 from typing import Literal as OneOf
 
-from rosetta_jit.catalogue import idl as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary
 from rosetta_jit.frameworks.omg.literals import LiteralError, number, unescape
 from rosetta_jit.frameworks.omg.scopes import LookupProblem
 from rosetta_jit.model.types import Bool, Float, Int, Ref, String
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.omg.lexer import Token

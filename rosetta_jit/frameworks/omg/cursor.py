@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import idl as say
+from rosetta_jit.frameworks.omg import diagnostics as say
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

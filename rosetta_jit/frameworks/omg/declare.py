@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import idl as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg import tree
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
@@ -16,6 +15,7 @@ from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
 from rosetta_jit.frameworks.omg.types import TypeMaker, enum_entry, value_of
 from rosetta_jit.model.types import Bool, Declaration, Enum, Field, Float, Int, NamedConstant, Ref, String, Struct, Type
 from rosetta_jit.source import Source, Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

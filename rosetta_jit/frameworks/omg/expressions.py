@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import idl as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from rosetta_jit.catalogue import idl as say
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.expressions import ARITHMETIC, Expr, Literal, Operators, ScopedName, expression
 from rosetta_jit.frameworks.omg.tree import Aggregate, Annotation, Basic, Enum, MapOf, Name, Sequence, Text, TypeSpec, Unsupported

@@ -16,7 +16,7 @@ from rosetta_jit.model.types import Schema
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 MAX_REPORTED = 100

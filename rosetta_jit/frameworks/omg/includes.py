@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 SHIPPED = ("", "openrtm", "ros2")

@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Literal, cast
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import idl as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import evaluate, fit, word_of
 from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
 from rosetta_jit.frameworks.omg.types import value_of
 from rosetta_jit.model.types import Bool, Enum, Field, Int, Optional, Ref, Type, Union
 from rosetta_jit.model.units import with_unit
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -8,20 +8,20 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import idl as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.conditions import answer_defined, holds
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
 from rosetta_jit.frameworks.omg.includes import find
 from rosetta_jit.frameworks.omg.lexer import Token, tokens
 from rosetta_jit.frameworks.omg.literals import LiteralError, unescape
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 MAX_FILES = 4096

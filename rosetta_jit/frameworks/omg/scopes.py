@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.catalogue import idl as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.omg import diagnostics as say
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

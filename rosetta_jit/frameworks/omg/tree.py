@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import idl as say
+from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.model.types import Array, Map, NamedConstant, Optional, Ref, Struct, Union
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.catalogue import orocos as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.depth import dependents, nesting_problems, reached
 from rosetta_jit.frameworks.orocos.includes import MAIN
 from rosetta_jit.frameworks.orocos.layout import MAX_SIZE, Extent, Layouts, pinned, unaccounted
 from rosetta_jit.frameworks.orocos.messages import NUMBERS, STRING, array, options_of, with_messages, wrapped
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Int, NamedConstant, Ref, Schema, Struct
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import orocos as words
+from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.model.types import Array, Ref, Struct
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from dataclasses import field
 from typing import TYPE_CHECKING, NoReturn
 from xml.parsers import expat
 
-from rosetta_jit.catalogue import orocos as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -13,12 +13,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import orocos as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.layout import UNDERLYING, Layouts
 from rosetta_jit.model.layout import recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Number, Padding, Path, Recursion, Repeat, Seq, Table
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from rosetta_jit.frameworks.orocos.declared import declared
 from rosetta_jit.frameworks.orocos.includes import gather
 
 if TYPE_CHECKING:
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 

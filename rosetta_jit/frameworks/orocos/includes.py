@@ -11,15 +11,15 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import orocos as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 USER, STANDARD = "/header/", "/standard/"

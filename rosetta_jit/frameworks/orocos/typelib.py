@@ -19,9 +19,8 @@ from dataclasses import field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import orocos as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.depth import nesting_problems, references
 from rosetta_jit.frameworks.orocos.elements import read_elements
 from rosetta_jit.frameworks.orocos.layout import MAX_SIZE, STRING, VECTOR, Layouts, pinned, unaccounted
@@ -29,14 +28,15 @@ from rosetta_jit.frameworks.orocos.messages import NUMBERS, array, with_messages
 from rosetta_jit.frameworks.orocos.messages import STRING as TEXT
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, Ref, Schema, Struct
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.orocos.elements import Element
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Declaration, Type
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 MAX_PROBLEMS, MAX_DEPTH = 20, 32

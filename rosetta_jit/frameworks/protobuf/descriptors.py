@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.catalogue import proto as say
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
 from rosetta_jit.frameworks.protobuf.proto.files import file_set
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import map_entry, recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Count, Encoding, Entry, Number, Path, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:

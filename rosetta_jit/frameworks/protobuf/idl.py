@@ -10,8 +10,8 @@ from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 

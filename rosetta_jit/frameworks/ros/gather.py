@@ -6,13 +6,13 @@ from collections import deque
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import ros as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.interfaces import parts
 from rosetta_jit.frameworks.ros.names import SUFFIX, Declared, declared_in, places, split
 from rosetta_jit.frameworks.ros.order import dependencies_first
 from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS, read
 from rosetta_jit.frameworks.ros.sections import sections
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros.dialect import Dialect
     from rosetta_jit.frameworks.ros.sections import Section
     from rosetta_jit.frameworks.ros.tree import Definition, Field, TypeName
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 MAX_MESSAGES = 4096

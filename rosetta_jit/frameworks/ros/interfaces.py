@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import ros as say
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.source import Source, Span
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import ros as say
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.model.layout import MAX_SLOTS
 
 if TYPE_CHECKING:

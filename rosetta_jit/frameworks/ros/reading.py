@@ -9,13 +9,13 @@ import re
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import ros as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Word
 from rosetta_jit.frameworks.ros.typenames import type_name
 from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted
 from rosetta_jit.model.types import String
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

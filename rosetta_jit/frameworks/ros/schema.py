@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros import tree
     from rosetta_jit.frameworks.ros.dialect import Dialect
     from rosetta_jit.frameworks.ros.gather import Gathered
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Constant, Type
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
     Options = tuple[tuple[str, Constant], ...]

@@ -11,10 +11,10 @@ import re
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import ros as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.names import split
 from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

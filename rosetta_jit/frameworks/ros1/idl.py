@@ -14,8 +14,8 @@ from rosetta_jit.model.types import Bool, Field, Float, Int, String, Struct
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros import Definition
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 UINT32, INT32 = Int(32, signed=False, spelling="uint32"), Int(32, spelling="int32")

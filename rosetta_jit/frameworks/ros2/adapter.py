@@ -8,9 +8,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import ros as say
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.ros import definition_of
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.units import unit_in
 from rosetta_jit.source import Source
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.frameworks.ros import Definition, Dialect, Field
     from rosetta_jit.frameworks.ros.tree import Constant, TypeName
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Constant as Value
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Span
 
 WORDS = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}

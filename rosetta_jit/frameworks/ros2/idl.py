@@ -17,8 +17,8 @@ from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros import Gathered
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Schema
+    from rosetta_jit.parsing.idl import Load
 
 SCALARS = {
     "bool": Bool("bool"),

@@ -9,10 +9,10 @@ import json
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.catalogue import ros as say
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema, Type

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Ref, Struct
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Field, Schema

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import bottle as catalogue
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import DecodeError, SchemaError
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.detect import read_any
 from rosetta_jit.frameworks.yarp.draft import draft
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.shape import Clash, Fixed, Many, join_all, join_lists, join_places, shape
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.yarp import tree
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.tags import YARP4, vocab
 from rosetta_jit.frameworks.yarp.text import to_text
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
 from rosetta_jit.runtime.holder.serialising import encoded
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

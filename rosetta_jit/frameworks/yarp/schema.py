@@ -37,8 +37,8 @@ from collections import deque
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import bottle as catalogue
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.schema_check import check
 from rosetta_jit.frameworks.yarp.schema_type import read_struct
@@ -50,8 +50,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.yarp.sexpr import Node
-    from rosetta_jit.frontend.idl import Load
     from rosetta_jit.model.types import Struct
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 

@@ -6,7 +6,7 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import islice
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
 from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
 from rosetta_jit.model.layout import MAX_SLOTS

@@ -6,7 +6,7 @@ from sys import float_info
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
-from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.model.expr import Binary, Call, Len, Literal, Member, Path

@@ -6,14 +6,14 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import bottle as catalogue
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
 from rosetta_jit.model.units import MAX_PARTS, with_units
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,7 +6,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import bottle as catalogue
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.forms import make_union
 from rosetta_jit.frameworks.yarp.names import FIELD_NAME
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant

@@ -18,8 +18,8 @@ from math import isnan
 from struct import pack
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.yarp.tree import Dict, List, Value
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

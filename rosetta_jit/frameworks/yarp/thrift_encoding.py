@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import bottle as catalogue
-from rosetta_jit.catalogue import thrift
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp import thrift_diagnostics as thrift
 from rosetta_jit.frameworks.yarp.tags import FIXED_FORMATS, LIST, YARP4, Dialect, vocab
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, String, Struct
+from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Constant, Count, Number, Recursion, Repeat, Seq, Table
 
 if TYPE_CHECKING:

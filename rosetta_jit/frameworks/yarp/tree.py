@@ -15,7 +15,7 @@ import struct
 from math import isnan
 from typing import TYPE_CHECKING
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

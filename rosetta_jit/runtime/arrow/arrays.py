@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any, Literal, assert_never, cast
 import numpy as np
 import pyarrow as pa
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
@@ -25,6 +24,7 @@ from rosetta_jit.runtime.arrow.texts import NoTextError, text_array
 from rosetta_jit.runtime.arrow.times import time_array
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import Rows, elements, fixed_elements, lent, offsets, picked, read, spans
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -14,15 +14,15 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import types
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import ValuesError
-from rosetta_jit.model.births import MAX_BORN_BYTES
+from rosetta_jit.model.initial_values import MAX_BORN_BYTES
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.runtime.arrow.leaves import blob_of, listed_of, numbers_of, refused, solid, text_of
 from rosetta_jit.runtime.arrow.times import moment_columns
 from rosetta_jit.runtime.cells import dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import offsets
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

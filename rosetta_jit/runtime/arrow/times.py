@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Literal, assert_never
 import numpy as np
 import pyarrow as pa
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Int
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.rows import read
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Node

@@ -8,18 +8,18 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.runtime import native
-from rosetta_jit.runtime.allowed import ForeignCodeError
-from rosetta_jit.runtime.cache import Cache
-from rosetta_jit.runtime.cache_names import entry_name
+from rosetta_jit.runtime.cache.kernels import Cache
+from rosetta_jit.runtime.cache.names import entry_name
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
+from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.specs import function_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from rosetta_jit.runtime.native import Library
+    from rosetta_jit.runtime.code.native import Library
 
 FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll")
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
@@ -59,7 +59,7 @@ def _image() -> bytes:
     entry = kept.get(name)
     if entry is not None:
         return entry.image
-    from rosetta_jit.runtime.assembler import assembled  # imports LLVM
+    from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
 
     image = assembled(whole, SYMBOLS)
     kept.put(name, {"entry": "attributes"}, image)

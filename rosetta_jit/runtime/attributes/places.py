@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.kernel.state import ADDRESS, LANE_WORDS, LANES, lane_word
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.cells import SCALARS, dtype_of
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Items, Numbers, Pairs, Record, Scalar, Text, extent
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

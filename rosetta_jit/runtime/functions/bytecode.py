@@ -11,7 +11,7 @@ from itertools import takewhile
 from types import CodeType
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from rosetta_jit.catalogue import uncertain as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.runtime.functions import kinds
 from rosetta_jit.runtime.functions.bytecode import named
 from rosetta_jit.runtime.functions.known import is_known, is_known_module
-from rosetta_jit.sha import sha256
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

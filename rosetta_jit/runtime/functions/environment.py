@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from rosetta_jit.catalogue import uncertain as words
-from rosetta_jit.runtime.cache_names import numba_version
+from rosetta_jit.runtime.cache.names import numba_version
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

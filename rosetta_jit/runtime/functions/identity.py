@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from rosetta_jit.catalogue import uncertain as words
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.runtime.functions import environment, registered
 from rosetta_jit.runtime.functions.content import content_of
-from rosetta_jit.sha import sha256
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.functions.content import Content

@@ -19,7 +19,7 @@ from typing import Any, cast
 import numpy as np
 
 from rosetta_jit.runtime.functions.known import is_known
-from rosetta_jit.sha import sha256
+from rosetta_jit.startup.sha import sha256
 
 MAX_FROZEN_BYTES = 10**6
 """Of larger arrays numba compiles the address (`make_constant_array` of numba/core/base.py)."""

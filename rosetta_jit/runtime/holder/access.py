@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.model.births import MAX_BORN_BYTES
+from rosetta_jit.model.initial_values import MAX_BORN_BYTES
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
 from rosetta_jit.runtime.holder import arena, coerce, grid, values

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.model.births import FixedArray
+from rosetta_jit.model.initial_values import FixedArray
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text, extent
 
 if TYPE_CHECKING:

@@ -8,8 +8,6 @@ from weakref import WeakValueDictionary
 
 import numpy as np
 
-from rosetta_jit.cached import cached_property
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
@@ -23,7 +21,9 @@ from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequen
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes, born, roomier
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.plan import plan
-from rosetta_jit.sha import sha256
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.sha import sha256
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

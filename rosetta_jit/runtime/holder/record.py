@@ -15,14 +15,14 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, ClassVar, assert_never, cast
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.model import layout as slots
-from rosetta_jit.model.births import Births, selected, selecting
+from rosetta_jit.model.initial_values import Births, selected, selecting
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 from rosetta_jit.runtime.cells import SCALARS, cell_key
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.births import Birth
+    from rosetta_jit.model.initial_values import Birth
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.model.types import Constant, Schema
 

@@ -14,7 +14,7 @@ import lcm
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
 
 TESTS = Path(__file__).parents[2]
 IDL = TESTS.parent / "idl"

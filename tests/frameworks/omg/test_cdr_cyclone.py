@@ -10,10 +10,10 @@ pytest.importorskip("cyclonedds")
 
 from cyclonedds.idl import Endianness
 
+from rosetta_jit.api.programs import Decoder, Encoder
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
-from rosetta_jit.programs import Decoder, Encoder
-from rosetta_jit.request import Request
+from rosetta_jit.pipeline.request import Request
 from tests.frameworks.omg.cyclone_types import random_types
 
 ORDERS = {"little": Endianness.Little, "big": Endianness.Big}

@@ -10,7 +10,7 @@ import grpc_tools
 from rosetta_jit.source import Source
 
 if TYPE_CHECKING:
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
 
 TESTS = Path(__file__).parents[2]
 IDL = TESTS.parent / "idl"

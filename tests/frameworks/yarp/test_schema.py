@@ -143,7 +143,7 @@ def test_says_what_is_wrong(path):
 
 
 def test_every_mistake_has_a_golden_file():
-    from rosetta_jit.catalogue import bottle
+    from rosetta_jit.frameworks.yarp import bottle_diagnostics as bottle
 
     told = "".join(path.read_text() for path in GOLDEN.glob("*.err"))
     lonely = {"unlike_messages", "undescribable_message", "no_messages", "unknown_dialect", "duplicate"}

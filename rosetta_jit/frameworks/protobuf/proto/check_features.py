@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.check_custom_features import check_custom_feature
 from rosetta_jit.frameworks.protobuf.proto.constants import spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_features

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in
 from rosetta_jit.frameworks.protobuf.proto.options import flag

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
 from rosetta_jit.frameworks.protobuf.proto.tree import Range

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in, file_features
 from rosetta_jit.frameworks.protobuf.proto.features import choose
 from rosetta_jit.frameworks.protobuf.proto.tree import Oneof

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.check_numbers import MAX_FIELD_NUMBER
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
@@ -25,7 +25,7 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Visibility,
 )
 from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, ends, one, tokens_of
-from rosetta_jit.frontend.lalr import Token, Tree
+from rosetta_jit.parsing.lalr import Token, Tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

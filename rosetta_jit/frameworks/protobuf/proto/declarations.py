@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, assert_never
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, Features, choose, choose_for_field
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of, join, package_of
 from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Oneof
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -8,8 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
     features,
     has_unknown_features,
@@ -43,6 +42,7 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Version,
     Word,
 )
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.reading import read
 from rosetta_jit.frameworks.protobuf.proto.wellknown import well_known
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.tree import File, Import, ImportKind
-    from rosetta_jit.frontend.idl import Load
+    from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
 MAX_FILES = 4096

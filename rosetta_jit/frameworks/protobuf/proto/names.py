@@ -8,10 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.catalogue import proto_editions as say_edition
 from rosetta_jit.catalogue.spelling import closest
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
@@ -29,6 +28,7 @@ from rosetta_jit.frameworks.protobuf.proto.tree import (
     Option,
     Service,
 )
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

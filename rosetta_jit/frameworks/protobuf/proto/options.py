@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
 from rosetta_jit.frameworks.protobuf.proto.features import FEATURES
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.catalogue import proto_editions as say_edition
+from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.protobuf.proto.declaration_reading import DeclarationReader
 from rosetta_jit.frameworks.protobuf.proto.tree import (
@@ -25,7 +25,7 @@ from rosetta_jit.frameworks.protobuf.proto.values import ValueReader, all_of, on
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.protobuf.proto.values import Node
-    from rosetta_jit.frontend.lalr import Token
+    from rosetta_jit.parsing.lalr import Token
     from rosetta_jit.source import Source
 
 

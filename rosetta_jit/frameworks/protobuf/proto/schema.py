@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.dataclass import dataclass
 from rosetta_jit.frameworks.protobuf.proto.constants import constant, enum_number
 from rosetta_jit.frameworks.protobuf.proto.declarations import cases_in, field_in
 from rosetta_jit.frameworks.protobuf.proto.options import field_options
@@ -18,6 +17,7 @@ from rosetta_jit.frameworks.protobuf.proto.symbols import join
 from rosetta_jit.frameworks.protobuf.proto.tree import Field, MapType, Name, Oneof
 from rosetta_jit.model import types as model
 from rosetta_jit.model.units import with_unit
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

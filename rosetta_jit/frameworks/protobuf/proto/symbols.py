@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, choose
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME, MAX_REPORTED, refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
 from rosetta_jit.frameworks.protobuf.proto.visibility import is_exported
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -10,17 +10,17 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.dataclass import dataclass
-from rosetta_jit.frontend.lalr import END, UnexpectedTokenError
-from rosetta_jit.frontend.parsers import parser_of
+from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.parsing.lalr import END, UnexpectedTokenError
+from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.source import Source, Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frontend.lalr import Grammar, Parser, Token, Tree
+    from rosetta_jit.parsing.lalr import Grammar, Parser, Token, Tree
 
 GRAMMAR = Path(__file__).with_name("proto.lark")
 START = "file"

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, get_args
 
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.source import Span

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, cast
 
-from rosetta_jit.catalogue import proto as say
-from rosetta_jit.dataclass import dataclass
+from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Version, Word
-from rosetta_jit.frontend.lalr import Token, Tree
+from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Source, Span
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,0 +1,334 @@
+"""Decoders and encoders as users make them: from the cache where it has the answer, else from the compiler."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Self, Unpack
+
+from rosetta_jit.api import cacheable as certainty
+from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.frameworks.base import manners_of
+from rosetta_jit.kernel.entries import SYMBOLS
+from rosetta_jit.pipeline.request import Request
+from rosetta_jit.runtime import run
+from rosetta_jit.runtime.cache.kernels import Cache
+from rosetta_jit.runtime.cache.names import entry_name, request_name
+from rosetta_jit.runtime.callable import callable_class, public_class
+from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.allowed import ForeignCodeError
+from rosetta_jit.runtime.decoder import DecoderBase
+from rosetta_jit.runtime.encoder import EncoderBase
+from rosetta_jit.runtime.holder import holder_class_of
+from rosetta_jit.runtime.program import Loaded
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.garbage import imported, seldom_collected
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from contextlib import AbstractContextManager
+
+    from rosetta_jit.api.options import Options
+    from rosetta_jit.pipeline.build import Build, Stage
+    from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+    from rosetta_jit.runtime.holder import Holder
+
+_PYTHON = ("python", "interpreter")
+"""Backends that compile nothing."""
+
+RECENT = 8
+"""How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""
+
+
+class _Made:
+    """How a program is made, and what it became."""
+
+    _request: Request
+
+    @property
+    def kernel(self) -> Any:
+        """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
+
+        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.function.data_pointer`, and a holder's ``lanes_.state``.
+        What `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping calls functions, or compresses
+        images.
+        """
+        from rosetta_jit.backends.numba.function import typed
+
+        return typed(_build(self._request).kernels[0])
+
+    @property
+    def mapping(self) -> CheckedMapping | None:
+        """The mapping with its ``warnings`` and ``laws``; None of a type into its own holder. It is read anew: keep what is found."""
+        from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+
+        return None if self._request.mapping is None else CheckedMapping(_build(self._request).checked)
+
+    def stage(self, stage: Stage) -> str:
+        """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
+        return _build(self._request).stage(stage)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies and pickles are made anew from the request, by the cache of their process: they share code, but no holder."""
+        return _of_request, (public_class(self), self._request)
+
+
+class Decoder(_Made, DecoderBase):
+    """Decodes messages into holders: ``decode(message)`` fills and returns the decoder's own holder.
+
+    Parameters
+    ----------
+    mapping : path
+        A mapping, by its path or by its name on the search path: the folders given, those of ROSETTA_JIT_PATH, what is shipped.
+    **options
+        See `Options`.
+
+    Raises
+    ------
+    MappingError, SchemaError
+        With every mistake and its place.
+    """
+
+    def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
+        self.make(request_of("decode", options, mapping=os.fspath(mapping)))
+
+    @classmethod
+    def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
+        """A decoder of a type into its own holder, without a mapping.
+
+        Parameters
+        ----------
+        type_
+            Qualified name, or a message class of protobuf's Python package.
+        **options
+            See `Options`.
+        """
+        return _of_request(cls, type_request("decode", type_, options))
+
+    def make(self, request: Request) -> None:
+        """Become the program that answers a request."""
+        self._request = request
+        self._start(_loaded(request))
+
+
+class Encoder(_Made, EncoderBase):
+    """Encodes holders as messages: ``encode(holder)`` gives bytes. Parameters as of `Decoder`.
+
+    Where a framework has several dialects, ``encoding`` must say which one to write.
+    """
+
+    def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
+        self.make(request_of("encode", options, mapping=os.fspath(mapping)))
+
+    @classmethod
+    def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
+        """An encoder of a type from its own holder; parameters as of `Decoder.of`."""
+        return _of_request(cls, type_request("encode", type_, options))
+
+    def make(self, request: Request) -> None:
+        """Become the program that answers a request."""
+        self._request = request
+        self._start(_loaded(request))
+
+
+def _build(request: Request) -> Build:
+    imported("rosetta_jit.pipeline.build")
+    from rosetta_jit.pipeline.build import Build
+
+    return Build(request)
+
+
+def _within_stack() -> AbstractContextManager[None]:
+    from rosetta_jit.pipeline.build import within_stack
+
+    return within_stack()
+
+
+def _loaded(request: Request) -> Loaded:
+    """The program that answers a request, compiled at most once a machine if all is identified that it depends on."""
+    if request.backend in _PYTHON:
+        build = _build(request)
+        with _within_stack():
+            return _interpreted(build)
+    cache = Cache.default()
+    name = cache.get_manifest(request_name(request.key())) if request.is_identified() else None
+    if name is not None:
+        with suppress(KeyError):
+            return _shared(name, cache)
+    build = _build(request)
+    with seldom_collected(), _within_stack():
+        return _compiled(build, cache)
+
+
+def _compiled(build: Build, cache: Cache) -> Loaded:
+    doubts = certainty.doubts(build.called)
+    name = None if doubts else entry_name(build.text)
+    if name is not None:
+        with suppress(KeyError):
+            return _answered(build, cache, name, _shared(name, cache))
+    addressing = build.check_functions()
+    image = build.image()
+    doubts = (*doubts, *certainty.doubts_of_compiled(build.called, addressing))
+    certainty.note(build.request, cache, doubts)
+    if name is None or doubts:
+        return _linked(build.header, image)
+    cache.put(name, build.header, image)
+    return _answered(build, cache, name, _linked(build.header, image))
+
+
+def _answered(build: Build, cache: Cache, name: str, loaded: Loaded) -> Loaded:
+    """A program that the cache has, as the answer to its request from now on, if the request says all."""
+    if build.request.is_identified():
+        cache.put_manifest(request_name(build.request.key()), build.files(), name)
+    return loaded
+
+
+@lru_cache(maxsize=RECENT)
+def _shared(name: str, cache: Cache) -> Loaded:
+    """A cached program: its code is loaded once, however many decoders it serves. KeyError if the cache has none that can be used."""
+    entry = cache.get(name)
+    if entry is None:
+        raise KeyError(name)
+    try:
+        return _linked(entry.header, entry.image)
+    except ForeignCodeError as error:
+        _warn(str(error))
+        raise KeyError(name) from error
+
+
+def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
+    """A program from its object code."""
+    holder_type = _holder_type(header)
+    library = _library(image, SYMBOLS[header["entry"]], header["host"])
+    size = run.native_run(library["size"]) if header["entry"] == "encode" else None
+    return Loaded(
+        holder_type=holder_type,
+        sites=_sites(header, 0),
+        kernel=run.native_run(library["kernel"]),
+        size=size,
+        size_sites=_sites(header, 1),
+        library=library,
+        borrow=header["entry"] == "borrow",
+        told=header["told"],
+        limit=header["limit"],
+    )
+
+
+def _library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> native.Library:
+    """The code, with the functions of ours that it calls."""
+    if not called:
+        return native.load(image, symbols)
+    from rosetta_jit.runtime.code.host_table import fill
+    from rosetta_jit.runtime.images import image_functions
+
+    functions = image_functions()
+    return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
+
+
+def _interpreted(build: Build) -> Loaded:
+    """A program that runs in Python: slowly, but anywhere."""
+    kernels = [_python_kernel(build, number) for number in range(len(build.kernels))]
+    return Loaded(
+        holder_type=_holder_type(build.header),
+        sites=_sites(build.header, 0),
+        kernel=kernels[0],
+        size=kernels[1] if len(kernels) > 1 else None,
+        size_sites=_sites(build.header, 1),
+        borrow=build.request.borrow,
+        told=build.header["told"],
+        limit=build.header["limit"],
+    )
+
+
+def _python_kernel(build: Build, number: int) -> run.Run:
+    from rosetta_jit.kernel.host import in_python
+
+    kernel = build.kernels[number]
+    functions = {each.name: in_python(each) for each in build.functions}
+    if build.header["host"]:
+        from rosetta_jit.runtime.images import image_functions
+
+        functions |= image_functions()
+    if build.request.backend == "python":
+        from rosetta_jit.backends.python.function import compile_python
+
+        with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
+            return run.python_run(compile_python(kernel, functions))
+    from functools import partial
+
+    from rosetta_jit.kernel.interpret import run as interpret
+
+    return run.python_run(partial(interpret, kernel, functions=functions))
+
+
+def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
+    """The holder class, whose messages can serialise themselves if their manners have it."""
+    manners = manners_of(header["manners"])
+    base: Any = manners.base
+    if manners.serialising is not None and vars(base)["programs_"] is None:
+        base.programs_ = Serialising(*manners.serialising)
+    return holder_class_of(header["type"], manners)
+
+
+class Serialising:
+    """The programs behind ``SerializeToString`` and its like: of each holder class its own, compiled when first used."""
+
+    def __init__(self, framework: str, encoding: str) -> None:
+        self._framework, self._encoding = framework, encoding
+
+    def __get__(self, holder: Holder | None, holder_type: type[Holder]) -> OwnPrograms:
+        family = holder_type.family_
+        if family.programs is None:
+            family.programs = OwnPrograms(Request("decode", encoding=self._encoding, plain=family.text, framework=self._framework))
+            setattr(family.holder, "programs_", family.programs)  # noqa: B010  where it is found sooner; not every holder has it
+        return family.programs
+
+
+class OwnPrograms:
+    """Decoder and encoder of a message class into itself."""
+
+    def __init__(self, request: Request) -> None:
+        self._request = request
+
+    @cached_property
+    def encode(self) -> Any:
+        """The encoder: the bytes of a holder."""
+        return _of_request(Encoder, replace(self._request, direction="encode"))
+
+    @cached_property
+    def decode(self) -> Any:
+        """The decoder: it is given bytes, and the holder to fill."""
+        return _of_request(Decoder, self._request)
+
+    def size(self, holder: Any) -> int:
+        """How many bytes a holder takes."""
+        return self.encode.size(holder)
+
+    def new(self) -> Any:
+        """A holder with room for what has been decoded until now."""
+        return self.decode.new()
+
+
+def _of_request(program: Any, request: Request) -> Any:
+    made = program.__new__(program)
+    made.make(request)
+    return made
+
+
+def _sites(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:
+    sites = header["sites"]
+    return tuple(run.Site.of(site) for site in sites[kernel]) if kernel < len(sites) else ()
+
+
+def _warn(why: str) -> None:
+    import warnings
+
+    from rosetta_jit.errors import CacheWarning
+
+    warnings.warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning, stacklevel=4)
+
+
+if not TYPE_CHECKING:
+    Decoder, Encoder = callable_class(Decoder), callable_class(Encoder)

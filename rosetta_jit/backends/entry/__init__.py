@@ -1,0 +1,1 @@
+"""The entries from CPython around kernels, and the object code of both."""

@@ -1,0 +1,49 @@
+"""Functions of the host that are found at run time: each reads its address from a table that whoever loads the code fills in.
+
+@host = dso_local global [n x ptr]        in the order of `kernel.shape.our_functions`
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.llvm.host import symbol
+from rosetta_jit.kernel.shape import calls_to_host, extents_of, our_functions
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.kernel.ir import Kernel
+
+TABLE = "host"
+"""The symbol of the table."""
+
+FUNCTION = """
+define i32 @"{name}"(ptr %result, ptr %exception{parameters}) {{
+  %slot = getelementptr ptr, ptr @{table}, i64 {number}
+  %function = load ptr, ptr %slot
+  %answer = call i32 %function(ptr %result{parameters})
+  %refused = icmp ne i32 %answer, 1
+  %status = zext i1 %refused to i32
+  ret i32 %status
+}}
+"""
+"""One that is found in the table. What is there gives 1 where it has a result."""
+
+
+def table_text(kernels: Sequence[Kernel]) -> str:
+    """An LLVM module with the table, and the functions that look into it."""
+    names = our_functions(kernels)
+    shapes = {call.function: (len(call.arguments), len(extents_of(call))) for call in calls_to_host(kernels)}
+    functions = [
+        FUNCTION.format(name=symbol(name), table=TABLE, number=number, parameters=_parameters(*shapes[name]))
+        for number, name in enumerate(names)
+    ]
+    return f"@{TABLE} = dso_local global [{len(names)} x ptr] zeroinitializer\n{''.join(functions)}"
+
+
+def _parameters(numbers: int, extents: int) -> str:
+    given = [f"i64 %number{number}" for number in range(numbers)]
+    for extent in range(extents):
+        given += [f"ptr %bytes{extent}", f"i64 %size{extent}"]
+    return "".join(f", {each}" for each in given)

@@ -1,0 +1,51 @@
+"""Values that very many checks ask about, one check after another, are other values to LLVM from time to time.
+
+Of each value LLVM remembers all that was asked of it before, and goes through that again for the next question: of a thousand checks it
+would make a million. An instruction that does nothing, but may do anything for all that LLVM knows, ends its memory.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+from rosetta_jit.backends.llvm import stmt as llvm_stmt
+from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Variable, forgotten
+from rosetta_jit.kernel.ir import Expect, If
+from rosetta_jit.kernel.rewrite import locals_in
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm.frame import Frame
+    from rosetta_jit.kernel.ir import Block
+
+OFTEN = 64
+"""Checks of one value from which on it is another one."""
+
+BITS: dict[ir.Type, ir.Type] = {I32: I32, I64: I64, F32: I32, F64: I64}
+"""The types of values that fit in a register, and the integers of their size."""
+
+
+def body(frame: Frame, statements: Block) -> None:
+    """Print a body's statements."""
+    asked: Counter[str] = Counter()
+    many = sum(isinstance(each, Expect | If) for each in statements) > OFTEN
+    for statement in statements:
+        llvm_stmt.block(frame, (statement,))
+        if many and isinstance(statement, Expect | If):
+            asked.update(locals_in(statement.condition))
+            for name in [name for name, times in asked.items() if times >= OFTEN]:
+                _renew(frame, name)
+                del asked[name]
+
+
+def _renew(frame: Frame, name: str) -> None:
+    """Give a local a value that LLVM knows nothing of."""
+    value = frame.locals.get(name)
+    if value is None or isinstance(value, Variable) or frame.builder.block.is_terminated:
+        return
+    bits = BITS.get(value.type)
+    if bits is not None and not isinstance(value, ir.Constant | ir.Argument):
+        number = frame.builder.bitcast(value, bits)
+        frame.locals[name] = frame.builder.bitcast(forgotten(frame.builder, number), value.type)

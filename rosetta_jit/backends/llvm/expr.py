@@ -1,0 +1,297 @@
+"""Kernel expressions as LLVM values.
+
+Nothing is checked here: `verify` has proven that no access leaves its memory and that no arithmetic of int64 wraps, which is why that
+arithmetic carries `nsw`. Floats carry no fast-math flag: results are exact to the bit.
+"""
+
+from __future__ import annotations
+
+import struct
+from math import gcd
+from typing import TYPE_CHECKING, assert_never
+
+from llvmlite import ir
+
+from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Binary,
+    Bits,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Digits,
+    Expr,
+    Fits,
+    Get,
+    IsText,
+    Load,
+    Local,
+    Nearest,
+    Order,
+    Place,
+    Scalar,
+    Scale,
+    Select,
+    Told,
+    Unary,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.terms import BEGIN, type_of
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm.frame import Frame
+
+PREDICATES = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+FLOAT_BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv", "rem": "frem"}
+ANGULAR = frozenset(("sin", "cos", "tan", "asin", "acos", "atan"))
+"""Functions of the C library."""
+
+BITWISE = {"and": "and_", "or": "or_", "xor": "xor", "shl": "shl"}
+
+
+def expression(frame: Frame, expr: Expr) -> ir.Value:
+    """The value of an expression, computed where the frame's builder stands."""
+    match expr:
+        case Const(type_, value):
+            return _constant(type_, value)
+        case Local(_, name):
+            return _local(frame, name)
+        case Load(type_, at, order):
+            return load(frame, wire_pointer(frame, at), type_, alignment=1, order=order)
+        case Get(type_, place):
+            return load(frame, place_pointer(frame, place), type_, alignment=place_alignment(frame, place, type_))
+        case Used(lane):
+            return frame.builder.load(frame.used_slot(lane), typ=I64)
+        case Capacity(lane):
+            return frame.capacity(lane)
+        case Told(what):
+            return frame.told(what)
+        case Unary(function, operand):
+            return _unary(frame, function, expression(frame, operand), type_of(operand))
+        case Binary(op, left, right):
+            return _binary(frame, op, expression(frame, left), expression(frame, right), type_of(left))
+        case Compare(op, left, right):
+            return _compare(frame, op, expression(frame, left), expression(frame, right), type_of(left))
+        case Fits(op, left, right):
+            return _fits(frame, op, expression(frame, left), expression(frame, right))
+        case Convert(type_, operand) | Bits(type_, operand):
+            value = expression(frame, operand)
+            is_bits = isinstance(expr, Bits)
+            return frame.builder.bitcast(value, LLVM_TYPES[type_]) if is_bits else _convert(frame, value, type_of(operand), type_)
+        case Select(condition, then, otherwise):
+            values = expression(frame, then), expression(frame, otherwise)
+            return frame.builder.select(expression(frame, condition), *values)
+        case IsText(address, size):
+            from rosetta_jit.backends.llvm.utf8 import is_text_function
+
+            return frame.builder.call(is_text_function(frame.module), [pointer(frame, address), expression(frame, size)])
+        case Nearest() | Digits() | Scale():
+            return _decimal(frame, expr)
+        case _:
+            assert_never(expr)
+
+
+def _decimal(frame: Frame, expr: Nearest | Digits | Scale) -> ir.Value:
+    from rosetta_jit.backends.llvm import decimals as llvm_decimals
+
+    match expr:
+        case Nearest(address, size, exponent):
+            text, length, power = pointer(frame, address), expression(frame, size), expression(frame, exponent)
+            return llvm_decimals.nearest(frame.module, frame.builder, text, length, power)
+        case Digits(value, places):
+            number = expression(frame, value)
+            if places is None:
+                return llvm_decimals.shortest(frame.module, frame.builder, number, 0)
+            return llvm_decimals.fixed(frame.module, frame.builder, number, places)
+        case Scale(value):
+            return llvm_decimals.shortest(frame.module, frame.builder, expression(frame, value), 1)
+        case _:
+            assert_never(expr)
+
+
+def pointer(frame: Frame, address: Address) -> ir.Value:
+    """The machine address of a place or of a byte of the message."""
+    return wire_pointer(frame, address.at) if isinstance(address, Wire) else place_pointer(frame, address)
+
+
+def wire_pointer(frame: Frame, at: Expr) -> ir.Value:
+    """The machine address of a byte of the message."""
+    base, offset = _parts(at)
+    if base == BEGIN:
+        return _moved(frame, frame.message(), offset)
+    return _moved(frame, frame.builder.gep(frame.parameters.buffer, [expression(frame, base)], source_etype=I8), offset)
+
+
+def place_pointer(frame: Frame, place: Place) -> ir.Value:
+    """The machine address of a field of a row."""
+    builder, stride = frame.builder, frame.strides[place.lane]
+    base, rows = _parts(place.row)
+    row = expression(frame, base)
+    start = row if stride == 1 else builder.mul(row, constant(stride), flags=("nsw",))
+    return _moved(frame, builder.gep(frame.address(place.lane), [start], source_etype=I8), rows * stride + place.offset)
+
+
+def _parts(index: Expr) -> tuple[Expr, int]:
+    """What is computed of an index, and the constant behind it: LLVM would find it with more effort."""
+    match index:
+        case Binary("add", base, Const("i64", offset)):
+            return base, int(offset)
+        case _:
+            return index, 0
+
+
+def _moved(frame: Frame, address: ir.Value, offset: int) -> ir.Value:
+    return frame.builder.gep(address, [constant(offset)], source_etype=I8) if offset else address
+
+
+def place_alignment(frame: Frame, place: Place, type_: Scalar) -> int:
+    """What rows and offsets guarantee, at most the width of the scalar."""
+    return gcd(WIDTH[type_], frame.strides[place.lane], place.offset)
+
+
+def load(frame: Frame, address: ir.Value, type_: Scalar, *, alignment: int, order: Order = "<") -> ir.Value:
+    """A scalar from memory; a bool is any byte but 0."""
+    builder = frame.builder
+    if type_ == "bool":
+        return builder.icmp_unsigned("!=", builder.load(address, typ=I8, align=1), ir.Constant(I8, 0))
+    if order == "<" or WIDTH[type_] == 1:
+        return builder.load(address, typ=LLVM_TYPES[type_], align=alignment)
+    bits = ir.IntType(8 * WIDTH[type_])
+    value = builder.bswap(builder.load(address, typ=bits, align=alignment))
+    return builder.bitcast(value, LLVM_TYPES[type_]) if is_float(type_) else value
+
+
+def store(frame: Frame, address: ir.Value, value: ir.Value, type_: Scalar, *, alignment: int, order: Order = "<") -> None:
+    """A scalar to memory; a bool is the byte 0 or 1."""
+    builder = frame.builder
+    if type_ == "bool":
+        value = builder.zext(value, I8)
+    elif order == ">" and WIDTH[type_] > 1:
+        bits = ir.IntType(8 * WIDTH[type_])
+        value = builder.bswap(builder.bitcast(value, bits) if is_float(type_) else value)
+    builder.store(value, address, align=alignment)
+
+
+def _constant(type_: Scalar, value: float) -> ir.Value:
+    if not is_float(type_):
+        return ir.Constant(LLVM_TYPES[type_], int(value))
+    if type_ == "f32" and value == value:  # noqa: PLR0124 - NaN, whose bits need no rounding
+        value = _nearest_single(value)
+    return ir.Constant(LLVM_TYPES[type_], float(value))
+
+
+def _nearest_single(value: float) -> float:
+    try:
+        return struct.unpack("<f", struct.pack("<f", value))[0]
+    except OverflowError:  # IEEE 754, 7.4: beyond the largest number lies infinity
+        return float("inf") if value > 0 else float("-inf")
+
+
+def _local(frame: Frame, name: str) -> ir.Value:
+    value = frame.locals[name]
+    return frame.builder.load(value.slot, typ=value.type) if isinstance(value, Variable) else value
+
+
+def _unary(frame: Frame, function: str, value: ir.Value, type_: Scalar) -> ir.Value:
+    builder, kind = frame.builder, LLVM_TYPES[type_]
+    if function == "not":
+        return builder.not_(value)
+    if is_float(type_):
+        if function == "neg":
+            return builder.fneg(value)
+        if function in ANGULAR:
+            return builder.call(intrinsic(frame.module, function, kind, [kind]), [value])
+        name = {"abs": "fabs"}.get(function, function)
+        return builder.call(intrinsic(frame.module, f"llvm.{name}.{type_}", kind, [kind]), [value])
+    match function:
+        case "neg":
+            return builder.neg(value)
+        case "abs" if is_signed(type_):
+            return builder.call(intrinsic(frame.module, f"llvm.abs.{kind}", kind, [kind, I1]), [value, ir.Constant(I1, 0)])
+        case _:
+            return value  # an integer is its own floor; an unsigned one its own absolute value
+
+
+def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scalar) -> ir.Value:
+    builder = frame.builder
+    if op in ("min", "max"):
+        return _extremum(frame, op, left, right, type_)
+    if op == "atan2":
+        return builder.call(intrinsic(frame.module, op, left.type, [left.type] * 2), [left, right])
+    if is_float(type_):
+        return getattr(builder, FLOAT_BINARY[op])(left, right)
+    if op in BITWISE:
+        return getattr(builder, BITWISE[op])(left, right)
+    if op in ("add", "sub", "mul"):
+        return getattr(builder, op)(left, right, flags=("nsw",) if type_ == "i64" else ())
+    match op, is_signed(type_):
+        case "shr", signed:
+            return builder.ashr(left, right) if signed else builder.lshr(left, right)
+        case "div", signed:
+            return builder.sdiv(left, right) if signed else builder.udiv(left, right)
+        case "rem", signed:
+            return builder.srem(left, right) if signed else builder.urem(left, right)
+        case _:
+            raise AssertionError(op)
+
+
+def _extremum(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scalar) -> ir.Value:
+    """The left operand where it compares as the smaller (greater) one, else the right one: also if either is NaN."""
+    beyond = _compare(frame, "lt" if op == "min" else "gt", left, right, type_)
+    return frame.builder.select(beyond, left, right)
+
+
+def _compare(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: Scalar) -> ir.Value:
+    builder, predicate = frame.builder, PREDICATES[op]
+    if is_float(type_):  # IEEE 754, 5.11: of all comparisons NaN satisfies `ne` alone
+        return builder.fcmp_unordered(predicate, left, right) if op == "ne" else builder.fcmp_ordered(predicate, left, right)
+    return builder.icmp_signed(predicate, left, right) if is_signed(type_) else builder.icmp_unsigned(predicate, left, right)
+
+
+def _fits(frame: Frame, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
+    builder = frame.builder
+    both = getattr(builder, f"s{op}_with_overflow")(left, right)
+    return builder.not_(builder.extract_value(both, 1))
+
+
+def _convert(frame: Frame, value: ir.Value, source: Scalar, target: Scalar) -> ir.Value:
+    builder, kind = frame.builder, LLVM_TYPES[target]
+    if target == "bool":
+        return _compare(frame, "ne", value, _constant(source, 0), source)
+    match is_float(source), is_float(target):
+        case True, True:
+            if source == target:
+                return value
+            return builder.fptrunc(value, F32) if target == "f32" else builder.fpext(value, kind)
+        case True, False:
+            name = f"llvm.fpto{'s' if is_signed(target) else 'u'}i.sat.{kind}.{source}"
+            return builder.call(intrinsic(frame.module, name, kind, [value.type]), [value])
+        case False, True:
+            return builder.sitofp(value, kind) if is_signed(source) else builder.uitofp(value, kind)
+        case _:
+            return _resize(frame, value, source, target)
+
+
+def _resize(frame: Frame, value: ir.Value, source: Scalar, target: Scalar) -> ir.Value:
+    builder, kind = frame.builder, LLVM_TYPES[target]
+    if value.type == kind:
+        return value
+    if WIDTH[source] > WIDTH[target]:
+        return builder.trunc(value, kind)
+    return builder.sext(value, kind) if is_signed(source) else builder.zext(value, kind)
+
+
+def copy_memory(frame: Frame, target: ir.Value, source: ir.Value, size: ir.Value) -> None:
+    """LLVM's memcpy: the two do not overlap."""
+    function = intrinsic(frame.module, "llvm.memcpy.p0.p0.i64", ir.VoidType(), [POINTER, POINTER, I64, I1])
+    frame.builder.call(function, [target, source, size, ir.Constant(I1, 0)])
+
+
+def fill_memory(frame: Frame, target: ir.Value, byte: int, size: ir.Value) -> None:
+    """LLVM's memset."""
+    function = intrinsic(frame.module, "llvm.memset.p0.i64", ir.VoidType(), [POINTER, I8, I64, I1])
+    frame.builder.call(function, [target, ir.Constant(I8, byte), size, ir.Constant(I1, 0)])

@@ -1,0 +1,216 @@
+"""What the printers of one kernel body share: its parameters, lanes, locals and the two ways out.
+
+A lane's address, capacity and used length are loaded in the function's entry block, at the first mention, and never again: nothing that a
+kernel stores can then make LLVM load them a second time. In a function of very many lanes they stay in memory instead: no machine has
+so many registers, and LLVM would spend minutes on finding that out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, USED, lane_word
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rosetta_jit.kernel.ir import Call, Routine, Scalar
+
+I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
+F32, F64, POINTER = ir.FloatType(), ir.DoubleType(), ir.PointerType()
+
+LLVM_TYPES: dict[str, ir.Type] = {
+    "bool": I1,
+    "i8": I8,
+    "u8": I8,
+    "i16": I16,
+    "u16": I16,
+    "i32": I32,
+    "u32": I32,
+    "i64": I64,
+    "u64": I64,
+    "f32": F32,
+    "f64": F64,
+}
+
+MESSAGE = (-1, 0)
+"""Among what is loaded at the start, by lane and word, the address of the message."""
+
+CROWDED = 64
+"""Lanes from which on a function keeps what it knows of them in memory."""
+
+COLD = (1 << 20, 1)
+"""Branch weights where the second edge is taken for a broken message only."""
+
+
+ESCAPED = ir.FunctionType(ir.VoidType(), [POINTER])
+"""The type of an instruction that does nothing with a slot, but takes its address: LLVM leaves the slot in memory."""
+
+
+def forgotten(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+    """The same integer, of which LLVM knows nothing: an instruction that does nothing, but may do anything for all that it can tell."""
+    return builder.asm(ir.FunctionType(number.type, [number.type]), "", "=r,0", [number], side_effect=False)
+
+
+def is_float(scalar: Scalar) -> bool:
+    """Whether a scalar is one of IEEE 754."""
+    return scalar in ("f32", "f64")
+
+
+def is_signed(scalar: Scalar) -> bool:
+    """Whether a scalar is a signed integer."""
+    return scalar in ("i8", "i16", "i32", "i64")
+
+
+def constant(value: int) -> ir.Constant:
+    """An int64 constant."""
+    return ir.Constant(I64, value)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """The parameters of a kernel function."""
+
+    buffer: ir.Value
+    begin: ir.Value
+    end: ir.Value
+    state: ir.Value
+    row: ir.Value
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """The stack slot of a Var; optimisation turns it into a register."""
+
+    slot: ir.Value
+    type: ir.Type
+
+
+@dataclass(slots=True)
+class Exit:
+    """A block that several edges lead to, with the values that they bring."""
+
+    block: ir.Block
+    phis: tuple[ir.PhiInstr, ...]
+
+    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
+        """End the builder's block with a jump here."""
+        for phi, value in zip(self.phis, values, strict=True):
+            phi.add_incoming(value, builder.block)
+        builder.branch(self.block)
+
+    @property
+    def is_reached(self) -> bool:
+        return bool(self.phis[0].incomings)
+
+
+@dataclass(slots=True)
+class Frame:
+    """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
+
+    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
+    """
+
+    module: ir.Module
+    entry: ir.IRBuilder
+    builder: ir.IRBuilder
+    parameters: Parameters
+    strides: tuple[int, ...]
+    own_lanes: int
+    loaded: dict[tuple[int, int], ir.Value]
+    done: Exit
+    failed: Exit
+    decodes: bool
+    routines: Mapping[str, ir.Function | Routine]
+    caller: tuple[Frame, Call] | None = None
+    locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
+    used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
+
+    def message(self) -> ir.Value:
+        """Where the message begins."""
+        if MESSAGE not in self.loaded:
+            self.loaded[MESSAGE] = self.entry.gep(self.parameters.buffer, [self.parameters.begin], source_etype=I8, name="message")
+        return self.loaded[MESSAGE]
+
+    def address(self, lane: int) -> ir.Value:
+        """Where the lane's rows start."""
+        return self._word(lane, ADDRESS, POINTER, f"lane{lane}")
+
+    def capacity(self, lane: int) -> ir.Value:
+        """How many rows the lane has room for."""
+        return self._word(lane, CAPACITY, I64, f"capacity{lane}")
+
+    def told(self, what: str) -> ir.Value:
+        """What the host tells of the message; messages of one call are numbered by their rows."""
+        word = NOW if what == "now" else NUMBER
+        value = self.builder.load(state_word(self.builder, self.parameters.state, word), typ=I64, align=8, name=what)
+        return value if what == "now" else self.builder.add(value, self.parameters.row)
+
+    def used_slot(self, lane: int) -> ir.Value:
+        """The stack slot of the lane's used length."""
+        if lane not in self.used:
+            start = constant(0) if self.is_hidden(lane) else self._used_before(self.entry, lane)
+            self.used[lane] = self.entry.alloca(I64, name=f"rows{lane}")
+            self.entry.store(start, self.used[lane])
+            if self.is_crowded:
+                self.entry.asm(ESCAPED, "", "r", [self.used[lane]], side_effect=True)
+        return self.used[lane]
+
+    def used_in_the_end(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
+        """The used length of a lane of the holder, loaded where the builder is, for those that the body had nothing to do with."""
+        return builder.load(self.used[lane], typ=I64) if lane in self.used else self._used_before(builder, lane)
+
+    def _used_before(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
+        """Each body starts with the used length that the state says, and decoding into row 0 with nothing."""
+        start = self._load(builder, lane, USED, I64, f"used{lane}")
+        if not (self.decodes and lane):
+            return start
+        return builder.select(builder.icmp_signed("==", self.parameters.row, constant(0)), constant(0), start)
+
+    def is_hidden(self, lane: int) -> bool:
+        """Whether the lane is not the holder's."""
+        return lane >= self.own_lanes
+
+    @property
+    def is_crowded(self) -> bool:
+        return len(self.strides) >= CROWDED
+
+    def variable(self, name: str, type_: ir.Type) -> Variable:
+        """A stack slot in the entry block, so that a loop does not take more of them."""
+        variable = Variable(self.entry.alloca(type_, name=name), type_)
+        self.locals[name] = variable
+        return variable
+
+    def block(self, name: str) -> ir.Block:
+        return self.builder.append_basic_block(name)
+
+    def _word(self, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        if self.is_crowded:
+            return self._load(self.builder, lane, word, type_, name)
+        key = (lane, word)
+        if key not in self.loaded:
+            self.loaded[key] = self._load(self.entry, lane, word, type_, name)
+        return self.loaded[key]
+
+    def _load(self, builder: ir.IRBuilder, lane: int, word: int, type_: ir.Type, name: str) -> ir.Value:
+        if self.is_hidden(lane):
+            hidden = builder.load(state_word(builder, self.parameters.state, HIDDEN), typ=POINTER, align=8, name="hidden")
+            value = builder.load(state_word(builder, hidden, lane_word(lane - self.own_lanes, word) - LANES), typ=type_, align=8, name=name)
+            return value if word == ADDRESS else builder.udiv(value, constant(self.strides[lane]))
+        return builder.load(state_word(builder, self.parameters.state, lane_word(lane, word)), typ=type_, align=8, name=name)
+
+
+def state_word(builder: ir.IRBuilder, state: ir.Value, word: int) -> ir.Value:
+    """The address of a word of the holder's state."""
+    return builder.gep(state, [constant(word)], inbounds=True, source_etype=I64)
+
+
+def intrinsic(module: ir.Module, name: str, result: ir.Type, parameters: Sequence[ir.Type]) -> ir.Function:
+    """A function of LLVM or of a module, declared once."""
+    if name in module.globals:
+        return module.globals[name]
+    return ir.Function(module, ir.FunctionType(result, parameters), name)

@@ -1,0 +1,251 @@
+"""A kernel as one LLVM function, printed through llvmlite.ir.
+
+    int64 kernel(uint8 *buffer, int64 begin, int64 end, int64 *state, int64 row)
+
+Statements and expressions have printers of their own (`llvm_stmt`, `llvm_expr`). Here stands what frames them: parameters, the attempts one
+after another, and what a failure and a success write to the holder's state.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from llvmlite import ir
+
+from rosetta_jit.backends.base import counted_lanes, statements
+from rosetta_jit.backends.llvm import checks as llvm_checks
+from rosetta_jit.backends.llvm import stmt as llvm_stmt
+from rosetta_jit.backends.llvm.expr import expression
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
+from rosetta_jit.kernel.ir import Block, Call, Expect, For, HostCall, Kernel, Require, While
+from rosetta_jit.kernel.state import (
+    ERROR_INDICES,
+    ERROR_OFFSET,
+    ERROR_SITE,
+    GROW,
+    GROW_LANE,
+    GROW_ROWS,
+    HIDDEN_COUNT,
+    MAX_INDICES,
+    USED,
+    lane_word,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rosetta_jit.kernel.ir import Expr, Routine, Stmt
+
+SIGNATURE = ir.FunctionType(I64, [POINTER, I64, I64, POINTER, I64])
+ARGUMENTS = ("buffer", "begin", "end", "state", "row")
+
+MANY = 64
+"""Calls of a routine from which on it stays a function: LLVM takes more than linear time on what it inlines."""
+
+SEVERAL = 4
+"""The same for a routine that loops whatever it is given: the rounds cost more than the call, and LLVM makes vectors of each loop."""
+
+TINY, SHORT = 8, 24
+"""Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
+
+
+def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
+    """Define the kernel's function in the module.
+
+    The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
+    """
+    calls, routines = _calls(kernel), dict[str, "ir.Function | Routine"]()
+    for routine in kernel.routines:
+        if _is_in_place(routine, calls[routine.name]):
+            routines[routine.name] = routine
+            continue
+        function = routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
+        if calls[routine.name] >= _many(routine):
+            function.attributes.add("noinline")
+    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
+    _attempt(function, kernel, kernel.bodies, routines)
+    return _behind_check(module, kernel, function, name) if kernel.hidden else function
+
+
+def _calls(kernel: Kernel) -> Counter[str]:
+    """How often each routine will be called in what is printed."""
+    calls = Counter(each.routine for body in kernel.bodies for each in statements(body) if isinstance(each, Call))
+    for routine in reversed(kernel.routines):  # which call those before them
+        times = calls[routine.name] if _is_in_place(routine, calls[routine.name]) else 1
+        for each in statements(routine.body):
+            if isinstance(each, Call):
+                calls[each.routine] += times
+    return calls
+
+
+def _is_in_place(routine: Routine, calls: int) -> bool:
+    """Whether a routine is printed where it is called. LLVM could do that, but would have results and failures to take apart again."""
+    parts = list(statements(routine.body))
+    is_tiny = len(parts) <= TINY and not any(isinstance(each, For | While) for each in parts)
+    return is_tiny or (len(parts) <= SHORT and calls < _many(routine))
+
+
+def _many(routine: Routine) -> int:
+    """Calls from which on a routine stays a function."""
+    return SEVERAL if any(isinstance(each, For | While) for each in routine.body) else MANY
+
+
+def _behind_check(module: ir.Module, kernel: Kernel, inside: ir.Function, name: str) -> ir.Function:
+    """The function that makes sure of the hidden lanes first: where there are too few, GROW for the last one."""
+    inside.linkage = "internal"
+    inside.attributes.add("alwaysinline")
+    function = _function(module, SIGNATURE, name, ARGUMENTS)
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    state = function.args[3]
+    count = builder.load(state_word(builder, state, HIDDEN_COUNT), typ=I64, align=8)
+    enough, few = function.append_basic_block("enough"), function.append_basic_block("few")
+    builder.cbranch(builder.icmp_signed(">=", count, constant(kernel.hidden)), enough, few).set_weights(COLD)
+    builder.position_at_end(few)
+    builder.store(constant(len(kernel.strides) - 1), state_word(builder, state, GROW_LANE), align=8)
+    builder.store(constant(0), state_word(builder, state, GROW_ROWS), align=8)
+    builder.ret(constant(GROW))
+    builder.position_at_end(enough)
+    builder.ret(builder.call(inside, function.args))
+    return function
+
+
+def _function(module: ir.Module, signature: ir.FunctionType, name: str, arguments: Sequence[str]) -> ir.Function:
+    """An empty function whose first arguments are the message and the holder's state."""
+    function = ir.Function(module, signature, name)
+    function.attributes.add("nounwind")
+    function.args[0].add_attribute("noalias")  # the message and the lanes never overlap
+    function.args[3].add_attribute("noalias")
+    for argument, each in zip(function.args, arguments, strict=True):
+        argument.name = each
+    return function
+
+
+def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, routines: Mapping[str, ir.Function | Routine]) -> ir.Function:
+    """A routine as a function that returns 0 and the results, or the number of the failure and its offset."""
+    outcome = ir.LiteralStructType([I64] * (1 + max(1, len(routine.results))))
+    signature = ir.FunctionType(outcome, [POINTER, I64, I64, POINTER, *(LLVM_TYPES[each.type] for each in routine.parameters)])
+    function = _function(module, signature, name, ("buffer", "begin", "end", "state", *(each.name for each in routine.parameters)))
+    function.linkage = "internal"
+    entry = ir.IRBuilder(function.append_basic_block("entry"))
+    first = function.append_basic_block("body")
+    parameters = Parameters(*function.args[:4], row=constant(0))
+    done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
+    lanes, decodes = (kernel.strides, kernel.lanes), kernel.direction == "decode"
+    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
+    frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
+    llvm_stmt.block(frame, routine.body)
+    frame.done.enter(frame.builder, [expression(frame, each) for each in routine.results])
+    entry.branch(first)
+    _give(frame.done, outcome, (constant(0), *frame.done.phis))
+    if frame.failed.is_reached:
+        _give(frame.failed, outcome, frame.failed.phis)
+    else:
+        _drop(frame.failed)
+    return function
+
+
+def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value]) -> None:
+    builder = ir.IRBuilder(target.block)
+    whole: ir.Value = ir.Constant(outcome, None)
+    for number, value in enumerate(values):
+        whole = builder.insert_value(whole, value, number)
+    builder.ret(whole)
+
+
+def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]) -> None:
+    """The first of the bodies, whose failures lead to the next one. What has failed so far stands in the state.
+
+    Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
+    """
+    entry, first = ir.IRBuilder(function.append_basic_block("entry")), function.append_basic_block("body")
+    done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
+    parameters, lanes, decodes = Parameters(*function.args), (kernel.strides, kernel.lanes), kernel.direction == "decode"
+    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
+    llvm_checks.body(frame, bodies[0])
+    if not frame.builder.block.is_terminated:
+        frame.builder.unreachable()  # verified: every path that gets here has ended in a Return before
+    _finish(frame, counted_lanes(kernel, bodies[0]))
+    entry.branch(first)
+    if not failed.is_reached:
+        _drop(failed)
+        return
+    builder = ir.IRBuilder(failed.block)
+    site = _record(builder, parameters.state, failed.phis, is_first=len(bodies) == len(kernel.bodies))
+    if len(bodies) == 1:
+        builder.ret(builder.sub(constant(-1), site))
+    else:
+        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines), function.args))
+
+
+def _next_attempt(
+    function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]
+) -> ir.Function:
+    """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
+    following = _function(function.module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
+    following.linkage = "internal"
+    following.attributes.add("noinline")
+    following.calling_convention = "preserve_mostcc"
+    _attempt(following, kernel, bodies, routines)
+    return following
+
+
+def _width(kernel: Kernel) -> int:
+    """The indices that the kernel's failures report."""
+    return min(MAX_INDICES, max((_index_count(body) for body in kernel.bodies), default=0))
+
+
+def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:
+    block = entry.function.append_basic_block(name)
+    builder = ir.IRBuilder(block)
+    return Exit(block, tuple(builder.phi(I64) for _ in range(values)))
+
+
+def _drop(target: Exit) -> None:
+    """A block that no edge leads to cannot have phis."""
+    for phi in target.phis:
+        target.block.instructions.remove(phi)
+    ir.IRBuilder(target.block).unreachable()
+
+
+def _finish(frame: Frame, lanes: Sequence[int]) -> None:
+    """Success: only now do used lengths count."""
+    if not frame.done.is_reached:
+        _drop(frame.done)
+        return
+    builder = ir.IRBuilder(frame.done.block)
+    for lane in lanes:
+        word = state_word(builder, frame.parameters.state, lane_word(lane, USED))
+        builder.store(frame.used_in_the_end(builder, lane), word, align=8)
+    builder.ret(frame.done.phis[0])
+
+
+def _record(builder: ir.IRBuilder, state: ir.Value, failure: Sequence[ir.Value], *, is_first: bool) -> ir.Value:
+    """The failure of the attempt that got farther, in the state: site, offset, indices; the earlier one of equals. Gives its site."""
+    words = [
+        state_word(builder, state, each) for each in (ERROR_SITE, ERROR_OFFSET, *range(ERROR_INDICES, ERROR_INDICES + len(failure) - 2))
+    ]
+    if not is_first:
+        earlier = [builder.load(word, typ=I64, align=8) for word in words]
+        farther = builder.icmp_signed(">", failure[1], earlier[1])
+        failure = [builder.select(farther, new, old) for new, old in zip(failure, earlier, strict=True)]
+    for word, value in zip(words, failure, strict=True):
+        builder.store(value, word, align=8)
+    return failure[0]
+
+
+def _index_count(body: Block) -> int:
+    """The most indices that a failure of the body reports."""
+    return max((len(_indices(each)) for each in statements(body)), default=0)
+
+
+def _indices(statement: Stmt) -> Sequence[Expr]:
+    match statement:
+        case Require(_, _, failure) | Expect(_, failure) | HostCall(_, _, _, failure):
+            return failure.indices
+        case Call():
+            return statement.indices
+        case _:
+            return ()

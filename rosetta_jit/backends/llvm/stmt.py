@@ -1,0 +1,313 @@
+"""Kernel statements as LLVM blocks.
+
+A failing edge leads through a cold block of its own, where the offset and the indices are computed, to the one block of the body that
+takes failures; so the hot path holds compares and branches alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, assert_never
+
+from llvmlite import ir
+
+from rosetta_jit.backends.llvm.expr import (
+    copy_memory,
+    expression,
+    fill_memory,
+    load,
+    place_alignment,
+    place_pointer,
+    pointer,
+    store,
+    wire_pointer,
+)
+from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.host import host_called
+from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Assign,
+    Binary,
+    Block,
+    Call,
+    Const,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    For,
+    HostCall,
+    If,
+    Let,
+    Require,
+    Reserve,
+    Return,
+    Routine,
+    SetField,
+    Stmt,
+    Store,
+    Switch,
+    Var,
+    While,
+)
+from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
+from rosetta_jit.kernel.terms import BEGIN, END, type_of
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.llvm.frame import Frame
+
+MANY_CASES = 64
+GOLDEN = 0x9E3779B1
+"""2**32 over the golden ratio: its multiples leave the numbers below 2**32 in an order without a pattern."""
+
+
+def block(frame: Frame, statements: Block) -> None:
+    """Print statements until one ends the block; what follows a Return is never reached."""
+    for statement in statements:
+        if frame.builder.block.is_terminated:
+            return
+        _statement(frame, statement)
+
+
+def _statement(frame: Frame, statement: Stmt) -> None:
+    match statement:
+        case Require(at, size, failure):
+            _require(frame, at, size, failure)
+        case Expect(condition, failure):
+            _check(frame, expression(frame, condition), failure)
+        case Let(name, value):
+            frame.locals[name] = expression(frame, value)
+        case Var(name, value):
+            start = expression(frame, value)
+            frame.builder.store(start, frame.variable(name, LLVM_TYPES[type_of(value)]).slot)
+        case Assign(name, value):
+            _assign(frame, name, value)
+        case Store(at, value, order):
+            store(frame, wire_pointer(frame, at), expression(frame, value), type_of(value), alignment=1, order=order)
+        case SetField(place, value):
+            alignment = place_alignment(frame, place, type_of(value))
+            store(frame, place_pointer(frame, place), expression(frame, value), type_of(value), alignment=alignment)
+        case Reserve(lane, count):
+            _reserve(frame, lane, expression(frame, count))
+        case Advance(lane, count):
+            slot = frame.used_slot(lane)
+            rows = frame.builder.add(frame.builder.load(slot, typ=I64), expression(frame, count), flags=("nsw",))
+            # One text behind another: what LLVM works out for a sum of sums takes exponential time.
+            frame.builder.store(forgotten(frame.builder, rows) if frame.is_hidden(lane) else rows, slot)
+        case Copy(target, source, size):
+            copy_memory(frame, pointer(frame, target), pointer(frame, source), expression(frame, size))
+        case Fill(target, size, byte):
+            fill_memory(frame, pointer(frame, target), byte, expression(frame, size))
+        case For() | While() | If() | Switch():
+            _nested(frame, statement)
+        case Return(position):
+            frame.done.enter(frame.builder, [expression(frame, position)])
+        case Call():
+            _call(frame, statement)
+        case HostCall():
+            _host_call(frame, statement)
+        case _:
+            assert_never(statement)
+
+
+def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
+    match statement:
+        case For(variable, count, body):
+            _for(frame, variable, expression(frame, count), body)
+        case While():
+            _while(frame, statement)
+        case If(condition, then, otherwise):
+            _if(frame, expression(frame, condition), then, otherwise)
+        case Switch(value, cases, default):
+            _switch(frame, expression(frame, value), cases, default)
+
+
+def _require(frame: Frame, at: Expr, size: Expr, failure: Failure) -> None:
+    """Check ``at >= 0``, ``size >= 0`` and ``size <= end - at``: a difference that cannot wrap where the first holds."""
+    builder = frame.builder
+    start, length = expression(frame, at), expression(frame, size)
+    holds = builder.icmp_signed("<=", length, builder.sub(frame.parameters.end, start))
+    for value, is_positive in ((start, _is_behind_begin(at)), (length, isinstance(size, Const))):
+        if not is_positive:
+            holds = builder.and_(holds, builder.icmp_signed(">=", value, constant(0)))
+    _check(frame, holds, failure)
+
+
+def _is_behind_begin(at: Expr) -> bool:
+    match at:
+        case Binary("add", base, Const(_, offset)):
+            return base == BEGIN and offset >= 0
+        case _:
+            return at == BEGIN or isinstance(at, Const)
+
+
+def _check(frame: Frame, holds: ir.Value, failure: Failure) -> None:
+    """Go on where the condition holds."""
+    good = _cold(frame, holds)
+    _fail(frame, (failure.site,), constant(1), expression(frame, failure.at), failure.indices)
+    frame.builder.position_at_end(good)
+
+
+def _cold(frame: Frame, holds: ir.Value) -> ir.Block:
+    """Where to go on if the condition holds; the frame prints what to do else."""
+    good, cold = frame.block("good"), frame.block("broken")
+    frame.builder.cbranch(holds, good, cold).set_weights(COLD)
+    frame.builder.position_at_end(cold)
+    return good
+
+
+def _fail(frame: Frame, sites: tuple[int, ...], number: ir.Value, offset: ir.Value, indices: tuple[Expr, ...]) -> None:
+    """Leave the body at the site of a number, counted from 1; what a routine's sites and indices are, its caller says."""
+    while frame.caller is not None:
+        frame, call = frame.caller
+        sites, indices = tuple(call.sites[each - 1] for each in sites), call.indices
+    values = [_site(frame.builder, number, sites), offset, *(expression(frame, each) for each in indices)]
+    frame.failed.enter(frame.builder, [*values, *[constant(0)] * (len(frame.failed.phis) - len(values))])
+
+
+def _call(frame: Frame, call: Call) -> None:
+    routine = frame.routines[call.routine]
+    if isinstance(routine, Routine):
+        _inline(frame, call, routine)
+        return
+    builder, parameters = frame.builder, frame.parameters
+    given = [expression(frame, each) for each in call.arguments]
+    outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *given])
+    number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
+    good = _cold(frame, builder.icmp_signed("==", number, constant(0)))
+    _fail(frame, call.sites, number, first, call.indices)
+    builder.position_at_end(good)
+    for position, result in enumerate(call.results, 1):
+        frame.locals[result.name] = builder.extract_value(outcome, position)
+
+
+def _inline(frame: Frame, call: Call, routine: Routine) -> None:
+    """The routine's statements instead of a call."""
+    names = {name: frame.locals[name] for name in (BEGIN.name, END.name)}
+    given = {each.name: expression(frame, value) for each, value in zip(routine.parameters, call.arguments, strict=True)}
+    inside = replace(frame, locals=names | given, caller=(frame, call))
+    block(inside, routine.body)
+    for here, there in zip(call.results, routine.results, strict=True):
+        frame.locals[here.name] = expression(inside, there)
+
+
+def _host_call(frame: Frame, call: HostCall) -> None:
+    status, result = host_called(frame, call)
+    good = _cold(frame, frame.builder.icmp_signed("==", status, ir.Constant(status.type, 0)))
+    _fail(frame, (call.failure.site,), constant(1), expression(frame, call.failure.at), call.failure.indices)
+    frame.builder.position_at_end(good)
+    frame.locals[call.result.name] = load(frame, result, call.result.type, alignment=1)
+
+
+def _site(builder: ir.IRBuilder, number: ir.Value, sites: tuple[int, ...]) -> ir.Value:
+    """The caller's site for a routine's failure."""
+    found: ir.Value = constant(sites[-1]) if sites else constant(0)
+    for own, site in enumerate(sites[:-1], 1):
+        found = builder.select(builder.icmp_signed("==", number, constant(own)), constant(site), found)
+    return found
+
+
+def _assign(frame: Frame, name: str, value: Expr) -> None:
+    variable = frame.locals[name]
+    if not isinstance(variable, Variable):
+        raise AssertionError(f"{name} is no Var")  # noqa: TRY004 - our bug, not a caller's
+    frame.builder.store(expression(frame, value), variable.slot)
+
+
+def _reserve(frame: Frame, lane: int, count: ir.Value) -> None:
+    """Return GROW unless the rows are free; a negative count, seen as unsigned, never is."""
+    builder = frame.builder
+    used = builder.load(frame.used_slot(lane), typ=I64)
+    free = builder.sub(frame.capacity(lane), used, flags=("nsw",))
+    enough, small = frame.block("enough"), frame.block("small")
+    builder.cbranch(builder.icmp_unsigned("<=", count, free), enough, small).set_weights(COLD)
+    builder.position_at_end(small)
+    state = frame.parameters.state
+    builder.store(constant(lane), state_word(builder, state, GROW_LANE), align=8)
+    missing = builder.sub(count, free)
+    if frame.is_hidden(lane):
+        missing = builder.mul(missing, constant(frame.strides[lane]))
+    builder.store(missing, state_word(builder, state, GROW_ROWS), align=8)
+    builder.ret(constant(GROW))
+    builder.position_at_end(enough)
+
+
+def _for(frame: Frame, variable: str, count: ir.Value, body: Block) -> None:
+    builder = frame.builder
+    before, head, inside, behind = builder.block, frame.block("for"), frame.block("each"), frame.block("after")
+    builder.branch(head)
+    builder.position_at_end(head)
+    index = builder.phi(I64, name=variable)
+    index.add_incoming(constant(0), before)
+    builder.cbranch(builder.icmp_signed("<", index, count), inside, behind)
+    builder.position_at_end(inside)
+    frame.locals[variable] = index
+    block(frame, body)
+    if not builder.block.is_terminated:
+        index.add_incoming(builder.add(index, constant(1), flags=("nsw",)), builder.block)
+        builder.branch(head)
+    builder.position_at_end(behind)
+
+
+def _while(frame: Frame, loop: While) -> None:
+    builder = frame.builder
+    head, inside, behind = frame.block("while"), frame.block("round"), frame.block("after")
+    builder.branch(head)
+    builder.position_at_end(head)
+    builder.cbranch(expression(frame, loop.condition), inside, behind)
+    builder.position_at_end(inside)
+    rounds = rounds_of(loop)
+    if rounds is None:
+        _branch(frame, loop.body, head)
+    else:
+        end = frame.block("end")
+        print_switch(frame, rounds, end, behind, block)
+        builder.position_at_end(end)
+        _branch(frame, rounds.end, head)
+    builder.position_at_end(behind)
+
+
+def _if(frame: Frame, condition: ir.Value, then: Block, otherwise: Block) -> None:
+    builder = frame.builder
+    yes, behind = frame.block("then"), frame.block("after")
+    no = frame.block("else") if otherwise else behind
+    builder.cbranch(condition, yes, no)
+    builder.position_at_end(yes)
+    _branch(frame, then, behind)
+    if otherwise:
+        builder.position_at_end(no)
+        _branch(frame, otherwise, behind)
+    builder.position_at_end(behind)
+
+
+def _switch(frame: Frame, value: ir.Value, cases: tuple[tuple[int, Block], ...], default: Block) -> None:
+    builder = frame.builder
+    other, behind = frame.block("default"), frame.block("after")
+    switch = builder.switch(value, other)
+    for number, body in _shuffled(cases):
+        case = frame.block(f"case{number}")
+        switch.add_case(ir.Constant(value.type, number), case)
+        builder.position_at_end(case)
+        _branch(frame, body, behind)
+    builder.position_at_end(other)
+    _branch(frame, default, behind)
+    builder.position_at_end(behind)
+
+
+def _shuffled(cases: tuple[tuple[int, Block], ...]) -> list[tuple[int, Block]]:
+    """The cases, if they are many in no order that means anything: so they will lie in memory.
+
+    A processor foretells where a switch jumps to by the addresses that it jumped to before. Of a hundred cases of one size, taken in the
+    order in which they lie, as the fields of a message come, these look all alike.
+    """
+    if len(cases) < MANY_CASES:
+        return list(cases)
+    return [case for _, case in sorted(enumerate(cases), key=lambda each: each[0] * GOLDEN % 2**32)]
+
+
+def _branch(frame: Frame, body: Block, behind: ir.Block) -> None:
+    block(frame, body)
+    if not frame.builder.block.is_terminated:
+        frame.builder.branch(behind)

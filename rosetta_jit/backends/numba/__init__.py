@@ -1,0 +1,1 @@
+"""A kernel as a typed numba function, and users' numba functions for kernels."""

@@ -1,0 +1,1 @@
+"""A kernel as Python source."""

@@ -1,0 +1,194 @@
+"""Kernel expressions as Python expressions.
+
+Integers are ints, bools are bools. Floats are numpy scalars of their width: f32 arithmetic on them is f32, division by zero is no
+exception, and one that is only moved keeps all bits of a NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Binary,
+    Bits,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Digits,
+    Expr,
+    Fits,
+    Get,
+    IsText,
+    Load,
+    Local,
+    Nearest,
+    Place,
+    Scalar,
+    Scale,
+    Select,
+    Told,
+    Unary,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.state import NOW, NUMBER
+from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.base import Namespace
+
+FORMATS = {"bool": "?", "i8": "b", "u8": "B", "i16": "h", "u16": "H", "i32": "i", "u32": "I", "i64": "q", "u64": "Q"}
+"""Codes of the struct module; floats go through `kernel.arithmetic`."""
+
+OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
+COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+TOLD = {"now": f"int(state[{NOW}])", "number": f"(int(state[{NUMBER}]) + row)"}
+FLOATS = frozenset({"f32", "f64"})
+
+
+@dataclass(slots=True)
+class Names:
+    """Identifiers of an attempt, and the lanes whose used length and capacity it reads."""
+
+    locals: Namespace
+    strides: tuple[int, ...]
+    used: set[int] = field(default_factory=set[int])
+    capacities: set[int] = field(default_factory=set[int])
+
+    def used_name(self, lane: int) -> str:
+        self.used.add(lane)
+        return f"used_{lane}"
+
+    def capacity_name(self, lane: int) -> str:
+        self.capacities.add(lane)
+        return f"capacity_{lane}"
+
+
+def expression(names: Names, expr: Expr) -> str:
+    """The text of an expression; one with an operator stands in parentheses."""
+    match expr:
+        case Const(type_, value):
+            return _constant(type_, value)
+        case Local(_, name):
+            return names.locals.identifier(name)
+        case Load(type_, at, order):
+            return _read(names, type_, Wire(at), order)
+        case Get(type_, place):
+            return _read(names, type_, place, "<")
+        case Used() | Capacity() | Told():
+            return _known(names, expr)
+        case Unary("not", operand) if type_of(operand) == "bool":
+            return f"(not {expression(names, operand)})"
+        case Unary(function, operand):
+            return f'unary("{type_of(operand)}", "{function}", {expression(names, operand)})'
+        case Binary(op, left, right):
+            return _binary(op, type_of(left), expression(names, left), expression(names, right))
+        case Compare(op, left, right):
+            text = f"({expression(names, left)} {COMPARISONS[op]} {expression(names, right)})"
+            return f"bool{text}" if type_of(left) in FLOATS else text
+        case Fits(op, left, right):
+            return f'fits("{op}", {expression(names, left)}, {expression(names, right)})'
+        case Convert(type_, operand) | Bits(type_, operand):
+            source, text = type_of(operand), expression(names, operand)
+            return f'same_bits("{type_}", "{source}", {text})' if isinstance(expr, Bits) else _convert(type_, source, text)
+        case Select(condition, then, otherwise):
+            return f"({expression(names, then)} if {expression(names, condition)} else {expression(names, otherwise)})"
+        case IsText(address, size):
+            return f"is_text({part(names, address, expression(names, size))})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(names, expr)
+        case _:
+            assert_never(expr)
+
+
+def _known(names: Names, expr: Used | Capacity | Told) -> str:
+    match expr:
+        case Used(lane):
+            return names.used_name(lane)
+        case Capacity(lane):
+            return names.capacity_name(lane)
+        case Told(what):
+            return TOLD[what]
+        case _:
+            assert_never(expr)
+
+
+def _decimal(names: Names, expr: Nearest | Digits | Scale) -> str:
+    match expr:
+        case Nearest(address, size, exponent):
+            return f"nearest({part(names, address, expression(names, size))}, {expression(names, exponent)})"
+        case Digits(value, places):
+            return f'digits("{type_of(value)}", {expression(names, value)}, {places})'
+        case Scale(value):
+            return f'scale("{type_of(value)}", {expression(names, value)})'
+        case _:
+            assert_never(expr)
+
+
+def part(names: Names, address: Address, size: str) -> str:
+    """A slice of the message or of a lane."""
+    memory, start = location(names, address)
+    return f"{memory}[{start} : {start} + {size}]"
+
+
+def location(names: Names, address: Address) -> tuple[str, str]:
+    """The memory and the index of its byte."""
+    match address:
+        case Wire(at):
+            return "buffer", expression(names, at)
+        case Place(lane, row, offset):
+            stride = names.strides[lane]
+            start = expression(names, row) if stride == 1 else f"{expression(names, row)} * {stride}"
+            return f"lanes[{lane}]", f"{start} + {offset}" if offset else start
+        case _:
+            assert_never(address)
+
+
+def _constant(type_: Scalar, value: float) -> str:
+    if type_ not in FLOATS:
+        return repr(bool(value)) if type_ == "bool" else repr(int(value))
+    number = repr(float(value))
+    return f"float{8 * WIDTH[type_]}({number if math.isfinite(value) else repr(number)})"
+
+
+def _read(names: Names, type_: Scalar, address: Address, order: str) -> str:
+    if type_ in FLOATS:
+        return f'from_bytes("{type_}", bytes({part(names, address, str(WIDTH[type_]))}), "{order}")'
+    memory, start = location(names, address)
+    return f'unpack_from("{order}{FORMATS[type_]}", {memory}, {start})[0]'
+
+
+def _binary(op: str, type_: Scalar, left: str, right: str) -> str:
+    match op, type_ in FLOATS:
+        case (("min" | "max" | "rem" | "atan2"), True):
+            return f'binary("{type_}", "{op}", {left}, {right})'
+        case "div", True:
+            return f"({left} / {right})"
+        case (("min" | "max"), False):
+            return f"{op}({left}, {right})"
+        case "div", False:
+            return f"quotient({left}, {right})"
+        case "rem", False:
+            return f"remainder({left}, {right})"
+        case "shl", _:
+            return f'wrapped("{type_}", {left} << {right})'
+        case _:
+            return f"({left} {OPERATORS[op]} {right})"
+
+
+def _convert(target: Scalar, source: Scalar, value: str) -> str:
+    """Nothing where every value of the source is one of the target."""
+    is_wider = source not in FLOATS | {"bool"} and target not in FLOATS | {"bool"} and _holds(target, source)
+    return value if is_wider or target == source else f'convert("{target}", {value})'
+
+
+def _holds(target: Scalar, source: Scalar) -> bool:
+    if target[0] == source[0]:
+        return WIDTH[target] >= WIDTH[source]
+    return target[0] == "i" and WIDTH[target] > WIDTH[source]

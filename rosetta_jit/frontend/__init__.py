@@ -1,1 +1,0 @@
-"""From text to the meta-model: what a front end is, the mapping language, the search path."""

@@ -1,0 +1,1 @@
+"""Passes: a kernel → a better one that means the same. `order` runs them."""

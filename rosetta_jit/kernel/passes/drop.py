@@ -1,0 +1,33 @@
+"""Checks that cannot fail go, and so do Ifs that always choose the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import If
+from rosetta_jit.kernel.proof.verify import settled
+from rosetta_jit.kernel.rewrite import with_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Block, Kernel, Stmt
+
+
+def drop(kernel: Kernel) -> Kernel:
+    """The kernel without what follows from what is known before it."""
+    known = settled(kernel)
+    if not known:
+        return kernel
+
+    def kept(block: Block) -> Block:
+        return tuple(part for stmt in block for part in _kept(stmt, kept, known))
+
+    return replace(kernel, bodies=tuple(map(kept, kernel.bodies)))
+
+
+def _kept(stmt: Stmt, kept: Callable[[Block], Block], known: frozenset[int]) -> Block:
+    if id(stmt) not in known:
+        return (with_blocks(stmt, kept),)
+    return kept(stmt.then) if isinstance(stmt, If) else ()

@@ -1,0 +1,80 @@
+"""The passes over a kernel, in the order in which they run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.passes.bulk import bulk, group
+from rosetta_jit.kernel.passes.drop import drop
+from rosetta_jit.kernel.passes.hoist import hoist
+from rosetta_jit.kernel.passes.merge import merge
+from rosetta_jit.kernel.passes.reuse import reuse
+from rosetta_jit.kernel.passes.simplify import simplify
+from rosetta_jit.kernel.passes.sink import sink
+from rosetta_jit.kernel.passes.unroll import unroll
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
+from rosetta_jit.kernel.shape import is_large
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.kernel.ir import Kernel
+
+PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
+    simplify,
+    reuse,
+    simplify,
+    drop,
+    hoist,
+    drop,
+    group,
+    simplify,
+    unroll,
+    simplify,
+    hoist,
+    drop,
+    bulk,
+    simplify,
+    merge,
+    sink,
+)
+
+
+def run(kernel: Kernel) -> Kernel:
+    """All passes, and the proof that what comes out is safe.
+
+    The proof looks only so far; where it cannot follow a pass, the kernel stays as it was before that pass.
+
+    Raises
+    ------
+    VerificationError
+        The kernel as it was lowered could not be proven safe.
+    """
+    try:
+        return _all(kernel)
+    except VerificationError:
+        verify(kernel)
+    for transform in PASSES:
+        kernel = _proven(transform, kernel)
+    return kernel
+
+
+def _all(kernel: Kernel) -> Kernel:
+    results: dict[Callable[[Kernel], Kernel], Kernel] = {}
+    large = is_large(kernel)
+    for transform in PASSES:
+        # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
+        if results.get(transform) is not kernel and not (large and transform in results):
+            kernel = results[transform] = transform(kernel)
+    verify(kernel)
+    return kernel
+
+
+def _proven(transform: Callable[[Kernel], Kernel], kernel: Kernel) -> Kernel:
+    """The result of a pass, if it can be proven."""
+    try:
+        changed = transform(kernel)
+        verify(changed)
+    except VerificationError:
+        return kernel
+    return changed

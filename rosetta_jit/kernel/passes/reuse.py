@@ -1,0 +1,163 @@
+"""Memory that nothing writes in between is read once.
+
+The lowering reads a field of the holder wherever a rule names it. To the proof each read is a new value, because others may change
+memory; what was checked of one read says nothing of the next, until both are one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import field
+from itertools import count
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Call, Const, Copy, Expr, Fill, Get, HostCall, Let, Load, Local, Place, SetField, Store, While
+from rosetta_jit.kernel.proof.loops import changed_names
+from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks, with_bodies, with_expressions, with_operands
+from rosetta_jit.kernel.shape import blocks_of, bound_names, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosetta_jit.kernel.ir import Address, Block, Kernel, Stmt
+
+MESSAGE = -1
+"""Stands for the message among the numbers of the lanes."""
+
+_Known = dict[int, dict[Expr, Local]]
+"""What has been read of each memory, and the locals that hold it."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """The variables of a body, the names that are taken in the kernel, those made here, and the memory that each routine writes."""
+
+    variables: set[str]
+    taken: set[str]
+    written: Mapping[str, set[int]]
+    made: set[str] = field(default_factory=set[str])
+    numbers: Iterator[int] = field(default_factory=lambda: count(1))
+
+    def fresh(self) -> str:
+        name = next(name for number in self.numbers if (name := f"read_{number}") not in self.taken)
+        self.taken.add(name)
+        self.made.add(name)
+        return name
+
+
+def reuse(kernel: Kernel) -> Kernel:
+    """The kernel with a name for what it would read more than once."""
+    taken = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
+    written: dict[str, set[int]] = {}
+    for routine in kernel.routines:
+        written[routine.name] = _written_in(routine.body, written)
+    return with_bodies(kernel, tuple(_body(body, taken, written) for body in kernel.bodies))
+
+
+def _body(body: Block, taken: set[str], written: Mapping[str, set[int]]) -> Block:
+    names = _Names(changed_names(body), taken, written)
+    named = _block(body, {}, names)
+    parts = (part for stmt, _ in statements(named) for expr in expressions_of(stmt) for part in subexpressions(expr))
+    uses = Counter(part.name for part in parts if isinstance(part, Local))
+    return _inlined(named, {name for name in names.made if uses[name] == 1}, {})
+
+
+# --- names for reads ---------------------------------------------------------------------------------------------------
+
+
+def _block(block: Block, known: _Known, names: _Names) -> Block:
+    result: list[Stmt] = []
+    for stmt in block:
+        inside = {memory for inner in blocks_of(stmt) for memory in _written_in(inner, names.written)}
+        _forget(known, inside)
+        result.extend(_statement(stmt, known, names))
+        _forget(known, _written(stmt, names.written))
+    return tuple(result)
+
+
+def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
+    """A statement, behind names for what it is the first to read."""
+    lets: list[Stmt] = []
+    match stmt:
+        case Let(name, Load() | Get() as read):
+            value = with_operands(read, lambda operand: _read(operand, known, names, lets))
+            seen = known.setdefault(_source(value), {})
+            if value not in seen and names.variables.isdisjoint(locals_in(value)):
+                seen[value] = Local(type_of(value), name)
+                return (*lets, Let(name, value))
+            return (*lets, Let(name, seen.get(value, value)))
+        case While():
+            # Its condition is asked in each round: no name before the loop can stand for it.
+            changed: Stmt = stmt
+        case _:
+            changed = with_expressions(stmt, lambda expr: _read(expr, known, names, lets))
+    return (*lets, with_blocks(changed, lambda inner: _block(inner, {memory: dict(seen) for memory, seen in known.items()}, names)))
+
+
+def _read(expr: Expr, known: _Known, names: _Names, lets: list[Stmt]) -> Expr:
+    """An expression with names in place of what it reads."""
+    if isinstance(expr, Const | Local):
+        return expr
+    changed = with_operands(expr, lambda operand: _read(operand, known, names, lets))
+    if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
+        return changed
+    seen = known.setdefault(_source(changed), {})
+    if changed not in seen:
+        seen[changed] = Local(changed.type, names.fresh())
+        lets.append(Let(seen[changed].name, changed))
+    return seen[changed]
+
+
+def _source(read: Expr) -> int:
+    """The memory that a read depends on. Reads inside it have names of their own."""
+    return read.place.lane if isinstance(read, Get) else MESSAGE
+
+
+# --- what is written ---------------------------------------------------------------------------------------------------
+
+
+def _written_in(block: Block, routines: Mapping[str, set[int]]) -> set[int]:
+    return {memory for stmt, _ in statements(block) for memory in _written(stmt, routines)}
+
+
+def _written(stmt: Stmt, routines: Mapping[str, set[int]]) -> set[int]:
+    """The memory that a statement itself writes."""
+    match stmt:
+        case Call(routine):
+            return routines[routine]
+        case Store():
+            return {MESSAGE}
+        case SetField(place, _):
+            return {place.lane}
+        case Copy(target, _, _) | Fill(target, _, _):
+            return {_memory(target)}
+        case HostCall():
+            return set() if stmt.target is None else {_memory(stmt.target.address)}
+        case _:
+            return set()
+
+
+def _memory(address: Address) -> int:
+    return address.lane if isinstance(address, Place) else MESSAGE
+
+
+def _forget(known: _Known, written: set[int]) -> None:
+    for memory in written:
+        known.pop(memory, None)
+
+
+# --- names for nothing -------------------------------------------------------------------------------------------------
+
+
+def _inlined(block: Block, single: set[str], values: dict[str, Expr]) -> Block:
+    """The block without names that are used once: in the statement behind them."""
+    result: list[Stmt] = []
+    for stmt in block:
+        if isinstance(stmt, Let) and stmt.name in single:
+            values[stmt.name] = substituted(stmt.value, values)
+        else:
+            changed = with_expressions(stmt, lambda expr: substituted(expr, values)) if values else stmt
+            result.append(with_blocks(changed, lambda inner: _inlined(inner, single, values)))
+    return tuple(result)

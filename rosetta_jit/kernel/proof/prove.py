@@ -1,0 +1,374 @@
+r"""What is known at one place of a kernel, and what follows from it.
+
+`Facts` keeps, for each sum of atoms, the greatest lower bound that is known. Most questions are answered by a look at that table or by the
+bounds of single atoms, nearly all others by adding up one or two facts; the rest by Fourier-Motzkin elimination on the facts around the
+question, within a budget. A No means "not proven".
+
+Facts are gained along a path and given up at its end (`mark`, `rollback`), so that the two branches of an If share one table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import field
+from heapq import heapify, heappop, heappush
+from typing import Literal, NamedTuple, assert_never
+
+from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said
+from rosetta_jit.kernel.proof.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, tightened, times
+from rosetta_jit.startup.dataclass import dataclass
+
+
+class Effort(NamedTuple):
+    """How far a proof may go: facts that it adds up, facts among which it eliminates atoms, and how many of those it may combine."""
+
+    summands: int
+    facts: int
+    combinations: int
+
+
+GLANCE, SUMS, QUICK, THOROUGH = Effort(0, 0, 0), Effort(2, 0, 0), Effort(2, 32, 300), Effort(2, 96, 4000)
+"""For what stands in the table, for what takes no elimination, for a question, and for an obligation."""
+
+MAX_TRIED = 8
+"""Facts about one atom, the latest ones, that are tried as a summand."""
+
+CASE_DEPTH = 2
+MAX_PROPAGATED = 4
+
+Procedure = Literal["constants", "unreachable", "bounds", "sums", "elimination", "cases", "operations", "paths"]
+"""Who proves: a look at constants, the contradiction of what a path takes as known, the table of bounds, a sum of few facts,
+Fourier-Motzkin elimination, or that in each case of a choice. What the proof infers comes from the rules of operations (`integers`) and
+from where paths meet (`paths`)."""
+
+
+def _shares_atom(fact: Any, goal: Linear) -> bool:
+    """Whether an alternative is directly about an atom of the goal."""
+    atoms = {atom for atom, _ in goal.terms}
+    return any(isinstance(part, Linear) and not atoms.isdisjoint(a for a, _ in part.terms) for part in fact.parts)
+
+
+@dataclass(slots=True)
+class Facts:
+    """Bounds of atoms and of sums of atoms."""
+
+    lows: list[int] = field(default_factory=list[int])
+    highs: list[int] = field(default_factory=list[int])
+    impossible: bool = False
+    _bounds: dict[Terms, int] = field(default_factory=dict[Terms, int])
+    _about: dict[int, list[Terms]] = field(default_factory=dict[int, list[Terms]])
+    _cases: dict[int, tuple[tuple[Formula, Linear], ...]] = field(default_factory=dict[int, tuple[tuple[Formula, Linear], ...]])
+    _named: dict[Hashable, Linear] = field(default_factory=dict[Hashable, Linear])
+    _born: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    _either: dict[Any, None] = field(default_factory=dict[Any, None])
+    _trail: list[tuple[str, int | Terms, int | None]] = field(default_factory=list[tuple[str, "int | Terms", "int | None"]])
+
+    # --- atoms -------------------------------------------------------------------------------------------------------
+
+    def fresh(self, low: int, high: int) -> Linear:
+        """A new atom between two bounds."""
+        self.lows.append(low)
+        self.highs.append(high)
+        self._born.append((low, high))
+        return Linear(0, ((len(self.lows) - 1, 1),))
+
+    def named(self, key: Hashable, low: int, high: int) -> Linear:
+        """The atom of a term that linear reasoning cannot look into; the same term is the same atom. The bounds hold on every path."""
+        atom = self._named.get(key)
+        if atom is None:
+            atom = self._named[key] = self.fresh(low, high)
+        return atom
+
+    def has(self, key: Hashable) -> bool:
+        """Whether a term has an atom."""
+        return key in self._named
+
+    def born(self, atom: int) -> tuple[int, int]:
+        """Bounds of an atom on every path where it exists."""
+        return self._born[atom]
+
+    def chosen(self, cases: tuple[tuple[Formula, Linear], ...]) -> Linear:
+        """The atom that is equal to one of some values, each under a condition; together they cover everything.
+
+        The same choice is the same atom, unless nothing is known of its conditions: then two that look the same may differ.
+        """
+        widest = [self.widest(value) for _, value in cases]
+        low, high = min(low for low, _ in widest), max(high for _, high in widest)
+        atom = self.fresh(low, high) if any(is_vague(condition) for condition, _ in cases) else self.named(cases, low, high)
+        self._cases[atom.terms[0][0]] = cases
+        self._take(shifted(atom, -min(self.lower(value) for _, value in cases)))
+        self._take(shifted(times(atom, -1), max(self.upper(value) for _, value in cases)))
+        return atom
+
+    def widest(self, linear: Linear) -> tuple[int, int]:
+        """Bounds of a sum on every path."""
+        low = high = linear.constant
+        for atom, coefficient in linear.terms:
+            ends = [coefficient * end for end in self._born[atom]]
+            low, high = low + min(ends), high + max(ends)
+        return low, high
+
+    def abbreviated(self, value: Linear, low: int, high: int) -> Linear:
+        """A new atom that stands for a sum of which the bounds are known."""
+        atom = self.fresh(low, high)
+        self._take(equal(atom, value))
+        return atom
+
+    # --- learning ----------------------------------------------------------------------------------------------------
+
+    def _take(self, formula: Formula) -> None:
+        """Take a formula as known."""
+        match formula:
+            case Linear():
+                self._learn(formula)
+            case All(parts):
+                for part in parts:
+                    self._take(part)
+            case Any() if is_vague(formula):
+                self._take(said(formula))
+            case Any(parts):
+                # Without looking at cases: a case may have alternatives of its own, and theirs again.
+                open_parts = [part for part in parts if not self._proves(negated(part), 0, QUICK)]
+                if len(open_parts) == 1:
+                    self._take(open_parts[0])
+                elif not open_parts:
+                    self._contradiction()
+                elif formula not in self._either:
+                    self._trail.append(("either", 0, None))
+                    self._either[formula] = None
+            case False:
+                self._contradiction()
+            case True | None:
+                pass
+            case _:
+                assert_never(formula)
+
+    assume = _take
+    """Take as known what is given: what a check has found, which branch was taken, what a loop keeps."""
+    derive = _take
+    """Take as known what follows from what is known already and from what the atoms stand for."""
+
+    def _learn(self, fact: Linear) -> None:
+        constant, terms = fact
+        if len(terms) == 1:
+            self._learn_bound(constant, *terms[0])
+        elif terms:
+            constant, terms = tightened(fact)
+            known = self._bounds.get(terms)
+            if known is None or known < -constant:
+                self._trail.append(("sum", terms, known))
+                self._bounds[terms] = -constant
+                if known is None:
+                    for atom, _ in terms:
+                        self._about.setdefault(atom, []).append(terms)
+                self._propagate(constant, terms)
+        elif constant < 0:
+            self._contradiction()
+
+    def _propagate(self, constant: int, terms: Terms) -> None:
+        """Bound each atom of a short sum by the bounds of the others, so that most questions need no more than bounds."""
+        if len(terms) > MAX_PROPAGATED:
+            return
+        greatest = [c * (self.highs[a] if c > 0 else self.lows[a]) for a, c in terms]
+        total = constant + sum(greatest)
+        for (atom, coefficient), own in zip(terms, greatest, strict=True):
+            self._learn_bound(total - own, atom, coefficient)
+
+    def _learn_bound(self, constant: int, atom: int, coefficient: int) -> None:
+        if coefficient > 0:
+            low = -(constant // coefficient)
+            if low > self.lows[atom]:
+                self._trail.append(("low", atom, self.lows[atom]))
+                self.lows[atom] = low
+        else:
+            high = constant // -coefficient
+            if high < self.highs[atom]:
+                self._trail.append(("high", atom, self.highs[atom]))
+                self.highs[atom] = high
+        if self.lows[atom] > self.highs[atom]:
+            self._contradiction()
+
+    def _contradiction(self) -> None:
+        if not self.impossible:
+            self._trail.append(("impossible", 0, None))
+            self.impossible = True
+
+    # --- paths -------------------------------------------------------------------------------------------------------
+
+    def mark(self) -> int:
+        """A point to roll back to."""
+        return len(self._trail)
+
+    def rollback(self, mark: int) -> dict[Terms, int]:
+        """Give up what was learnt since a mark; returns it, as lower bounds of sums."""
+        gained: dict[Terms, int] = {}
+        while len(self._trail) > mark:
+            kind, key, old = self._trail.pop()
+            if isinstance(key, tuple):
+                gained.setdefault(key, self._bounds[key])
+                self._forget(key, old)
+            elif kind == "impossible":
+                self.impossible = False
+            elif kind == "either":
+                self._either.popitem()
+            elif kind == "low" and old is not None:
+                gained.setdefault(((key, 1),), self.lows[key])
+                self.lows[key] = old
+            elif old is not None:
+                gained.setdefault(((key, -1),), -self.highs[key])
+                self.highs[key] = old
+        return gained
+
+    def _forget(self, key: Terms, old: int | None) -> None:
+        if old is not None:
+            self._bounds[key] = old
+            return
+        del self._bounds[key]
+        for atom, _ in key:
+            self._about[atom].pop()
+
+    # --- asking ------------------------------------------------------------------------------------------------------
+
+    def lower(self, linear: Linear) -> int:
+        """A lower bound, by a look at the table."""
+        total = linear.constant
+        for atom, coefficient in linear.terms:
+            total += coefficient * (self.lows[atom] if coefficient > 0 else self.highs[atom])
+        known = self._bounds.get(linear.terms)
+        return total if known is None else max(total, known + linear.constant)
+
+    def upper(self, linear: Linear) -> int:
+        """An upper bound, by a look at the table."""
+        return -self.lower(times(linear, -1))
+
+    def sums_about(self, atom: int, most: int) -> list[Linear]:
+        """Some facts (each >= 0) that name an atom among others."""
+        return [Linear(-self._bounds[terms], terms) for terms in self._about.get(atom, ())[:most]]
+
+    def shows(self, formula: Formula) -> bool:
+        """Whether a formula stands in the table: to assume it would add nothing."""
+        return self.impossible or self._proves(formula, 0, GLANCE)
+
+    def proves(self, formula: Formula) -> bool:
+        """Whether a formula follows from what is known, as far as a short look shows."""
+        return self.impossible or self._proves(formula, CASE_DEPTH, QUICK)
+
+    def proves_thoroughly(self, formula: Formula) -> bool:
+        """Whether a formula follows from what is known: for what ought to, as a No may take long."""
+        return self.proves(formula) or self._proves(formula, CASE_DEPTH, THOROUGH)
+
+    def procedure(self, formula: Formula) -> Procedure | None:
+        """The simplest procedure that proves a formula; None where it is not proven."""
+        if formula is True or (isinstance(formula, Linear) and not formula.terms and formula.constant >= 0):
+            return "constants"
+        if self.impossible:
+            return "unreachable"
+        if self._proves(formula, 0, GLANCE):
+            return "bounds"
+        if self._proves(formula, 0, SUMS):
+            return "sums"
+        if self._proves(formula, 0, THOROUGH):
+            return "elimination"
+        return "cases" if self.proves_thoroughly(formula) else None
+
+    def _proves(self, formula: Formula, depth: int, effort: Effort) -> bool:
+        match formula:
+            case Linear():
+                return self.lower(formula) >= 0 or self._follows(formula, effort) or (depth > 0 and self._by_cases(formula, depth, effort))
+            case All(parts):
+                return all(self._proves(part, depth, effort) for part in parts)
+            case Any(parts):
+                return (
+                    formula in self._either
+                    or any(self._proves(part, depth, effort) for part in parts)
+                    or self._proves_one(parts, depth, effort)
+                )
+            case bool():
+                return formula
+            case None:
+                return False
+            case _:
+                assert_never(formula)
+
+    def _proves_one(self, parts: tuple[Formula, ...], depth: int, effort: Effort) -> bool:
+        """Whether the last part holds where all others do not."""
+        if depth == 0 or len(parts) < 2:
+            return False
+        mark = self.mark()
+        for part in parts[:-1]:
+            self._take(negated(part))
+        proven = self.impossible or self._proves(parts[-1], depth - 1, effort)
+        self.rollback(mark)
+        return proven
+
+    def _by_cases(self, goal: Linear, depth: int, effort: Effort) -> bool:
+        """Whether a goal holds in each case of an atom that is chosen among values, or of a fact that has alternatives.
+
+        The youngest atom comes first: what it is chosen among may rest on the others.
+        """
+        atom = max((a for a, _ in goal.terms if a in self._cases), default=None)
+        if atom is not None:
+            return all(self._in_case(replaced(goal, atom, value), condition, depth, effort) for condition, value in self._cases[atom])
+        alternatives = next((fact for fact in reversed(self._either) if _shares_atom(fact, goal)), None)
+        return alternatives is not None and all(self._in_case(goal, part, depth, effort) for part in alternatives.parts)
+
+    def _in_case(self, goal: Linear, condition: Formula, depth: int, effort: Effort) -> bool:
+        mark = self.mark()
+        self._take(condition)
+        proven = self.impossible or self._proves(goal, depth - 1, effort)
+        self.rollback(mark)
+        return proven
+
+    def _follows(self, goal: Linear, effort: Effort) -> bool:
+        """Whether a goal is a sum of facts, or the facts around it contradict its opposite."""
+        if effort.summands and self._is_sum(goal, effort.summands):
+            return True
+        nearby = self._nearby(goal, effort.facts) if effort.facts else None
+        return bool(nearby) and contradict([*nearby, shifted(times(goal, -1), -1)], effort.combinations)
+
+    def _is_sum(self, goal: Linear, most: int) -> bool:
+        """Whether a goal is a sum of at most so many facts, or multiples of them, and of something that bounds show.
+
+        Each fact must do away with the atom of which the fewest facts are known.
+        """
+        about = [(len(facts), atom, wanted) for atom, wanted in goal.terms if (facts := self._about.get(atom))]
+        if not about:
+            return False
+        _, atom, wanted = min(about)
+        for terms in self._about[atom][: -1 - MAX_TRIED : -1]:
+            fact = Linear(-self._bounds[terms], terms)
+            factor, left = divmod(wanted, coefficient_of(fact, atom))
+            if left or factor < 0:
+                continue
+            rest = minus(goal, times(fact, factor))
+            if self.lower(rest) >= 0 or (most > 1 and self._is_sum(rest, most - 1)):
+                return True
+        return False
+
+    def _nearby(self, goal: Linear, most: int) -> list[Linear]:
+        """Facts that share atoms with a goal, and facts that share atoms with those.
+
+        The atom with the fewest facts comes first, of equals the youngest: what is known of the message's length or of a lane's capacity
+        grows with the kernel, and little of it has to do with the goal.
+        """
+        sums: dict[Terms, None] = {}
+        about = self._about
+        atoms = {atom for atom, _ in goal.terms}
+        waiting = [(len(about.get(atom, ())), -atom) for atom in atoms]
+        heapify(waiting)
+        while waiting and len(sums) < most:
+            for terms in reversed(about.get(-heappop(waiting)[1], ())):
+                if terms in sums:
+                    continue
+                sums[terms] = None
+                for atom, _ in terms:
+                    if atom not in atoms:
+                        atoms.add(atom)
+                        heappush(waiting, (len(about[atom]), -atom))
+                if len(sums) >= most:
+                    break
+        if not sums:
+            return []
+        known = [Linear(-self._bounds[terms], terms) for terms in sums]
+        lows = [Linear(-self.lows[atom], ((atom, 1),)) for atom in atoms]
+        return known + lows + [Linear(self.highs[atom], ((atom, -1),)) for atom in atoms]

@@ -1,0 +1,88 @@
+"""What a place of a kernel can see, in the proof: its locals, the lanes, and the facts about them."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.proof.formula import All, Any
+from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
+from rosetta_jit.kernel.proof.prove import Facts
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Scalar, Stmt
+    from rosetta_jit.kernel.proof.record import Record
+
+MAX_POSITION = 1 << 60
+"""The end of any buffer: a quarter of all memory that 64 bits can address, and more than any machine has."""
+
+MAX_ROWS = 1 << 48
+"""The capacity of any lane."""
+
+Value = Linear | bool | None | All | Any
+"""An integer, or a formula for a bool; None is a value of which nothing is known (every float)."""
+
+Typed = tuple["Scalar", Value]
+
+
+@dataclass(slots=True)
+class Scope:
+    """What a place of a kernel can see: its locals, the lanes, and the facts about them.
+
+    Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
+    ``at`` is the statement of that place, and ``record`` writes down what the kernel owes there, where somebody wants to read it.
+    """
+
+    strides: tuple[int, ...]
+    facts: Facts = field(default_factory=Facts)
+    locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
+    used: list[Linear] = field(default_factory=list[Linear])
+    capacity: list[Linear] = field(default_factory=list[Linear])
+    at: Stmt | None = None
+    record: Record | None = None
+    _trail: list[tuple[str, Typed | None]] = field(default_factory=list[tuple[str, "Typed | None"]])
+
+    def bind(self, name: str, typed: Typed) -> None:
+        """Give a local a value."""
+        self._trail.append((name, self.locals.get(name)))
+        self.locals[name] = typed
+
+    def mark(self) -> int:
+        """A point to roll back to."""
+        return len(self._trail)
+
+    def changed(self, mark: int) -> dict[str, Typed]:
+        """The locals that were there at a mark and have other values now, with their values then."""
+        first: dict[str, Typed | None] = {}
+        for name, old in self._trail[mark:]:
+            first.setdefault(name, old)
+        return {name: old for name, old in first.items() if old is not None and self.locals[name] is not old}
+
+    def rollback(self, mark: int) -> None:
+        """Give locals the values that they had at a mark."""
+        while len(self._trail) > mark:
+            name, old = self._trail.pop()
+            if old is None:
+                del self.locals[name]
+            else:
+                self.locals[name] = old
+
+
+def entry(strides: tuple[int, ...], record: Record | None = None) -> Scope:
+    """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
+    scope = Scope(strides, Facts() if record is None else record.facts(), record=record)
+    if record is not None:
+        record.watch(scope)
+    facts = scope.facts
+    begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
+    end = plus(begin, length)
+    facts.assume(shifted(times(end, -1), MAX_POSITION))
+    scope.locals = {"begin": ("i64", begin), "end": ("i64", end), "row": ("i64", facts.fresh(0, limits("i64")[1]))}
+    for _ in strides:
+        capacity, used = facts.fresh(0, MAX_ROWS), facts.fresh(0, MAX_ROWS)
+        facts.assume(minus(capacity, used))
+        scope.capacity.append(capacity)
+        scope.used.append(used)
+    return scope

@@ -1,0 +1,333 @@
+"""The proof that a kernel is safe, for every message and every holder: a symbolic run over all its paths.
+
+Where the obligations come from: `symbolic` (accesses and arithmetic in expressions), this module (statements), `paths` (what
+survives where paths meet), `contracts` (routines), `shape` (the text). A failed proof is a bug of ours, never a user's mistake.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Assign,
+    Call,
+    Copy,
+    Expect,
+    Fill,
+    For,
+    HostCall,
+    If,
+    Let,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Store,
+    Switch,
+    Var,
+    While,
+)
+from rosetta_jit.kernel.printer import statement_text
+from rosetta_jit.kernel.proof import claims, contracts, effects, paths
+from rosetta_jit.kernel.proof.formula import All, equal, negated
+from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
+from rosetta_jit.kernel.proof.loops import Loop, bounds, walk_rounds
+from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
+from rosetta_jit.kernel.proof.scope import entry
+from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
+from rosetta_jit.kernel.shape import shape_error
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Routine, Stmt
+    from rosetta_jit.kernel.proof.formula import Formula
+    from rosetta_jit.kernel.proof.loops import Guess
+    from rosetta_jit.kernel.proof.record import Record
+    from rosetta_jit.kernel.proof.scope import Scope, Typed
+
+MAX_PROOFS = 256
+"""Routines of which it is remembered that they were proven."""
+
+MAX_TERMS = 6
+"""A longer sum gets a name: sums over many fields would cost more with each field."""
+
+
+class VerificationError(AssertionError):
+    """A kernel that could not be proven safe."""
+
+
+@dataclass(slots=True)
+class _Walk:
+    """One body's walk: where it is, and what it has found out about loops and checks, by the ids of their statements."""
+
+    scope: Scope
+    routines: Mapping[str, Routine]
+    notes: bool = False
+    loops: int = 0
+    variables: set[str] = field(default_factory=set[str])
+    dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
+    seen: dict[int, Stmt] = field(default_factory=dict[int, "Stmt"])
+    needed: set[int] = field(default_factory=set[int])
+
+
+def verify(kernel: Kernel, record: Record | None = None) -> None:
+    """Prove a kernel, and write down what it owes in a record, if there is one.
+
+    Raises
+    ------
+    VerificationError
+        Something in it cannot be shown to be safe; the message names the statement.
+    """
+    routines = _proven_routines(kernel, record)
+    for number, body in enumerate(kernel.bodies):
+        if record is not None:
+            record.begin(f"body {number + 1}" if len(kernel.bodies) > 1 else "", kernel.sites)
+        _body(_Walk(entry(kernel.strides, record), routines), kernel, body)
+
+
+def settled(kernel: Kernel) -> frozenset[int]:
+    """The ids of Require and Expect statements that cannot fail wherever they stand, and of Ifs that always choose their first block.
+
+    Raises
+    ------
+    VerificationError
+        As `verify`.
+    """
+    found: set[int] = set()
+    needed: set[int] = set()
+    routines = _proven_routines(kernel)
+    for body in kernel.bodies:
+        walk = _Walk(entry(kernel.strides), routines, notes=True)
+        _body(walk, kernel, body)
+        found |= walk.seen.keys()
+        needed |= walk.needed
+    return frozenset(found - needed)
+
+
+def _proven_routines(kernel: Kernel, record: Record | None = None) -> Mapping[str, Routine]:
+    """The routines of a kernel of sound shape, proven."""
+    problem = shape_error(kernel)
+    if problem is not None:
+        raise VerificationError(f"kernel {kernel.name}: {problem}")
+    for number, routine in enumerate(kernel.routines):
+        try:
+            if record is None:
+                _prove_routine(kernel.strides, routine, kernel.routines[:number])
+            else:
+                record.begin(f"routine {routine.name}", routine.sites)
+                _routine(kernel.strides, routine, kernel.routines[:number], record)
+        except UnprovenError as error:
+            raise VerificationError(f"kernel {kernel.name}, routine {routine.name}: {error}") from error
+    return {routine.name: routine for routine in kernel.routines}
+
+
+@lru_cache(maxsize=MAX_PROOFS)
+def _prove_routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...]) -> None:
+    """Prove a routine, which calls those before it. No pass changes one, so that a proof holds for all rounds of all passes."""
+    _routine(strides, routine, before, None)
+
+
+def _routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, ...], record: Record | None) -> None:
+    walk = _Walk(contracts.inside(strides, routine, record), {each.name: each for each in before})
+    _block(walk, routine.body)
+    contracts.keep(walk.scope, routine)
+
+
+def _body(walk: _Walk, kernel: Kernel, body: Block) -> None:
+    try:
+        ended = _block(walk, body)
+        if not ended:
+            oblige(walk.scope, formula=False, claim=claims.RETURNS)
+    except UnprovenError as error:
+        raise VerificationError(f"kernel {kernel.name}: {error}") from error
+
+
+def _block(walk: _Walk, block: Block) -> bool:
+    """Walk a block; True when every path through it has returned."""
+    outer = walk.scope.at
+    for number, stmt in enumerate(block):
+        walk.scope.at = stmt
+        try:
+            ended = _statement(walk, stmt)
+        except UnprovenError as error:
+            raise _named(error, stmt) from error.__cause__
+        if ended:
+            demand(number == len(block) - 1, "statements after the end of their path")
+            walk.scope.at = outer
+            return True
+    walk.scope.at = outer
+    return False
+
+
+def _named(error: UnprovenError, stmt: Stmt) -> UnprovenError:
+    """The error with the innermost statement's text."""
+    return error if "\n" in str(error) else UnprovenError(f"{error}\n  in: {statement_text(stmt)}")
+
+
+# --- statements --------------------------------------------------------------------------------------------------------
+
+
+def _statement(walk: _Walk, stmt: Stmt) -> bool:
+    scope = walk.scope
+    match stmt:
+        case Require(at, size, failure):
+            start, length = integer(scope, at), integer(scope, size)
+            effects.failure(scope, failure)
+            _check(walk, stmt, All((start, length, minus(minus(linear(scope.locals["end"][1]), start), length))))
+        case Expect(expr, failure):
+            effects.failure(scope, failure)
+            _check(walk, stmt, condition(scope, expr))
+        case Let(name, value) | Var(name, value):
+            scope.bind(name, _value(scope, value))
+            if isinstance(stmt, Var):
+                walk.variables.add(name)
+        case Assign(name, value):
+            demand(name in walk.variables and name in scope.locals, f"{name} is no variable")
+            new = _value(scope, value)
+            demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
+            scope.bind(name, new)
+        case Return(position):
+            oblige(scope, integer(scope, position), claims.POSITION)
+            return True
+        case Store() | SetField() | Copy() | Fill():
+            effects.move(scope, stmt)
+        case Reserve() | Advance():
+            effects.rows(scope, stmt)
+        case For() | While() | If() | Switch():
+            return _nested(walk, stmt)
+        case Call(routine, _, _, _, indices):
+            for position in indices:
+                integer(scope, position)
+            contracts.bind(scope, walk.routines[routine], stmt)
+        case HostCall():
+            effects.host_call(scope, stmt)
+        case _:
+            assert_never(stmt)
+    return False
+
+
+def _check(walk: _Walk, stmt: Require | Expect, formula: Formula) -> None:
+    """A check holds from here on."""
+    _note(walk, stmt, formula)
+    walk.scope.facts.assume(formula)
+
+
+def _note(walk: _Walk, stmt: Require | Expect | If, formula: Formula) -> None:
+    """Note whether a condition is known before it is asked.
+
+    Only in a loop is that worth a proof. Elsewhere a check costs little, and what it says saves proofs of what follows from it.
+    """
+    if not walk.notes:
+        return
+    key, facts = id(stmt), walk.scope.facts
+    walk.seen[key] = stmt
+    if key not in walk.needed and not (facts.proves(formula) if walk.loops else facts.shows(formula)):
+        walk.needed.add(key)
+
+
+def _value(scope: Scope, expr: Expr) -> Typed:
+    type_, value = evaluate(scope, expr)
+    if isinstance(value, Linear) and len(value.terms) > MAX_TERMS:
+        return type_, _shortened(scope, value)
+    return type_, value
+
+
+def _shortened(scope: Scope, value: Linear) -> Linear:
+    """An atom for a long sum, `begin` kept apart."""
+    facts = scope.facts
+    begin, end = linear(scope.locals["begin"][1]), linear(scope.locals["end"][1])
+    origin = begin if paths.from_begin(value) else Linear(0)
+    rest = minus(value, origin)
+    low = facts.lower(rest)
+    if low < 0 and facts.proves(rest):  # what its parts say together, which bounds of each do not
+        low = 0
+    atom = facts.abbreviated(rest, low, facts.upper(rest))
+    paths.learn_distance(scope, minus(minus(end, origin), atom), facts.lower(minus(end, value)))
+    return plus(origin, atom)
+
+
+# --- branches and loops ------------------------------------------------------------------------------------------------
+
+
+def _nested(walk: _Walk, stmt: For | While | If | Switch) -> bool:
+    match stmt:
+        case If(expr, then, otherwise):
+            chosen = condition(walk.scope, expr)
+            _note(walk, stmt, chosen)
+            ways: list[tuple[Formula, Block]] = [(chosen, then), (negated(chosen), otherwise)]
+        case Switch():
+            ways = _cases(walk.scope, stmt)
+        case For():
+            _for(walk, stmt)
+            return False
+        case While():
+            _while(walk, stmt)
+            return False
+        case _:
+            assert_never(stmt)
+    return paths.branch(walk.scope, [(formula, partial(_block, walk, block)) for formula, block in ways])
+
+
+def _cases(scope: Scope, stmt: Switch) -> list[tuple[Formula, Block]]:
+    numbers = [number for number, _ in stmt.cases]
+    demand(len(set(numbers)) == len(numbers), "a case that stands twice")
+    type_, value = evaluate(scope, stmt.value)
+    demand(type_ != "bool", "a switch on a bool")
+    subject = linear(value)
+    low, high = limits(type_)
+    demand(all(low <= number <= high for number in numbers), f"a case that is no {type_}")
+    others = All(tuple(negated(equal(subject, Linear(number))) for number in sorted(numbers)))
+    return [*((equal(subject, Linear(number)), block) for number, block in stmt.cases), (others, stmt.default)]
+
+
+def _for(walk: _Walk, loop: For) -> None:
+    scope = walk.scope
+    count = integer(scope, loop.count)
+
+    def enter(_first_atom: int) -> None:
+        index = scope.facts.fresh(0, max(0, scope.facts.upper(count) - 1))
+        scope.facts.assume(shifted(minus(count, index), -1))
+        scope.bind(loop.variable, ("i64", index))
+
+    walk.loops += 1
+    _rounds(walk, loop, enter, lambda: None)
+    walk.loops -= 1
+
+
+def _while(walk: _Walk, loop: While) -> None:
+    scope = walk.scope
+    at_start: list[Linear] = []
+
+    def enter(first_atom: int) -> None:
+        _assume_invariant(scope, loop)
+        before, chosen = integer(scope, loop.measure), condition(scope, loop.condition)
+        scope.facts.assume(chosen)
+        oblige(scope, bounds(scope, before, chosen, first_atom), claims.BOUNDED)
+        at_start.append(before)
+
+    def leave() -> None:
+        oblige(scope, shifted(minus(integer(scope, loop.measure), at_start[-1]), -1), claims.PROGRESS)
+        for expr in loop.invariant:
+            oblige(scope, condition(scope, expr), claims.INVARIANT_KEPT)
+
+    for expr in loop.invariant:
+        oblige(scope, condition(scope, expr), claims.INVARIANT_FIRST)
+    _rounds(walk, loop, enter, leave)
+    _assume_invariant(scope, loop)
+    scope.facts.assume(negated(condition(scope, loop.condition)))
+
+
+def _assume_invariant(scope: Scope, loop: While) -> None:
+    for expr in loop.invariant:
+        scope.facts.assume(condition(scope, expr))
+
+
+def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave: Callable[[], None]) -> None:
+    dropped = walk.dropped.setdefault(id(loop), set())
+    walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave), dropped)

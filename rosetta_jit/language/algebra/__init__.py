@@ -1,0 +1,1 @@
+"""Whether expressions of the language are the same: their normal forms."""

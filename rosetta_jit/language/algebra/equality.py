@@ -1,0 +1,134 @@
+"""Whether typed expressions are the same, or one is what a rule in loops says in some round."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.algebra.normal_form import rebuilt, renamed
+from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
+from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom
+from rosetta_jit.language.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest
+from rosetta_jit.model.types import Int
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.language.algebra.quotients import Digit, Fact, Facts
+    from rosetta_jit.language.typed import Expr, Step
+    from rosetta_jit.model.expr import Side
+
+Ranges = tuple[tuple["Expr", "Expr"], ...]
+"""Starts and stops of the loops around a rule."""
+
+
+def unify(pattern: tuple[Step, ...], steps: tuple[Step, ...], bound: dict[str, Expr]) -> bool:
+    """Whether a place is one that a rule in loops sets, and in which round."""
+    if len(pattern) != len(steps):
+        return False
+    for wanted, step in zip(pattern, steps, strict=True):
+        match wanted, step:
+            case IndexStep(left), IndexStep(right):
+                if not _matches(left, right, bound):
+                    return False
+            case _ if wanted != step:
+                return False
+            case _:
+                pass
+    return True
+
+
+def _matches(pattern: Expr, expr: Expr, bound: dict[str, Expr]) -> bool:
+    match pattern, expr:
+        case Local(name), _:
+            return bound.setdefault(name, expr) == expr
+        case Binary(operator, left, right), Binary(other, a, b):
+            return operator == other and _matches(left, a, bound) and _matches(right, b, bound)
+        case Convert(operand, type_), Convert(inner, other_type):
+            return type_ == other_type and _matches(operand, inner, bound)
+        case _:
+            return pattern == expr
+
+
+def reads_other(value: Expr, side: Side) -> bool:
+    """Whether an expression reads what lies between the two directions: nothing is known of that."""
+    if isinstance(value, Access | LenOf | Has) and value.place.side != side:
+        return True
+    found: list[bool] = []
+    rebuilt(value, lambda part: found.append(reads_other(part, side)) or part)
+    return any(found)
+
+
+def has_local(expr: Expr) -> bool:
+    """Whether an expression depends on the round of a loop."""
+    found = [isinstance(expr, Local)]
+    rebuilt(expr, lambda part: found.append(has_local(part)) or part)
+    return any(found)
+
+
+def fact(expr: Expr, value: Expr) -> Fact | None:
+    """That a field or length is a number, for `same_number`."""
+    if not isinstance(expr.type, Int) or not isinstance(value.type, Int):
+        return None
+    try:
+        atom, known = only_atom(polynomial_of(expr)), polynomial_of(value)
+    except TooComplexError:
+        return None
+    return None if atom is None or mentions(known, atom) else (atom, known)
+
+
+def digit(above: Expr, truth: Callable[[Expr], bool | None]) -> Digit | None:
+    """That an integer is from 0 to below a constant, if one condition says that it is not beyond, and ``truth`` that it is not below 0."""
+    match above:
+        case Binary(">=", value, Const(int(below))) if isinstance(value.type, Int) and truth(above) is False:
+            if truth(Binary("<", value, Const(0, value.type), BOOL)) is not False:
+                return None
+            try:
+                return polynomial_of(value), below
+            except TooComplexError:
+                return None
+        case _:
+            return None
+
+
+def same_number(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
+    """Whether two integers are the same where nothing is refused."""
+    if not isinstance(value.type, Int) or not isinstance(goal.type, Int):
+        return False
+    try:
+        return are_same(polynomial_of(value), polynomial_of(goal), facts)
+    except TooComplexError:
+        return False
+
+
+def given_back(value: Expr) -> Expr:
+    """A value as what it was packed from, where it is what the check of a `Nearest` within it says that unpacking gives."""
+    found: list[Nearest] = []
+    _find_nearest(value, found)
+    for each in found:
+        if renamed(each.check.right, {each.variable.name: each}) == value:
+            return each.check.left
+    return value
+
+
+def _find_nearest(expr: Expr, found: list[Nearest]) -> None:
+    if isinstance(expr, Nearest):
+        found.append(expr)
+        return
+    rebuilt(expr, lambda part: _find_nearest(part, found) or part)
+
+
+def same_place(value: Expr, goal: Expr, facts: Facts = NOTHING) -> bool:
+    """Whether two values lie at one place, whatever its indices look like."""
+    if not isinstance(value, Access) or not isinstance(goal, Access) or len(value.place.steps) != len(goal.place.steps):
+        return False
+    pairs = zip(value.place.steps, goal.place.steps, strict=True)
+    return value.place.side == goal.place.side and all(
+        same_number(one.index, other.index, facts) if isinstance(one, IndexStep) and isinstance(other, IndexStep) else one == other
+        for one, other in pairs
+    )
+
+
+def same_ranges(left: Ranges, right: Ranges, facts: Facts = NOTHING) -> bool:
+    """Whether loops run over the same numbers."""
+    pairs = [(a, b) for one, other in zip(left, right, strict=False) for a, b in zip(one, other, strict=True)]
+    return len(left) == len(right) and all(same_number(a, b, facts) for a, b in pairs)

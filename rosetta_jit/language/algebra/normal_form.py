@@ -1,0 +1,139 @@
+"""Typed expressions and rules of other parts, and their normal form: loops numbered by depth, texts compared like numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.typed import (
+    BOOL,
+    Access,
+    Assign,
+    Binary,
+    BytesCall,
+    Call,
+    Choice,
+    Const,
+    Convert,
+    Default,
+    For,
+    Has,
+    Ignore,
+    IndexStep,
+    IsText,
+    LenOf,
+    Listed,
+    Local,
+    Nearest,
+    Reject,
+    Search,
+    SetLength,
+    TextCall,
+    Unary,
+    When,
+)
+from rosetta_jit.model.types import Bytes, String
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.language.typed import Expr, Place, Rule
+
+
+def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """The expression with each of its parts changed, the indices of places included; what is not known here stays as it is."""
+    match expr:
+        case Access(place) | LenOf(place) | IsText(place) | Has(place):
+            return replace(expr, place=placed(place, change))
+        case Search(place, _, condition):
+            return replace(expr, place=placed(place, change), condition=change(condition))
+        case Unary(operand=operand) | Convert(operand=operand):
+            return replace(expr, operand=change(operand))
+        case Binary(left=left, right=right):
+            return replace(expr, left=change(left), right=change(right))
+        case Nearest(operand=operand, check=check):
+            return replace(expr, operand=change(operand), check=replace(check, left=change(check.left), right=change(check.right)))
+        case Call(arguments=arguments) | BytesCall(arguments=arguments) | TextCall(arguments=arguments):
+            return replace(expr, arguments=tuple(map(change, arguments)))
+        case Choice(cases, otherwise):
+            pairs = tuple((change(condition), change(value)) for condition, value in cases)
+            return replace(expr, cases=pairs, otherwise=None if otherwise is None else change(otherwise))
+        case Listed(items, index):
+            return replace(expr, items=tuple(map(change, items)), index=change(index))
+        case _:
+            return expr
+
+
+def placed(place: Place, change: Callable[[Expr], Expr]) -> Place:
+    """A place with its indices changed."""
+    steps = tuple(replace(step, index=change(step.index)) if isinstance(step, IndexStep) else step for step in place.steps)
+    return replace(place, steps=steps)
+
+
+def renamed(expr: Expr, names: dict[str, Expr]) -> Expr:
+    """The expression with expressions in place of loop variables."""
+    if isinstance(expr, Local):
+        return names.get(expr.name, expr)
+    return rebuilt(expr, lambda part: renamed(part, names)) if names else expr
+
+
+def normal(rules: tuple[Rule, ...], names: dict[str, Expr] | None = None) -> tuple[Rule, ...]:
+    """Rules that do the same are the same: loop variables are called `$0`, `$1`, and so on, by depth."""
+    return tuple(_normal(rule, names or {}) for rule in rules)
+
+
+def _normal(rule: Rule, names: dict[str, Expr]) -> Rule:
+    def change(expr: Expr) -> Expr:
+        return renamed(_plain(expr), names)
+
+    match rule:
+        case Assign(place, value) | SetLength(place, value):
+            return replace(rule, place=placed(place, change), value=change(value))
+        case Default(place) | Ignore(place):
+            return replace(rule, place=placed(place, change))
+        case For(variable, start, stop, body):
+            number = Local(f"${len(names)}")
+            inner = normal(body, {**names, variable.name: number})
+            return replace(rule, variable=number, start=change(start), stop=change(stop), body=inner)
+        case When():
+            table = _table(rule)
+            if table is not None:
+                return _normal(table, names)
+            return replace(rule, condition=change(rule.condition), then=normal(rule.then, names), otherwise=normal(rule.otherwise, names))
+        case _:
+            return rule
+
+
+def _plain(expr: Expr) -> Expr:
+    """A text compared with a constant, as numbers are."""
+    if isinstance(expr, IsText):
+        place = placed(expr.place, _plain)
+        return Binary("==", Access(place, place.type), Const(expr.text, String()), BOOL, expr.span)
+    return rebuilt(expr, _plain)
+
+
+def _is_key(condition: Expr) -> bool:
+    return isinstance(condition, IsText) or (
+        isinstance(condition, Binary) and condition.operator == "==" and isinstance(condition.right, Const)
+    )
+
+
+def _table(rule: When) -> Assign | None:
+    """A choice among texts that was made rules, as a choice again."""
+    cases: list[tuple[Expr, Expr]] = []
+    place: Place | None = None
+    rest: tuple[Rule, ...] = (rule,)
+    while True:
+        match rest:
+            case (When(condition, (Assign(found, Const(str()) as text),), otherwise),) if isinstance(found.type, String | Bytes):
+                if place not in (None, found) or not otherwise or not _is_key(condition):
+                    return None
+                place = found
+                cases.append((condition, text))
+                rest = otherwise
+            case (Assign(found, Const(str()) as text),) if place == found:
+                return Assign(found, Choice(tuple(cases), text, "", found.type, rule.span), rule.span)
+            case _:
+                break
+    rejects = len(rest) == 1 and isinstance(rest[0], Reject)
+    return Assign(place, Choice(tuple(cases), None, "", place.type, rule.span), rule.span) if place is not None and rejects else None

@@ -1,0 +1,180 @@
+"""Integers that are the same where nothing is refused: quotients and remainders are undone.
+
+divide(x · c, c) = x                divide(x, c) · c = x                  what leaves a remainder, and a divisor of 0, is refused
+floor_divide(x · c + y, c) = x      where 0 ≤ y < c is known              modulo(x, c) = x - c · floor_divide(x, c)
+nanoseconds(x, y) = x · 10⁹ + y     of which 0 ≤ y < 10⁹ is checked
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.algebra.polynomial import Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rosetta_jit.language.algebra.polynomial import Monomial
+
+MAX_KNOWN = 20
+"""Numbers that are put in the place of others."""
+
+SECOND = 10**9
+
+Fact = tuple[Atom, Polynomial]
+"""What an atom is equal to."""
+
+Digit = tuple[Polynomial, int]
+"""A number that is from 0 to below another."""
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What lengths and fields are known to be, and which numbers are digits."""
+
+    equal: tuple[Fact, ...] = ()
+    digits: tuple[Digit, ...] = ()
+
+
+NOTHING = Facts()
+
+
+def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> bool:
+    """Whether two numbers are the same.
+
+    Raises
+    ------
+    TooComplexError
+    """
+    if left == right:
+        return True
+    rest = subtract(_put(left, facts.equal), _put(right, facts.equal))
+    rest = _reduced(_reduced(rest, facts), facts)
+    return _put(rest, list(_products(rest))[:MAX_KNOWN]) == number(0)
+
+
+def mentions(polynomial: Polynomial, atom: Atom) -> bool:
+    """Whether an atom occurs, at any depth."""
+    found = _atoms(polynomial)
+    return atom in found or any(mentions(argument, atom) for each in found for argument in each.arguments)
+
+
+def _put(polynomial: Polynomial, known: Sequence[Fact]) -> Polynomial:
+    """A number with what atoms are equal to in their places, one fact after the other."""
+    for each, value in known[:MAX_KNOWN]:
+        polynomial = _replaced(polynomial, each, value)
+    return polynomial
+
+
+def _replaced(polynomial: Polynomial, atom: Atom, value: Polynomial) -> Polynomial:
+    """A number with another in place of an atom; within quotients only what is divided."""
+    result = number(0)
+    for monomial, coefficient in polynomial.terms:
+        term = number(coefficient)
+        for factor, power in monomial:
+            for _ in range(power):
+                term = multiply(term, value if factor == atom else _of(factor))
+        result = add(result, term)
+    return result
+
+
+def _reduced(polynomial: Polynomial, facts: Facts) -> Polynomial:
+    """A number with quotients of what is known, and without remainders."""
+    for atom in _atoms(polynomial):
+        found = _known(atom, facts)
+        if found is not None:
+            polynomial = _replaced(polynomial, atom, found)
+    return polynomial
+
+
+def _known(atom: Atom, facts: Facts) -> Polynomial | None:
+    """What a quotient, remainder or moment comes to."""
+    match atom:
+        case Atom("divide", (total, divisor)):
+            return _quotient(_reduced(total, facts), divisor)
+        case Atom("floor_divide", (total, divisor)) if (by := divisor.constant() or 0) > 0:
+            return _floored(_reduced(total, facts), by, facts)
+        case Atom("modulo", (total, divisor)) if (by := divisor.constant() or 0) > 0:
+            reduced = _reduced(total, facts)
+            return add(reduced, _floored(reduced, by, facts), -by)
+        case Atom("nanoseconds", (whole, behind)):
+            return _reduced(add(behind, whole, SECOND), facts)
+        case _:
+            return None
+
+
+def _floored(total: Polynomial, by: int, facts: Facts) -> Polynomial:
+    """A number divided by another and rounded down: what is a multiple by itself, and what is less than that not at all."""
+    whole, rest = number(0), number(0)
+    for monomial, coefficient in total.terms:
+        if coefficient % by:
+            rest = add(rest, product(monomial, coefficient))
+        else:
+            whole = add(whole, product(monomial, coefficient // by))
+    known = rest.constant()
+    if known is not None:
+        return add(whole, number(known // by))
+    is_digit = any(digit == rest and below <= by for digit, below in facts.digits)
+    return whole if is_digit else add(whole, _of(Atom("floor_divide", (rest, number(by)))))
+
+
+def _quotient(total: Polynomial, divisor: Polynomial) -> Polynomial | None:
+    """A number divided by a product of constants and atoms, each of its terms; None where one is no multiple."""
+    match list(divisor.terms):
+        case [(by, coefficient)]:
+            parts = [_part(monomial, factor, by, coefficient) for monomial, factor in total.terms]
+            result = number(0)
+            for part in parts:
+                if part is None:
+                    return None
+                result = add(result, part)
+            return result
+        case _:
+            return None
+
+
+def _part(monomial: Monomial, factor: int, by: Monomial, coefficient: int) -> Polynomial | None:
+    powers = dict(monomial)
+    for atom, power in by:
+        powers[atom] = powers.get(atom, 0) - power
+    if factor % coefficient or min(powers.values(), default=0) < 0:
+        return None
+    return product(frozenset((atom, power) for atom, power in powers.items() if power), factor // coefficient)
+
+
+def _products(polynomial: Polynomial) -> Iterator[Fact]:
+    """What was divided, as its quotient times the divisor; what was divided first comes first."""
+    for atom in _atoms(polynomial):
+        yield from _undone(atom)
+
+
+def _undone(atom: Atom) -> Iterator[Fact]:
+    match atom:
+        case Atom("divide", (total, divisor)) if (inner := only_atom(total)) is not None:
+            yield from _undone(inner)
+            yield inner, multiply(divisor, _of(atom))
+        case _:
+            pass
+
+
+def only_atom(polynomial: Polynomial) -> Atom | None:
+    """The atom that a number is."""
+    match list(polynomial.terms):
+        case [(monomial, 1)]:
+            match list(monomial):
+                case [(atom, 1)]:
+                    return atom
+                case _:
+                    return None
+        case _:
+            return None
+
+
+def _atoms(polynomial: Polynomial) -> list[Atom]:
+    """The atoms of a number, always in one order."""
+    return sorted({atom for monomial, _ in polynomial.terms for atom, _ in monomial}, key=shown_atom)
+
+
+def _of(atom: Atom) -> Polynomial:
+    return product(frozenset(((atom, 1),)), 1)

@@ -1,0 +1,1 @@
+"""Rules about whole arrays, and elements that are known by a key."""

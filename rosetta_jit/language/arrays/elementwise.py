@@ -1,0 +1,293 @@
+"""Rules about whole arrays as loops over their elements.
+
+`.b[] = f(.a[])` holds for every element, `.b = reversed(.a)` for the elements in another order. The first such rule for an
+array sets its length, unless the mapping or the type does; every other array that it reads must be as long, else the message is
+rejected. Rules for fields of the elements of one array share a loop.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.language.arrays.counts import LayoutError, times
+from rosetta_jit.language.arrays.element_loops import Moves, element_of
+from rosetta_jit.language.arrays.layouts import ARGUMENTS, PADDED, view_of
+from rosetta_jit.language.arrays.parts import has_each, is_many, sources_in, substituted
+from rosetta_jit.language.conversions import same, widens
+from rosetta_jit.language.scope import element_type, members_of
+from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
+from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
+from rosetta_jit.model.printer import show_expr
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Struct, Union
+from rosetta_jit.model.walk import parts
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.language.arrays.element_loops import Padding
+    from rosetta_jit.language.arrays.layouts import View
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
+
+MAX_MADE = 1000
+"""Rules for single elements that a block comes to."""
+
+Lengths = dict[Path, "Expr"]
+"""What is known of the lengths of the target's arrays."""
+
+
+def elementwise(rules: tuple[Rule, ...], scope: Scope, broken: list[tuple[str, ...]]) -> tuple[Rule, ...]:
+    """The rules of a block with loops in place of those about many elements; what fails is reported, and its field is ``broken``."""
+    names = frozenset(_names(rules)) | {*scope.constants, *scope.locals}
+    return _Expansion(scope, broken, names, count(1)).block(rules, {}, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Expansion:
+    """Expands one block. ``names`` are the mapping's own, ``made`` counts rules; ``level`` is how many loops of ours are around."""
+
+    scope: Scope
+    broken: list[tuple[str, ...]]
+    names: frozenset[str]
+    made: Iterator[int]
+
+    def block(self, rules: tuple[Rule, ...], lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        known = {**lengths, **{rule.place: rule.value for rule in rules if isinstance(rule, SetLength)}}
+        made: list[Rule] = []
+        for rule in rules:
+            for each in self.rule(rule, known, level):
+                _add(made, each, self.variable(level))
+        return tuple(made)
+
+    def rule(self, rule: Rule, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        match rule:
+            case Assign():
+                return self.assign(rule, lengths, level)
+            case Arranged(place, flag, cases, span):
+                if len(cases) > 1:  # those for both directions have one left
+                    self.scope.problems.append(words.several_layouts(span))
+                assigns = [part for constant, value in cases[:1] for part in (Assign(flag, constant, span), Assign(place, value, span))]
+                return tuple(made for each in assigns for made in self.assign(each, lengths, level))
+            case For(body=body):
+                return (replace(rule, body=self.block(body, lengths, level)),)
+            case When(condition, (Reject() as refusal,), ()) if any(map(has_each, parts(condition))):
+                return self.refused(rule, refusal, level)
+            case When(then=then, otherwise=otherwise):
+                return (replace(rule, then=self.block(then, lengths, level), otherwise=self.block(otherwise, lengths, level)),)
+            case _:
+                return (rule,)
+
+    def assign(self, rule: Assign, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        if rule.via is None and isinstance(rule.value, Path) and self.are_unlike_maps(rule.place, rule.value):
+            return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
+        if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.fits):
+            rule = _each(rule, rule.value)
+        if not any(is_many(part) for side in (rule.place, rule.value) for part in parts(side)):
+            return (rule,)
+        is_each = any(has_each(part) for side in (rule.place, rule.value) for part in parts(side))
+        try:
+            if isinstance(rule.value, Choice) and not is_each:
+                return self.chosen(rule, rule.value, lengths, level)
+            return self.loops(rule, lengths, level, whole=not is_each)
+        except LayoutError as error:
+            self.scope.problems.append(error.problem)
+            around = (step.field.name for step in self.scope.base(rule.place.side).steps if isinstance(step, FieldStep))
+            self.broken.append((*around, *(step.name for step in rule.place.steps if isinstance(step, Member))))
+            return ()
+
+    def refused(self, rule: When, refusal: Reject, level: int) -> tuple[Rule, ...]:
+        """A rejection for what some element has, as a loop."""
+        try:
+            views = {source: view_of(source) for source in dict.fromkeys(sources_in(rule.condition))}
+            name = self.variable(level)
+            elements: dict[Expr, Expr] = {source: element_of(view, Name(name)) for source, view in views.items()}
+            first, *others = (view.total for view in views.values())
+        except LayoutError as error:
+            self.scope.problems.append(error.problem)
+            return ()
+        pieces = tuple(substituted(piece, elements, Name(name)) for piece in refusal.pieces)
+        asked = replace(rule, condition=substituted(rule.condition, elements, Name(name)), then=(replace(refusal, pieces=pieces),))
+        wrong = [When(condition, (Reject(why, rule.span),), (), rule.span) for view in views.values() for condition, why in view.refused]
+        same_lengths = [check for total in others for check in _unless_equal(total, first, rule.span)]
+        return (*wrong, *same_lengths, For(name, Literal(0), first, self.block((asked,), {}, level + 1), rule.span))
+
+    def chosen(self, rule: Assign, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        """A choice among arrays, as one rule a case."""
+
+        def assigned(value: Expr) -> tuple[Rule, ...]:
+            return self.block((replace(rule, value=value),), lengths, level)
+
+        rest = (Reject(choice.reason, rule.span),) if choice.otherwise is None else assigned(choice.otherwise)
+        for condition, value in reversed(choice.cases):
+            rest = (When(condition, assigned(value), rest, rule.span),)
+        return rest
+
+    def loops(self, rule: Assign, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
+        value, padding = _padded(rule.value)
+        sources = [_whole(value)] if whole or padding else list(dict.fromkeys(sources_in(value)))
+        views = {source: view_of(source) for source in sources}
+        place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
+        target = view_of(place)
+        if isinstance(self.type_of(target.array), Bool | Enum | Float | Int | Struct):
+            raise LayoutError(words.one_value(rule.place.span))
+        given = [times(padding[0], padding[2])] if padding else [view.total for view in views.values()]
+        refused = [each for view in views.values() for each in view.refused]
+        before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
+        number, counted = self.counted(rule, target, given, lengths)
+        before += counted
+        if padding:
+            before += _unless_equal(next(iter(views.values())).total, times(padding[0], padding[1]), rule.span)
+
+        def expanded(element: Assign, level: int) -> tuple[Rule, ...]:
+            if next(self.made) > MAX_MADE:
+                raise LayoutError(words.too_many_rules(rule.span, MAX_MADE))
+            return self.block((element,), lengths, level)
+
+        moves = Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded)
+        return (*before, *moves.rules())
+
+    def counted(self, rule: Assign, target: View, given: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
+        """How many elements a rule sets, and what checks or sets that."""
+        known = self.known_count(target, lengths)
+        is_open = _is_open(target)
+        if known is not None:
+            return known, [check for total in given for check in _unless_equal(total, known, rule.span)]
+        if not given:
+            raise LayoutError(words.open_end(rule.place.span) if is_open else words.no_count(rule.place.span, show_expr(target.array)))
+        checks = [check for total in given[1:] for check in _unless_equal(total, given[0], rule.span)]
+        if is_open:
+            return given[0], checks
+        lengths[target.array] = given[0]
+        return given[0], [SetLength(target.array, given[0], rule.span), *checks]
+
+    def known_count(self, target: View, lengths: Lengths) -> Expr | None:
+        """What a slice, another rule or the type says of the number of elements that are set."""
+        (axis,) = target.axes
+        if axis.count != Len(target.array):
+            return None if _is_open(target) else axis.count
+        fixed = self.fixed_length(target.array)
+        return lengths.get(target.array) if fixed is None else Literal(fixed)
+
+    def fixed_length(self, path: Path) -> int | None:
+        type_ = self.type_of(path)
+        return type_.fixed if isinstance(type_, Array) else None
+
+    def are_unlike_maps(self, one: Path, other: Path) -> bool:
+        """Whether two places are maps of different types, which are copied entry by entry."""
+        types = self.type_of(one), self.type_of(other)
+        return isinstance(types[0], Map) and isinstance(types[1], Map) and types[0] != types[1]
+
+    def are_unlike_numbers(self, one: Path, other: Path, *, fits: bool) -> bool:
+        """Whether two places are arrays of different numbers, which become each other one by one: freely, or where each ``fits``."""
+        match self.type_of(one), self.type_of(other):
+            case Array((Int() | Float()) as wanted, length), Array((Int() | Float()) as element, other_length):
+                return not same(element, wanted) and (fits or (widens(element, wanted) and length == other_length))
+            case _:
+                return False
+
+    def type_of(self, path: Path) -> Type | None:
+        """The type of a place without slices; None where there is none, which others report."""
+        message = self.scope.messages[path.side]
+        type_: Type = message.root
+        for step in path.steps:
+            match step, type_:
+                case Member(name), Struct() | Union():
+                    members = members_of(type_, message.schema)
+                    if name not in members:
+                        return None
+                    type_ = message.value_type(members[name][-1].type)
+                case Index(), Array() | Bytes():
+                    type_ = message.value_type(element_type(type_))
+                case _:
+                    return None
+        return type_
+
+    def variable(self, level: int) -> str:
+        """The name of the loop at a level, which no rule of the mapping uses."""
+        name = "element" if level == 0 else f"element_{level + 1}"
+        while name in self.names:
+            name += "_"
+        return name
+
+
+def _each(rule: Assign, value: Path) -> Assign:
+    """A rule for arrays as one for each element."""
+    step = Each(rule.span)
+    return replace(rule, place=replace(rule.place, steps=(*rule.place.steps, step)), value=replace(value, steps=(*value.steps, step)))
+
+
+def _entries(rule: Assign, value: Path) -> list[Assign]:
+    """Rules for the keys and for the values of a map."""
+    steps = [(Each(rule.span), Member(name, rule.span)) for name in ("key", "value")]
+    return [
+        replace(rule, place=replace(rule.place, steps=(*rule.place.steps, *each)), value=replace(value, steps=(*value.steps, *each)))
+        for each in steps
+    ]
+
+
+def _unless_equal(total: Expr, count: Expr, span: Span | None) -> list[Rule]:
+    if total == count:
+        return []
+    return [When(Binary("!=", total, count, span), (Reject(words.OTHER_COUNT, span),), (), span)]
+
+
+def _is_open(target: View) -> bool:
+    """Whether a slice goes to the end of the array that is being filled."""
+    return target.axes[0].count != Len(target.array) and any(part == Len(target.array) for part in parts(target.axes[0].count))
+
+
+def _add(made: list[Rule], rule: Rule, variable: str) -> None:
+    """One more rule; a loop of ours over the elements of an array joins the one that is there, behind the checks between them."""
+    checks = 0
+    while checks < len(made) and isinstance(made[-1 - checks], When):
+        checks += 1
+    last = made[-1 - checks] if checks < len(made) else None
+    match last, rule:
+        case For(variable=name), For(variable=other) if name == other == variable and _rounds(last) == _rounds(rule):
+            del made[-1 - checks]
+            made.append(replace(last, body=(*last.body, *rule.body)))
+        case _:
+            made.append(rule)
+
+
+def _rounds(loop: For) -> object:
+    """The bounds of a loop, and the array that it sets elements of; the loop itself where that is no single one."""
+    steps = loop.body[0].place.steps if loop.body and isinstance(loop.body[0], Assign) else ()
+    number = next((number for number, step in enumerate(steps) if step == Index(Name(loop.variable))), None)
+    return loop if number is None else (loop.start, loop.stop, steps[:number])
+
+
+def _padded(value: Expr) -> tuple[Expr, Padding | None]:
+    match value:
+        case Call(function, (array, count, size, stride)) if function == PADDED:
+            return array, (count, size, stride)
+        case Call(function) if function == PADDED:
+            raise LayoutError(words.arguments(value.span, PADDED, *ARGUMENTS[PADDED], len(value.arguments)))
+        case _:
+            return value, None
+
+
+def _whole(value: Expr) -> Path | Call:
+    if isinstance(value, Path | Call):
+        return value
+    raise LayoutError(words.scalar_needs_each(value.span) if isinstance(value, Literal) else words.not_an_array(value.span))
+
+
+def _names(rules: tuple[Rule, ...]) -> Iterator[str]:
+    for rule in rules:
+        match rule:
+            case For(variable, _, _, body):
+                yield variable
+                yield from _names(body)
+            case When(_, then, otherwise):
+                yield from _names((*then, *otherwise))
+            case _:
+                pass

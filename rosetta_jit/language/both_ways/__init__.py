@@ -1,0 +1,1 @@
+"""Rules for both directions → rules for each."""

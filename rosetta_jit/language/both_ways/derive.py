@@ -1,0 +1,110 @@
+"""Rules for both directions as rules for each.
+
+`.a <-> f(.b)` unpacks as `.a = f(.b)`, and packs as `language.both_ways.packing` says. Behind them stand the rules of the direction's own
+block.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import derive as words
+from rosetta_jit.language.both_ways.inverse import condition_in
+from rosetta_jit.language.both_ways.packing import Packing, checks_of
+from rosetta_jit.model.expr import Len
+from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
+
+MAX_CONDITIONS = 8
+"""Conditions within each other that choose among fields that are parts of one value."""
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.knowledge import Beside
+    from rosetta_jit.model import mapping as model
+    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.source import Span
+
+
+def derive(mapping: model.Mapping, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
+    """The mapping with each direction's rules complete, those of its own block behind those for both.
+
+    ``depth`` is how many conditions of its relations have become blocks.
+    """
+    if mapping.rules is None:
+        return mapping
+    found: list[Diagnostic] = []
+    packing, rules = Packing.of(mapping.pack_rules or (), found), mapping.rules
+    pack_rules = packing.block(rules, ())
+    conditional = _conditional(rules, packing)
+    if conditional and depth < MAX_CONDITIONS:
+        split = tuple(_by_blocks(rule, conditional) for rule in rules)
+        return derive(replace(mapping, rules=split), problems, depth + 1)
+    problems.extend((*found, *(words.too_many_blocks(span, MAX_CONDITIONS) for span in conditional)))
+    return replace(
+        mapping,
+        unpack_rules=(*_unpacking(rules, packing.known.beside), *(mapping.unpack_rules or ())),
+        pack_rules=(*pack_rules, *(mapping.pack_rules or ())),
+    )
+
+
+def _conditional(rules: tuple[Rule, ...], packing: Packing) -> frozenset[Span | None]:
+    """The relations that choose among fields which are parts of one value: unpacking checks such fields block by block."""
+    written = set(_relations(rules))
+    checked = (each for each in packing.known.beside.values() if each.side == "wire" and each.digits)
+    return frozenset(each.rule.span for each in checked if id(each.rule) not in written)
+
+
+def _by_blocks(rule: Rule, conditional: frozenset[Span | None]) -> Rule:
+    """A rule with a `when` in place of relations that choose among several fields, each of which unpacking then checks."""
+    match rule:
+        case Relation(value=value, span=span) if span in conditional and (ways := condition_in(value)) is not None:
+            then, other = (replace(rule, value=way) for way in ways[1:])
+            return When(ways[0], (then,), (other,), span)
+        case For(body=body):
+            return replace(rule, body=tuple(_by_blocks(each, conditional) for each in body))
+        case When(then=then, otherwise=otherwise):
+            first, second = (tuple(_by_blocks(each, conditional) for each in block) for block in (then, otherwise))
+            return replace(rule, then=first, otherwise=second)
+        case _:
+            return rule
+
+
+def _relations(rules: tuple[Rule, ...]) -> Iterator[int]:
+    """The relations that the mapping writes down; others were made of these."""
+    for rule in rules:
+        match rule:
+            case Relation():
+                yield id(rule)
+            case For(body=body):
+                yield from _relations(body)
+            case When(then=then, otherwise=otherwise):
+                yield from _relations((*then, *otherwise))
+            case _:
+                pass
+
+
+def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
+    return tuple(made for rule in rules for made in _unpacked(rule, checked))
+
+
+def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
+    """The rules of a relation, and of what it needs to be the only one that packs so."""
+    match rule:
+        case Relation(place, value, span, via):
+            beside = checked.get(id(rule))
+            checks = () if beside is None or beside.side == "holder" else checks_of(beside)
+            set_to = SetLength(place.path, value, span) if isinstance(place, Len) else Assign(place, value, span, via=via)
+            return (*checks, set_to)
+        case For(body=body):
+            return (replace(rule, body=_unpacking(body, checked)),)
+        case When(then=then, otherwise=otherwise):
+            return (replace(rule, then=_unpacking(then, checked), otherwise=_unpacking(otherwise, checked)),)
+        case SameNames():
+            return (replace(rule, both=True),)
+        case Arranged(cases=cases):
+            return (replace(rule, cases=cases[:1]),)
+        case _:
+            return (rule,)

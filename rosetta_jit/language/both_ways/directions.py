@@ -1,0 +1,21 @@
+"""Rules for both directions as rules for each: `language.both_ways.derive`, where a mapping has any.
+
+To turn rules around takes a tenth of the compiler. Mappings that write down both directions do not import it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.mapping import Mapping
+
+
+def in_each_direction(mapping: Mapping, problems: list[Diagnostic]) -> Mapping:
+    """The mapping with all rules of each direction in the block of that direction."""
+    if mapping.rules is None:
+        return mapping
+    from rosetta_jit.language.both_ways.derive import derive
+
+    return derive(mapping, problems)

@@ -1,0 +1,235 @@
+"""Turn an expression round: what a field must be for the expression to have a value.
+
+| expression        | its field                         |
+|-------------------|-----------------------------------|
+| `.a`              | the value                         |
+| `x + c`, `c + x`  | value - c                         |
+| `x - c`           | value + c                         |
+| `c - x`           | c - value                         |
+| `x * c`, `c * x`  | divide(value, c)                  |
+| `x / c`           | value * c, of floats              |
+| `x ^ c`           | value ^ c                         |
+| `-x`, `not x`     | -value, not value                 |
+| `radians(x)`      | degrees(value), and the reverse   |
+| `float32(x)` …    | the value, as the field holds it  |
+| `divide(x, c)`    | value * c                         |
+| `floor_divide(x, c)` | value * c                      |
+| `table(x) {a = b}`| table(value) {b = a}              |
+
+Those of texts stand in `language.both_ways.inverse_texts`, those of arrays in `language.arrays.layouts`, and those of several fields in
+`language.both_ways.inverse_parts`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
+from rosetta_jit.language.both_ways.inverse_texts import opposite, without
+from rosetta_jit.language.folding import folded, is_constant
+from rosetta_jit.language.functions.calls import FUNCTIONS
+from rosetta_jit.language.functions.images import IMAGE_FUNCTIONS
+from rosetta_jit.language.functions.texts import NAMES
+from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.walk import parts, rebuilt, side_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.walk import Field
+
+CONVERSIONS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float32", "float64", "bool")
+BUILT_IN = frozenset((*FUNCTIONS, *NAMES, *IMAGE_FUNCTIONS, "has", "len"))
+OPPOSITE = {"radians": "degrees", "degrees": "radians"}
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """``place = value``"""
+
+    place: Path | Len
+    value: Expr
+
+
+class NoInverseError(Exception):
+    """An expression that cannot be turned round; says which part and why."""
+
+    def __init__(self, part: Expr, why: str) -> None:
+        super().__init__(why)
+        self.part, self.why = part, why
+
+
+def solve(expr: Expr, value: Expr) -> Solution:
+    """The field of an expression that has exactly one, so that the expression is ``value``.
+
+    Raises
+    ------
+    NoInverseError
+    """
+    while not isinstance(expr, Path | Len):
+        expr, value = _step(expr, value)
+    return Solution(expr, value)
+
+
+def solved(expr: Expr, value: Expr) -> Solution:
+    """The same; an integer field that was computed with floats is the nearest one, if the expression gives the value of it again.
+
+    Raises
+    ------
+    NoInverseError
+    """
+    found = solve(expr, value)
+    if isinstance(found.place, Len) or not _may_round(expr):
+        return found
+    return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, span=expr.span))
+
+
+def _may_round(expr: Expr) -> bool:
+    """Whether an expression of an integer may be computed in floats, so that what turns it round is off by their rounding."""
+    found = [part for part in parts(expr) if _is_rounding(part)]
+    of_integers = all(isinstance(part, Binary) and part.operator != "/" and _has_whole(part) for part in found)
+    is_float = any(isinstance(part, Call) and part.function in ("float32", "float64") for part in parts(expr))
+    return bool(found) and (is_float or not of_integers)
+
+
+def _is_rounding(part: Expr) -> bool:
+    """Whether an operation rounds, if it is one of floats."""
+    match part:
+        case Binary(operator="+" | "-" | "*" | "/"):
+            return True
+        case Call(function):
+            return function in OPPOSITE or function == "divide"
+        case _:
+            return False
+
+
+def _has_whole(part: Binary) -> bool:
+    """Whether an operand is an integer, or a text, that is written down: then the other one is, too."""
+    return any(isinstance(each, Literal) and isinstance(each.value, int | str) for each in (folded(part.left), folded(part.right)))
+
+
+def _named(expr: Expr, field: Field) -> Expr:
+    """An expression with the name of the integer that is sought in place of the field."""
+    return Name(NEAREST, expr.span) if expr == field else rebuilt(expr, lambda part: _named(part, field))
+
+
+def fields_in(expr: Expr) -> list[Field]:
+    """The fields of the wire that an expression reads; those within an index are not among them."""
+    return list(dict.fromkeys(_fields(expr)))
+
+
+def _fields(expr: Expr) -> Iterator[Field]:
+    if isinstance(expr, Path | Len):
+        if side_of(expr) == "wire":
+            yield expr
+        return
+    if isinstance(expr, Call) and expr.function in ARGUMENTS:
+        yield from _fields(expr.arguments[0]) if expr.arguments else ()  # the others are no fields to solve for
+        return
+    below: list[Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        yield from _fields(part)
+
+
+def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
+    """One operation taken from the expression, and its opposite done to the value."""
+    match expr:
+        case Unary(operator, operand, span):
+            return operand, Unary(operator, value, span)
+        case Binary():
+            return _operation(expr, value)
+        case Call(function, (argument, *_), span) if function in OPPOSITE:
+            return argument, Call(OPPOSITE[function], (value,), span)
+        case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
+            return argument, value
+        case Call("divide" | "floor_divide", (argument, divisor), span) if not fields_in(divisor):
+            return argument, Binary("*", value, divisor, span)
+        case Call(function, (array, *_)) if function in ARGUMENTS:
+            return array, put_back(expr, value)
+        case Call() if (found := opposite(expr, value)) is not None:
+            return found
+        case Call(function) if function in BUILT_IN:
+            raise NoInverseError(expr, f"`{function}` gives the same for several values")
+        case Call(function):
+            raise NoInverseError(expr, f"nothing says what the opposite of `{function}` is")
+        case Choice():
+            return _table(expr, value)
+        case _:
+            raise NoInverseError(expr, "it has no field")
+
+
+def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
+    if (found := without(expr, value)) is not None:
+        return found
+    left = bool(fields_in(expr.left))
+    inner, other = (expr.left, expr.right) if left else (expr.right, expr.left)
+    if fields_in(other):
+        raise NoInverseError(expr, "the field stands in it twice")
+    span = expr.span
+    match expr.operator, left:
+        case "+", _:
+            return inner, Binary("-", value, other, span)
+        case "-", True:
+            return inner, Binary("+", value, other, span)
+        case "-", False:
+            return inner, Binary("-", other, value, span)
+        case "*", _:
+            return inner, Call("divide", (value, other), span)
+        case "/", True:
+            return inner, Binary("*", value, other, span)
+        case "^", _:
+            return inner, Binary("^", value, other, span)
+        case operator, _:
+            raise NoInverseError(expr, f"`{operator}` gives the same for several values")
+
+
+def _table(expr: Choice, value: Expr) -> tuple[Expr, Expr]:
+    """A table with its columns exchanged. Of several keys with one value the first is written; what has no key is refused."""
+    subject = subject_of(expr)
+    if subject is None:
+        raise NoInverseError(expr, "only a table of constants can be turned round")
+    cases = tuple((Binary("==", value, chosen, condition.span), folded(_key(condition))) for condition, chosen in expr.cases)
+    return subject, Choice(cases, None, "the table has no key for it", expr.span)
+
+
+def subject_of(expr: Choice) -> Expr | None:
+    """What a table of constants looks up; None for other choices."""
+    values = [value for _, value in expr.cases] + ([] if expr.otherwise is None else [expr.otherwise])
+    subjects = {condition.left for condition, _ in expr.cases if isinstance(condition, Binary) and condition.operator == "=="}
+    constant = all(map(is_constant, values)) and all(is_constant(_key(condition)) for condition, _ in expr.cases)
+    return subjects.pop() if len(subjects) == 1 and constant and not is_conditional(expr) else None
+
+
+def _key(condition: Expr) -> Expr:
+    """The key of an entry of a table."""
+    return condition.right if isinstance(condition, Binary) else condition
+
+
+def is_conditional(expr: Choice) -> bool:
+    """Whether a choice was written as `a if condition else b`: that one is never refused, and has no reason for it."""
+    return expr.otherwise is not None and not expr.reason
+
+
+def condition_in(expr: Expr) -> tuple[Expr, Expr, Expr] | None:
+    """The condition of a conditional on the way to the field of an expression, and the expression where it holds and where not."""
+    if isinstance(expr, Choice):
+        if not is_conditional(expr) or expr.otherwise is None:
+            return None
+        (condition, then), *others = expr.cases
+        return condition, then, replace(expr, cases=tuple(others)) if others else expr.otherwise
+    below: list[Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        found = condition_in(part)
+        if found is not None:
+            condition, then, other = found
+            return condition, _with(expr, part, then), _with(expr, part, other)
+    return None
+
+
+def _with(expr: Expr, part: Expr, other: Expr) -> Expr:
+    return rebuilt(expr, lambda each: other if each is part else each)

@@ -1,0 +1,227 @@
+"""Turn round expressions of several fields that are parts of one value, and several expressions of which each is a part of one field.
+
+| expression                     | its fields                                                               |
+|--------------------------------|--------------------------------------------------------------------------|
+| `x * c + y`, 0 ≤ y < c         | floor_divide(value, c) and modulo(value, c), for any number of such terms |
+| `nanoseconds(x, y)`            | floor_divide(value, 10⁹) and modulo(value, 10⁹)                          |
+| `iso8601(x, y)`, `timestamp(x, y)` | seconds(value) and fraction(value)                                   |
+
+| expressions                         | their field                          |
+|-------------------------------------|--------------------------------------|
+| `floor_divide(x, c)`, `modulo(x, c)` | first · c + second, 0 ≤ second < c  |
+| `seconds(x)`, `fraction(x)`         | `iso8601` or `timestamp` of the two  |
+
+The terms of a sum are digits: what stands behind one must be less than its factor, which unpacking then checks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve
+from rosetta_jit.language.both_ways.inverse_texts import MOMENT
+from rosetta_jit.language.folding import folded
+from rosetta_jit.model.expr import Binary, Call, Len, Literal, Path
+from rosetta_jit.model.walk import parts, rebuilt
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.source import Span
+
+SECOND = 10**9
+"""In nanoseconds."""
+
+PARTS = {"floor_divide": "modulo", "seconds": "fraction"}
+"""The function that gives what another one leaves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Digit:
+    """That a value is from 0 to below a number, as `x * below + digit` needs it."""
+
+    value: Expr
+    below: int
+
+
+@dataclass(frozen=True, slots=True)
+class Parted:
+    """What each field must be, and what must hold of the fields for that to be the only solution."""
+
+    settings: tuple[Solution, ...]
+    digits: tuple[Digit, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Term:
+    """A part of a sum: fields times a factor above 0."""
+
+    value: Expr
+    factor: int
+
+
+def part(expr: Expr, value: Expr) -> Parted:
+    """The fields of an expression, so that it is ``value``.
+
+    Raises
+    ------
+    NoInverseError
+    """
+    found = _part(expr, value)
+    if len({setting.place for setting in found.settings}) < len(found.settings):
+        raise NoInverseError(expr, "a field stands in it twice")
+    return found
+
+
+def _part(expr: Expr, value: Expr) -> Parted:
+    if len(fields_in(expr)) == 1:
+        return Parted((solve(expr, value),), ())
+    match expr:
+        case Call("iso8601" | "timestamp", (first, second), span):
+            return _both(first, Call("seconds", (value,), span), second, Call("fraction", (value,), span))
+        case Call("nanoseconds", (first, second), span):
+            return _both(first, _quotient(value, SECOND, span), second, _rest(value, SECOND, span))
+        case Call(function, (argument, *_)) if function in CONVERSIONS:
+            return _part(argument, value if function != "uint64" else Call("int64", (value,), expr.span))  # parts are computed in int64
+        case Binary("+" | "-"):
+            return _digits(expr, value)
+        case _:
+            raise NoInverseError(expr, "it does not say which part of the value each of its fields is")
+
+
+def _both(first: Expr, its: Expr, second: Expr, rest: Expr) -> Parted:
+    found = _part(first, its), _part(second, rest)
+    return Parted((*found[0].settings, *found[1].settings), (*found[0].digits, *found[1].digits))
+
+
+def _digits(expr: Binary, value: Expr) -> Parted:
+    """The terms of a sum as digits, that of the largest factor first."""
+    terms: list[_Term] = []
+    for each in _summands(expr):
+        known = folded(each)
+        if isinstance(known, Literal) and type(known.value) is int:
+            value = Binary("-", value, known, expr.span)
+        else:
+            terms.append(_term(each))
+    terms.sort(key=lambda term: -term.factor)
+    settings: list[Solution] = []
+    digits: list[Digit] = []
+    for number, (term, smaller) in enumerate(pairwise(terms)):
+        if term.factor == smaller.factor:
+            raise NoInverseError(expr, "its fields are added, and nothing says which part of the sum each one is")
+        found = _part(term.value, _quotient(value, term.factor, expr.span))
+        settings += found.settings
+        digits += [Digit(_sum(terms[number + 1 :], expr.span), term.factor), *found.digits]
+        value = _rest(value, term.factor, expr.span)
+    last = terms[-1]
+    found = _part(last.value, value if last.factor == 1 else Call("divide", (value, Literal(last.factor, expr.span)), expr.span))
+    return Parted((*settings, *found.settings), (*found.digits, *reversed(digits)))
+
+
+def _summands(expr: Expr) -> Iterator[Expr]:
+    match expr:
+        case Binary("+", left, right):
+            yield from _summands(left)
+            yield from _summands(right)
+        case Binary("-", left, right) if isinstance(known := folded(right), Literal) and type(known.value) is int:
+            yield from _summands(left)
+            yield replace(known, value=-known.value)
+        case _:
+            yield expr
+
+
+def _term(expr: Expr) -> _Term:
+    if not fields_in(expr):
+        raise NoInverseError(expr, "what is added must be known when the mapping is compiled")
+    match expr:
+        case Binary("*", left, right):
+            for inner, factor in ((left, folded(right)), (right, folded(left))):
+                if isinstance(factor, Literal) and type(factor.value) is int and factor.value > 0:
+                    return _Term(inner, factor.value)
+            raise NoInverseError(expr, "it is no field times a whole number above 0")
+        case _:
+            return _Term(expr, 1)
+
+
+def _sum(terms: list[_Term], span: Span | None) -> Expr:
+    total: Expr | None = None
+    for term in terms:
+        each = term.value if term.factor == 1 else Binary("*", term.value, Literal(term.factor, span), span)
+        total = each if total is None else Binary("+", total, each, span)
+    assert total is not None
+    return total
+
+
+def _quotient(value: Expr, by: int, span: Span | None) -> Expr:
+    return Call("floor_divide", (value, Literal(by, span)), span)
+
+
+def _rest(value: Expr, by: int, span: Span | None) -> Expr:
+    return Call("modulo", (value, Literal(by, span)), span)
+
+
+# --- one field, of which each expression is a part ------------------------------------------------------------------------
+
+
+def taken_part(expr: Expr) -> Call | None:
+    """The call in an expression that gives a part of its field, of those in `PARTS`, with the rest beside it."""
+    calls = (each for each in parts(expr) if isinstance(each, Call) and each.function in {*PARTS, *PARTS.values()})
+    return next((call for call in calls if _divisor(call) is not None), None)
+
+
+def rest_of(call: Call) -> Call | None:
+    """The call that leaves what this one gives; None where there is none."""
+    whole = next((name for name, rest in PARTS.items() if rest == call.function), None)
+    return None if whole is None else replace(plain(call), function=whole)
+
+
+def plain(call: Call) -> Call:
+    """A call with constants computed, so that it is equal to others that give the same."""
+    return replace(call, arguments=tuple(map(folded, call.arguments)))
+
+
+def put_together(first: Expr, its: Expr, second: Expr, rest: Expr) -> tuple[Solution, Digit | None]:
+    """The field whose one part is in ``first`` and whose other is in ``second``, so that they have these values.
+
+    Raises
+    ------
+    NoInverseError
+    """
+    call, other = taken_part(first), taken_part(second)
+    assert call is not None
+    assert other is not None
+    high, low = _until(first, its, call), _until(second, rest, other)
+    if call.function == "seconds":
+        return solve(call.arguments[0], Call(MOMENT, (high, low), call.span)), None
+    divisor = _divisor(call)
+    assert divisor is not None
+    product = Binary("*", high, Literal(divisor, call.span), call.span)
+    return solve(call.arguments[0], Binary("+", product, low, call.span)), Digit(low, divisor)
+
+
+def _until(expr: Expr, value: Expr, call: Call) -> Expr:
+    """What a call within an expression must be, so that the expression is ``value``."""
+    mark = Path("wire", ())
+    return solve(_marked(expr, call, mark), value).value
+
+
+def _marked(expr: Expr, call: Call, mark: Path) -> Expr:
+    if isinstance(expr, Path | Len):
+        return expr
+    return mark if expr is call else rebuilt(expr, lambda part: _marked(part, call, mark))
+
+
+def _divisor(call: Call) -> int | None:
+    """By what a part is taken; 0 where it is a part by itself."""
+    match call.function, call.arguments:
+        case (("floor_divide" | "modulo"), (_, divisor)):
+            known = folded(divisor)
+            return known.value if isinstance(known, Literal) and type(known.value) is int and known.value > 0 else None
+        case (("seconds" | "fraction"), (_,)):
+            return 0
+        case _:
+            return None

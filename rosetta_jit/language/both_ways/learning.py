@@ -1,0 +1,179 @@
+"""What the relations of a block say of the wire's fields: each is solved for the field that it leaves unknown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.both_ways.array_relations import equal_lengths
+from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
+from rosetta_jit.language.both_ways.inverse_parts import part, plain, put_together, rest_of, taken_part
+from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
+from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
+from rosetta_jit.model.mapping import Arranged, For, Relation
+from rosetta_jit.model.walk import Field, fields_of, parts, rebuilt
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Rule
+
+
+def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: Callable[[Field], bool]) -> None:
+    """Relations of one field first, then those that have one left when the others are known, then those whose fields are parts of a value.
+
+    Where several tell of one field, it is taken from the one that keeps most of it: the others are checks, and what was unpacked
+    must pass them. What ``is_assigned`` is set by rules to pack.
+    """
+    relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
+    done = _pairs(known, relations)
+    done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
+    later = [each for each in relations if id(each[0]) not in done]
+    for _ in range(2):
+        later = [each for each in later if not _solve_rest(known, *each)]
+    later = [each for each in later if not _solve_parts(known, *each, is_assigned)]
+    for each in later:
+        _solve_rest(known, *each)
+
+
+def _relations(rules: tuple[Rule, ...], loops: Loops) -> list[tuple[Relation, Loops]]:
+    """All relations that hold whatever conditions say, with the loops around them."""
+    found: list[tuple[Relation, Loops]] = []
+    for rule in rules:
+        if isinstance(rule, Relation):
+            found.append((rule, loops))
+        elif isinstance(rule, Arranged):
+            found.append((Relation(rule.place, rule.cases[0][1], rule.span), loops))
+        elif isinstance(rule, For):
+            found += _relations(rule.body, (*loops, Loop(rule.variable, rule.start, rule.stop)))
+    return found
+
+
+def _is_left(rule: Relation, is_assigned: Callable[[Field], bool]) -> bool:
+    """Whether a relation to a part of a field is left to the rules to pack, which set it."""
+    call = taken_part(rule.value)
+    return call is not None and call.function == "floor_divide" and any(map(is_assigned, fields_in(call)))
+
+
+def _loss(relation: tuple[Relation, Loops]) -> int:
+    """How much of a field its relation loses: nothing, nothing that is not refused, or perhaps something."""
+    value = relation[0].value
+    return 0 if isinstance(value, Path | Len) else 1 if all(map(_is_reversible, parts(value))) else 2
+
+
+def _is_reversible(part: Expr) -> bool:
+    """Whether an operation gives another value for each, or refuses it, whatever the types."""
+    match part:
+        case Path() | Len() | Literal() | Name() | Unary() | Binary(operator="+" | "-" | "^") | Call(function="divide"):
+            return True
+        case Call(function="int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64", arguments=(_,)):
+            return True
+        case _:
+            return False
+
+
+def _solve(known: Knowledge, rule: Relation, loops: Loops) -> bool:
+    """A relation of one field, whatever else is known."""
+    if len(fields_of(rule.value, "wire")) != 1 or fields_of(rule.place, "wire") or condition_in(rule.value):
+        return False
+    return _set_by(known, rule, rule.value, rule.place, loops)
+
+
+def _solve_rest(known: Knowledge, rule: Relation, loops: Loops) -> bool:
+    """A relation of several fields of which one is not known."""
+    place = known.replaced(rule.place, loops)
+    unknown = [each for each in fields_in(rule.value) if known.value(each, loops) is None]
+    if fields_of(place, "wire") or len(unknown) != 1:
+        return False
+    conditional = condition_in(rule.value)
+    if conditional is not None:
+        return _solve_choice(known, rule, conditional, place, loops)
+    return _set_by(known, rule, _with_known(rule.value, unknown, known, loops), place, loops)
+
+
+def _solve_parts(known: Knowledge, rule: Relation, loops: Loops, is_assigned: Callable[[Field], bool]) -> bool:
+    """A relation of several fields that are not known, each of which is a part of the value."""
+    place = known.replaced(rule.place, loops)
+    unknown = [each for each in fields_in(rule.value) if known.value(each, loops) is None]
+    if fields_of(place, "wire") or len(unknown) < 2 or condition_in(rule.value) or any(map(is_assigned, unknown)):
+        return False
+    try:
+        found = part(_with_known(rule.value, unknown, known, loops), place)
+    except NoInverseError:
+        return False
+    for setting in found.settings:
+        known.setters.setdefault(key_of(setting.place, loops)[0], (rule, setting.value))
+        known.learn(setting.place, setting.value, loops)
+    known.beside[id(rule)] = Beside(rule, "wire", found.digits)
+    return True
+
+
+def _pairs(known: Knowledge, relations: list[tuple[Relation, Loops]]) -> set[int]:
+    """Two relations of one field, each to a part of it, set it together; gives the relations for which that is so."""
+    taken = [(rule, loops, call) for rule, loops in relations if (call := _part_of(rule)) is not None]
+    rests = {(rest_of(call), loops): rule for rule, loops, call in reversed(taken) if rest_of(call) is not None}
+    paired: set[int] = set()
+    for rule, loops, call in taken:
+        other = rests.get((plain(call), loops))
+        if other is not None and id(other) not in paired and _put_together(known, rule, other, loops):
+            paired |= {id(rule), id(other)}
+    return paired
+
+
+def _part_of(rule: Relation) -> Call | None:
+    if len(fields_of(rule.value, "wire")) != 1 or fields_of(rule.place, "wire") or condition_in(rule.value):
+        return None
+    return taken_part(rule.value)
+
+
+def _put_together(known: Knowledge, rule: Relation, other: Relation, loops: Loops) -> bool:
+    try:
+        solution, digit = put_together(rule.value, rule.place, other.value, other.place)
+    except NoInverseError:
+        return False
+    digits = () if digit is None else (digit,)
+    _say(known, rule, solution.place, solution.value, loops)
+    known.beside[id(other)] = Beside(other, "holder", digits)
+    return True
+
+
+def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Expr], place: Expr, loops: Loops) -> bool:
+    """`a if condition else b`, of one field in both and with a condition that is known."""
+    condition = known.replaced(parts[0], loops)
+    if fields_of(condition, "wire") or any(condition_in(part) for part in parts[1:]):
+        return False
+    try:
+        found = [solved(part, place) for part in parts[1:] if len(fields_in(part)) == 1]
+    except NoInverseError:
+        return False
+    if len(found) != 2 or found[0].place != found[1].place:
+        return False
+    _say(known, rule, found[0].place, Choice(((condition, found[0].value),), found[1].value, span=rule.span), loops)
+    return True
+
+
+def _set_by(known: Knowledge, rule: Relation, expr: Expr, place: Expr, loops: Loops) -> bool:
+    try:
+        solution = solved(expr, place)
+    except NoInverseError:
+        return False
+    _say(known, rule, solution.place, solution.value, loops)
+    return True
+
+
+def _say(known: Knowledge, rule: Relation, place: Field, value: Expr, loops: Loops) -> None:
+    known.setters.setdefault(key_of(place, loops)[0], (rule, value))
+    known.learn(place, value, loops)
+    if isinstance(rule.place, Path) and isinstance(place, Path) and value == rule.place:
+        known.learn(Len(place), Len(rule.place, rule.span), loops)  # arrays that are equal have equal lengths
+    if (lengths := equal_lengths(rule.place, rule.value)) is not None:
+        known.learn(*lengths, loops)
+
+
+def _with_known(value: Expr, unknown: list[Field], known: Knowledge, loops: Loops) -> Expr:
+    """An expression with all fields but some replaced."""
+    if value in unknown:
+        return value
+    if isinstance(value, Path | Len):
+        return known.replaced(value, loops)
+    return rebuilt(value, lambda part: _with_known(part, unknown, known, loops))

@@ -1,0 +1,387 @@
+"""The rules to pack that follow from rules for both directions.
+
+A relation sets the one field of the wire that it has and that no relation before it sets; one whose fields are all known is a check: a
+holder that nothing could have been unpacked to is rejected. Loops and conditions that read the wire have what is known of it. Where a
+condition cannot be known, its two blocks are told apart by constants (`language.both_ways.branches`). What `pack-rules:` sets is left to
+them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import derive as words
+from rosetta_jit.catalogue import layouts
+from rosetta_jit.language.both_ways.array_relations import with_layouts
+from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
+from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
+from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
+from rosetta_jit.language.both_ways.learning import learn
+from rosetta_jit.language.folding import FALSE, TRUE, folded
+from rosetta_jit.language.functions.calls import TOLD
+from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.printer import show_expr
+from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.inverse_parts import Digit
+    from rosetta_jit.language.both_ways.knowledge import Beside
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.source import Span
+
+MAX_BLOCKS = 200
+"""Blocks that conditions in expressions are split into: a sum of them doubles with each."""
+
+
+NOTHING: Mapping[Field, Expr] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
+class _Owed:
+    """That the condition of a `when` holds of the message that a block packs, or that it does not."""
+
+    rule: When
+    holds: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """The rules of a block, and the conditions that it could not check."""
+
+    rules: tuple[Rule, ...]
+    owed: tuple[_Owed, ...]
+
+
+@dataclass(slots=True)
+class Packing:
+    """Turns one block round after another, each with what is known around it."""
+
+    problems: list[Diagnostic]
+    completed: frozenset[tuple[str, ...]]
+    assigned: frozenset[tuple[str, ...]]
+    known: Knowledge = field(default_factory=Knowledge)
+    owed: tuple[_Owed, ...] = ()
+    blocks: list[Relation] = field(default_factory=list["Relation"])
+    written: Mapping[Field, Expr] = field(default_factory=lambda: NOTHING)
+
+    @classmethod
+    def of(cls, pack_rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Packing:
+        """``pack_rules`` are those of the direction's own block."""
+        written: dict[Field, Expr] = {rule.place: rule.value for rule in pack_rules if isinstance(rule, Assign)}
+        return cls(problems, frozenset(_set_by(pack_rules)), frozenset(_set_by(pack_rules, lengths=False)), written=written)
+
+    def block(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
+        """The rules of a block, when all of its relations are known."""
+        learn(self.known, rules, loops, self.is_assigned)
+        found = self.rules(rules, loops)
+        if self.known.budget.parts < 0:
+            self.problems.append(words.too_complex(rules[0].span))
+        return found
+
+    # --- rules ---------------------------------------------------------------------------------------------------------
+
+    def rules(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
+        return tuple(found for rule in rules for found in self.rule(rule, loops))
+
+    def rule(self, rule: Rule, loops: Loops) -> tuple[Rule, ...]:
+        match rule:
+            case For():
+                return self.loop(rule, loops)
+            case Relation():
+                return self.relation(rule, loops)
+            case When(condition, (Reject() as refusal,), ()):
+                known, then = self.known.replaced(condition, loops), (self.refusal(refusal, loops),)
+                return () if self.is_unknown(known, rule.condition) else (replace(rule, condition=known, then=then),)
+            case When():
+                return self.when(rule, loops)
+            case Reject():
+                return (self.refusal(rule, loops),)
+            case Ignore(place, span):
+                return (Default(place, span),)
+            case Default(place, span):
+                return (Ignore(place, span),)
+            case Arranged():
+                return self.arranged(rule, loops)
+            case SameNames(but, span):
+                return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True),)
+            case Assign() | SetLength():
+                raise AssertionError(rule)
+
+    def loop(self, rule: For, loops: Loops) -> tuple[Rule, ...]:
+        start, stop = (self.known.replaced(bound, loops) for bound in (rule.start, rule.stop))
+        missing = [*fields_of(start, "wire"), *fields_of(stop, "wire")]
+        if missing:
+            if not all(self.is_completed(place) for place in _fields_in_rules(rule.body)):
+                self.problems.append(words.unknown_bound(missing[0].span))
+            return ()
+        body = self.rules(rule.body, (*loops, Loop(rule.variable, rule.start, rule.stop)))
+        return (replace(rule, start=start, stop=stop, body=body),) if body else ()
+
+    def relation(self, rule: Relation, loops: Loops) -> tuple[Rule, ...]:
+        told = next((part for part in parts(rule.value) if isinstance(part, Call) and part.function in TOLD), None)
+        if told is not None:
+            self.problems.append(words.changes(told.span, told.function))
+            return ()
+        place = with_known_indices(rule.place, self.known, loops)
+        fields = fields_in(rule.value)
+        targets = [each for each in fields if self.known.setters.get(key_of(each, loops)[0], (None,))[0] is rule]
+        if targets:
+            return tuple(found for target in targets for found in self.setting(target, loops, rule))
+        if (beside := self.known.beside.get(id(rule))) is not None:
+            return checks_of(beside)
+        wanted = self.known.replaced(rule.value, loops)
+        missing = [*fields_of(wanted, "wire"), *fields_of(place, "wire")]
+        if not missing:
+            return _check(place, wanted, rule)
+        conditional = condition_in(rule.value)
+        if conditional is not None and not fields_of(place, "wire"):
+            return self.split(rule, conditional, loops)
+        if not all(map(self.is_completed, missing)):
+            self.problems.append(_reason(rule, missing, place))
+        return ()
+
+    def setting(self, target: Field, loops: Loops, rule: Relation) -> tuple[Rule, ...]:
+        """The rule that sets a field of the wire, at a place that packing can find."""
+        place = self.known.placed(path_of(target), loops)
+        missing = fields_of(place, "wire")[1:]
+        if missing:
+            self.problems.append(words.index_reads(missing[0].span))
+            return ()
+        return self.set_to(place, target, self.known.setters[key_of(target, loops)[0]][1], rule)
+
+    def set_to(self, place: Path, target: Field, value: Expr, rule: Relation) -> tuple[Rule, ...]:
+        value = with_layouts(value, self.written)
+        unknown = fields_of(value, "wire")
+        if unknown:
+            self.problems.append(words.unknown_layout(unknown[0].span or rule.span, show_expr(unknown[0])))
+            return ()
+        set_to = _setting(place, value, rule.span, length=isinstance(target, Len))
+        return (replace(set_to, via=rule.via) if isinstance(set_to, Assign) else set_to,)
+
+    def arranged(self, rule: Arranged, loops: Loops) -> tuple[Rule, ...]:
+        """The flag says which of the layouts the holder has."""
+        for column, repeated in zip(zip(*rule.cases, strict=True), (layouts.same_flag, layouts.same_order), strict=True):
+            self.problems.extend(repeated(each.span) for number, each in enumerate(column) if each in column[:number])
+        rest: tuple[Rule, ...] = (Reject(layouts.UNKNOWN_FLAG, rule.span),)
+        for flag, value in reversed(rule.cases):
+            inner = replace(self, known=self.known.inside())
+            relation = Relation(rule.place, value, rule.span)
+            inner.known.forget(fields_in(value), loops)
+            learn(inner.known, (relation,), loops, self.is_assigned)
+            rest = (When(Binary("==", rule.flag, flag, rule.span), inner.relation(relation, loops), rest, rule.span),)
+        return rest
+
+    def split(self, rule: Relation, ways: tuple[Expr, Expr, Expr], loops: Loops) -> tuple[Rule, ...]:
+        """`.a <-> x if condition else y` as `when condition .a <-> x else .a <-> y end`."""
+        self.blocks.append(rule)
+        if len(self.blocks) > MAX_BLOCKS:
+            self.problems.extend([words.too_many_blocks(rule.span, MAX_BLOCKS)] if len(self.blocks) == MAX_BLOCKS + 1 else [])
+            return ()
+        condition, *values = ways
+        then, other = (replace(rule, value=value) for value in values)
+        return self.when(When(condition, (then,), (other,), rule.span), loops)
+
+    # --- conditions ----------------------------------------------------------------------------------------------------
+
+    def when(self, rule: When, loops: Loops) -> tuple[Rule, ...]:
+        condition = self.known.replaced(asked_of_holder(rule), loops)
+        if not fields_of(condition, "wire"):
+            then, other = self.enter(rule.then, loops), self.enter(rule.otherwise, loops)
+            self.owe(then, other)
+            return (When(condition, then.rules, other.rules, rule.span),)
+        then, other = (self.branch(rule, loops, holds=holds) for holds in (True, False))
+        self.owe(then, other)
+        if _rejects(rule.otherwise) or _rejects(rule.then):
+            return other.rules if _rejects(rule.then) else then.rules
+        if not then.rules and not other.rules:
+            return ()
+        test = test_between(rule.then, rule.otherwise)
+        if test is None:
+            self.problems.append(words.alike_blocks(rule.condition.span, show_expr(fields_of(rule.condition, "wire")[0])))
+            return ()
+        return (When(test, tuple(each for each in then.rules if not _is_tested(each, test)), other.rules, rule.span),)
+
+    def branch(self, rule: When, loops: Loops, *, holds: bool) -> _Block:
+        """One block with what its condition says of the wire, where it cannot be known before the block is."""
+        block = rule.then if holds else rule.otherwise
+        if _rejects(block):
+            return _Block((), ())
+        owed = _Owed(rule, holds)
+        found = self.enter(block, loops, facts_of(rule.condition, holds=holds), owed)
+        if any(each is owed for each in found.owed):
+            missing = [each for each in fields_in(rule.condition) if self.known.value(each, loops) is None]
+            if not all(map(self.is_completed, missing)):
+                self.problems.append(words.undetermined(missing[0].span, show_expr(missing[0]), holds=holds))
+        return found
+
+    def enter(self, block: tuple[Rule, ...], loops: Loops, facts: Mapping[Field, Expr] = NOTHING, owed: _Owed | None = None) -> _Block:
+        """A block, with the facts that it has set and the conditions that it is owed checked."""
+        inner = replace(self, known=self.known.inside(), owed=self.owed if owed is None else (*self.owed, owed))
+        learn(inner.known, block, loops, self.is_assigned)
+        settings = [inner.fact(place, value, loops) for place, value in facts.items()]
+        guards = inner.settle(loops)
+        rules = inner.rules(block, loops)
+        return _Block((*(each for each in settings if each is not None), *guards, *rules), inner.owed)
+
+    def fact(self, place: Field, value: Expr, loops: Loops) -> Rule | None:
+        """A field that a condition fixes, set unless something else does."""
+        if self.known.value(place, loops) is not None or self.is_completed(place):
+            return None
+        self.known.learn(place, value, loops)
+        return _setting(self.known.placed(path_of(place), loops), value, value.span, length=isinstance(place, Len))
+
+    def settle(self, loops: Loops) -> list[Rule]:
+        """Checks that unpacking is going to take the blocks that this one is in, as far as that is known by now."""
+        guards: list[Rule] = []
+        left: list[_Owed] = []
+        for owed in self.owed:
+            condition = folded(self.known.replaced(owed.rule.condition, loops))
+            if fields_of(condition, "wire"):
+                left.append(owed)
+            else:
+                guards += _guard(condition, owed.rule, holds=owed.holds)
+        self.owed = tuple(left)
+        return guards
+
+    def owe(self, *blocks: _Block) -> None:
+        """What is left to check behind a `when`: what one of its blocks could not."""
+        self.owed = tuple(owed for owed in self.owed if any(owed is each for block in blocks for each in block.owed))
+
+    # --- what is missing -----------------------------------------------------------------------------------------------
+
+    def refusal(self, rule: Reject, loops: Loops) -> Reject:
+        """A rejection with what is known of the values that its text shows; with the text alone, where that is not all."""
+        pieces = tuple(self.known.replaced(piece, loops) for piece in rule.pieces)
+        return replace(rule, pieces=() if any(fields_of(piece, "wire") for piece in pieces) else pieces)
+
+    def is_unknown(self, known: Expr, written: Expr) -> bool:
+        missing = fields_of(known, "wire")
+        if missing and not all(map(self.is_completed, missing)):
+            self.problems.append(words.unknown_condition(written.span, show_expr(missing[0])))
+        return bool(missing)
+
+    def is_completed(self, place: Field) -> bool:
+        """Whether the rules to pack alone set a field, or something in it or around it."""
+        return _is_among(place, self.completed)
+
+    def is_assigned(self, place: Field) -> bool:
+        """The same, where a length alone does not count."""
+        return _is_among(place, self.assigned)
+
+
+def _is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:
+    names = names_of(path_of(place))
+    return any(all(a == b for a, b in zip(names, other, strict=False)) for other in fields)
+
+
+def checks_of(beside: Beside) -> tuple[Rule, ...]:
+    """Checks of what must hold besides a relation."""
+    span = beside.rule.span
+    return tuple(_within(digit, span) for digit in beside.digits)
+
+
+def _within(digit: Digit, span: Span | None) -> Rule:
+    is_below, is_above = Binary("<", digit.value, Literal(0, span), span), Binary(">=", digit.value, Literal(digit.below, span), span)
+    reason = words.no_digit(show_expr(digit.value), digit.below)
+    return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
+
+
+def with_known_indices(place: Field, known: Knowledge, loops: Loops) -> Field:
+    """A place of the holder whose indices packing can compute."""
+    found = known.placed(path_of(place), loops)
+    return Len(found, place.span) if isinstance(place, Len) else found
+
+
+def _setting(place: Path, value: Expr, span: Span | None, *, length: bool) -> Rule:
+    return SetLength(place, value, span) if length else Assign(place, value, span, fits=True)
+
+
+def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
+    """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
+    held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
+    reason = words.disagrees(show_expr(place), show_expr(wanted))
+    return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
+
+
+def _guard(condition: Expr, rule: When, *, holds: bool) -> tuple[Rule, ...]:
+    """That unpacking is going to take this block."""
+    if condition == (TRUE if holds else FALSE):
+        return ()
+    wrong = Unary("not", condition, rule.condition.span) if holds else condition
+    reason = words.other_block(show_expr(rule.condition), holds=holds)
+    return (When(wrong, (Reject(reason, rule.span),), (), rule.span),)
+
+
+def _is_tested(rule: Rule, test: Expr) -> bool:
+    """Whether a check asks again what the `when` around it has asked."""
+    match rule, test:
+        case When(Binary("differs", place, Held(value=wanted)), (Reject(),), ()), Binary("==", tested, constant):
+            return place == tested and folded(wanted) == constant and not _is_zero(constant)
+        case _:
+            return False
+
+
+def _is_zero(constant: Expr) -> bool:
+    """Whether it may be compared with a float that is -0, which equals it."""
+    return isinstance(constant, Literal) and constant.value is not False and constant.value == 0
+
+
+def _rejects(rules: tuple[Rule, ...]) -> bool:
+    """Whether a block does nothing but reject."""
+    return bool(rules) and all(isinstance(rule, Reject) for rule in rules)
+
+
+def _reason(rule: Relation, missing: list[Field], place: Expr) -> Diagnostic:
+    """Why a relation cannot be packed."""
+    shown = [show_expr(each) for each in missing]
+    if fields_of(place, "wire"):
+        return words.index_reads(fields_of(place, "wire")[0].span)
+    if len(fields_in(rule.value)) > 1:
+        return words.several_fields(rule.value.span, shown)
+    try:
+        solve(rule.value, rule.place)
+    except NoInverseError as error:
+        return words.no_inverse(error.part.span, str(error), rule.span, shown[0])
+    return words.index_reads(missing[0].span)
+
+
+def _fields_in_rules(rules: tuple[Rule, ...]) -> list[Field]:
+    """The fields of the wire that relations read."""
+    found: list[Field] = []
+    for rule in rules:
+        match rule:
+            case Relation(value=value):
+                found += fields_in(value)
+            case For(body=body):
+                found += _fields_in_rules(body)
+            case When(condition, then, otherwise):
+                found += [*fields_in(condition), *_fields_in_rules((*then, *otherwise))]
+            case _:
+                pass
+    return found
+
+
+def _set_by(rules: tuple[Rule, ...], *, lengths: bool = True) -> list[tuple[str, ...]]:
+    """The fields that rules set, without indices."""
+    found: list[tuple[str, ...]] = []
+    for rule in rules:
+        match rule:
+            case Assign(place) | Default(place):
+                found.append(names_of(place))
+            case SetLength(place) if lengths:
+                found.append(names_of(place))
+            case For(body=body):
+                found += _set_by(body, lengths=lengths)
+            case When(then=then, otherwise=otherwise):
+                found += _set_by((*then, *otherwise), lengths=lengths)
+            case _:
+                pass
+    return found

@@ -1,0 +1,1 @@
+"""What is wrong, or suspect, with rules taken together."""

@@ -1,0 +1,79 @@
+"""Fields that count the elements of an array and are left at 0, their default, where rules give the array elements: those never agree."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.language.places import field_names
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, SetLength, When
+from rosetta_jit.model.types import Array, Bytes, Int, Struct
+from rosetta_jit.model.walk import fields_of, names_of, path_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Place, Rule
+    from rosetta_jit.model.types import Type
+
+
+def defaulted_counts(rules: tuple[Rule, ...], target: Message) -> list[Diagnostic]:
+    """The defaults of a direction that rules for an array contradict."""
+    filled = {field_names(place) for place in _filled(rules)}
+    problems: list[Diagnostic] = []
+    for rule in _defaults(rules):
+        *around, name = field_names(rule.place)
+        owner = _owner(rule.place, target)
+        arrays = [each for each in (owner.fields if owner is not None else ()) if (*around, each.name) in filled]
+        counted = (each for each in arrays if name in _counts(target.value_type(each.type)))
+        problems.extend(words.default_count(rule.span, f".{each.name}") for each in counted)
+    return problems
+
+
+def _defaults(rules: tuple[Rule, ...]) -> Iterator[Default]:
+    for rule in rules:
+        match rule:
+            case Default(place) if isinstance(place.type, Int) and isinstance(place.steps[-1], FieldStep):
+                yield rule
+            case For(body=body):
+                yield from _defaults(body)
+            case When(then=then, otherwise=otherwise):
+                yield from _defaults((*then, *otherwise))
+            case _:
+                pass
+
+
+def _filled(rules: tuple[Rule, ...]) -> Iterator[Place]:
+    """Arrays that rules assign, or give a length that is not written down as 0."""
+    for rule in rules:
+        match rule:
+            case Assign(place) if isinstance(place.type, Array | Bytes):
+                yield place
+            case SetLength(place, value) if not (isinstance(value, Const) and value.value == 0):
+                yield place
+            case For(body=body):
+                yield from _filled(body)
+            case When(then=then, otherwise=otherwise):
+                yield from _filled((*then, *otherwise))
+            case _:
+                pass
+
+
+def _owner(place: Place, message: Message) -> Struct | None:
+    """The struct that a field is of."""
+    owner: Type = message.root
+    for step in place.steps[:-1]:
+        if isinstance(step, FieldStep):
+            owner = message.value_type(step.field.type)
+        elif isinstance(owner, Array):
+            owner = message.value_type(owner.element)
+    return owner if isinstance(owner, Struct) else None
+
+
+def _counts(type_: Type) -> set[str]:
+    """The fields beside an array that tell its length."""
+    if not isinstance(type_, Array | Bytes) or type_.length is None or isinstance(type_.length, int):
+        return set()
+    return {names_of(path_of(each))[-1] for each in fields_of(type_.length, "wire") if names_of(path_of(each))}

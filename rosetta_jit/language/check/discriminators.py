@@ -1,0 +1,76 @@
+"""Discriminators of the unions that rules fill: a case implies its own where no rule sets it, else it must be the one that it selects."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.places import field_names, places_in
+from rosetta_jit.language.scope import element_type
+from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.model.initial_values import selecting
+from rosetta_jit.model.types import Array, Bytes, Map, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Place, Rule
+    from rosetta_jit.model.types import Field, Type
+
+Names = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A union, the field that it is, and the type of its discriminator: ``by_rule`` if a rule sets that."""
+
+    name: str
+    union: Union
+    type: Type
+    by_rule: bool
+
+    def label(self, case: str) -> int:
+        """What selects a case."""
+        return selecting(self.union, self.type, self.number(case))
+
+    def number(self, case: str) -> int:
+        """The number of a case, from 1."""
+        return 1 + next(number for number, each in enumerate(self.union.cases) if each.name == case)
+
+
+def told_unions(rules: tuple[Rule, ...], message: Message) -> dict[Names, Told]:
+    """The unions with a discriminator that rules fill, by the names of their discriminators' places."""
+    places = places_in(rules)
+    named = {field_names(place) for place in places}
+    found: dict[Names, Told] = {}
+    for place in places:
+        type_: Type = message.root
+        names: Names = ()
+        for step in place.steps:
+            if isinstance(step, FieldStep):
+                if isinstance(type_, Struct):
+                    found |= {(*names, each): told for each, told in _unions(type_, step.field, message, names, named)}
+                names, type_ = (*names, step.field.name), message.value_type(step.field.type)
+            elif isinstance(type_, Array | Bytes | Map):
+                type_ = message.value_type(element_type(type_))
+    return found
+
+
+def _unions(struct: Struct, touched: Field, message: Message, names: Names, named: set[Names]) -> list[tuple[str, Told]]:
+    """The union with a discriminator in a struct, if it is ``touched`` or its discriminator is."""
+    found: list[tuple[str, Told]] = []
+    for each in struct.fields:
+        if isinstance(each.type, Union) and touched.name in (each.name, each.type.discriminator or each.name):
+            teller = next((field for field in struct.fields if field.name == each.type.discriminator), None)
+            if teller is not None:
+                told = Told(each.name, each.type, message.value_type(teller.type), (*names, teller.name) in named)
+                found.append((teller.name, told))
+    return found
+
+
+def discriminator_of(place: Place, steps: int) -> Names | None:
+    """The name of the discriminator, if so many steps lead to a union that has one."""
+    last = place.steps[steps - 1]
+    if not (isinstance(last, FieldStep) and isinstance(last.field.type, Union) and last.field.type.discriminator):
+        return None
+    around = tuple(step.field.name for step in place.steps[: steps - 1] if isinstance(step, FieldStep))
+    return (*around, last.field.type.discriminator)

@@ -1,0 +1,180 @@
+"""The static checks of a mapping, from what it imports to the last element of each array, as one report.
+
+Imports are read by the front ends, names and types resolved, and each direction is checked as a whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.errors import MappingError
+from rosetta_jit.language.both_ways.directions import in_each_direction
+from rosetta_jit.language.check.completeness import check_complete
+from rosetta_jit.language.check.default_counts import defaulted_counts
+from rosetta_jit.language.check.discriminators import told_unions
+from rosetta_jit.language.check.file_name import misnamed
+from rosetta_jit.language.check.left_out import left_out
+from rosetta_jit.language.check.rounding import rounded
+from rosetta_jit.language.check.unequal_lengths import other_lengths
+from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
+from rosetta_jit.language.imports.mappings import read_others
+from rosetta_jit.language.imports.search import Reading
+from rosetta_jit.language.parameters.bind import bind, handed_on
+from rosetta_jit.language.resolve.rules import Resolved, resolve
+from rosetta_jit.language.units.hand_factors import wrong_factors
+from rosetta_jit.language.units.side_files import annotated
+from rosetta_jit.model.types import name_parts
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping as Dictionary
+    from collections.abc import Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.functions.user_functions import Signature
+    from rosetta_jit.language.imports.declarations import Imported
+    from rosetta_jit.language.imports.mappings import Others, Use
+    from rosetta_jit.language.imports.search import SearchPath
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.model.mapping import Mapping
+    from rosetta_jit.parsing.idl import FrontEnds
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A mapping without errors. None as rules means that the direction has no block, ``()`` that it is empty.
+
+    ``holder`` and ``wire`` are the message types with the schema of all imports; ``uses`` are those of other mappings.
+    """
+
+    mapping: Mapping
+    holder: Message
+    wire: Message
+    unpack: tuple[Rule, ...] | None
+    pack: tuple[Rule, ...] | None
+    functions: dict[str, Signature]
+    warnings: tuple[Diagnostic, ...]
+    uses: tuple[Use, ...] = ()
+
+
+def check(
+    mapping: Mapping,
+    front_ends: FrontEnds,
+    search: SearchPath,
+    reading: Reading | None = None,
+    parameters: Dictionary[str, object] | None = None,
+) -> Checked:
+    """Read what a mapping imports, and check it.
+
+    Parameters
+    ----------
+    front_ends
+        Of all frameworks.
+    reading
+        Collects the files that were read.
+    parameters
+        The values of the mapping's parameters; None to check it for all values that they may get.
+
+    Raises
+    ------
+    MappingError
+        Everything that is wrong with the mapping and with what it imports, in the order of the text.
+    """
+    problems: list[Diagnostic] = []
+    bound: list[Diagnostic] = []
+    underived: list[Diagnostic] = []
+    mapping, reading = in_each_direction(bind(mapping, parameters, bound), underived), reading or Reading()
+    others = read_others(mapping, search, reading, problems, handed_on(mapping, parameters))
+    imports = Imports(mapping.source, front_ends, search, reading)
+    imported = read_imports(mapping, imports, problems)
+    theirs = [each for other in others.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
+    merged = merge([*imported, *theirs], problems)
+    complete = not _errors(problems)
+    problems += [*_without_handed_on(bound, mapping, others), *underived]
+    schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
+    resolved = resolve(mapping, schema, schema, others) if complete else ()
+    if not isinstance(resolved, Resolved):
+        raise MappingError(_sorted([*problems, *resolved]))
+    problems += resolved.problems
+    problems += _directions(mapping, resolved, packs=not _errors(underived))
+    problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
+    problems += _unused(imported, resolved)
+    problems += misnamed(mapping, schema)
+    if _errors(problems):
+        raise MappingError(_sorted(problems))
+    problems += _silent_losses(mapping, resolved)
+    unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
+    functions, uses = dict(resolved.functions), tuple(others.uses)
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(problems), uses)
+
+
+def _errors(problems: list[Diagnostic]) -> list[Diagnostic]:
+    return [problem for problem in problems if problem.severity == "error"]
+
+
+def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: Others) -> list[Diagnostic]:
+    """Without the warnings about parameters that no rule uses, but a mapping that is used."""
+    declared = {each.name for other in others.mappings() for each in other.parameters}
+    spans = [each.span for each in mapping.parameters if each.name in declared]
+    return [each for each in problems if each.code != "parameter-unused" or each.span not in spans]
+
+
+def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Diagnostic]:
+    """Each direction as a whole; ``packs`` unless rules to pack are missing that could not be derived.
+
+    An empty block says that the direction is not meant to exist.
+    """
+    if resolved.unpack is None and resolved.pack is None:
+        return [words.no_rules(mapping.wire_span)]
+    problems: list[Diagnostic] = []
+    holder, wire = resolved.holder, resolved.wire
+    if mapping.unpack_rules and resolved.unpack is not None:
+        problems += check_complete(resolved.unpack, holder, "holder", mapping.holder_span)
+    if packs and mapping.pack_rules and resolved.pack is not None:
+        problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
+    for block, target in ((resolved.unpack, holder), (resolved.pack, wire)):
+        if block is not None:
+            problems += defaulted_counts(block.rules, target)
+            _check_order(block.rules, target, problems)
+    return problems
+
+
+def _check_order(rules: tuple[Rule, ...], target: Message, problems: list[Diagnostic]) -> None:
+    """Each discriminator can be set before a case of its union."""
+    unions = told_unions(rules, target)
+    if unions:
+        from rosetta_jit.language.check.discriminator_order import discriminators_first
+
+        discriminators_first(rules, unions, problems)
+
+
+def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
+    """What rules without errors leave out."""
+    warnings: list[Diagnostic] = []
+    holder, wire = (resolved.holder, mapping.holder_span), (resolved.wire, mapping.wire_span)
+    for block, (source, read_at), (target, set_at) in ((resolved.unpack, wire, holder), (resolved.pack, holder, wire)):
+        if block is not None and block.rules:
+            warnings += left_out(block.rules, source, target, (read_at, set_at))
+            warnings += [*other_lengths(block.rules), *rounded(block.rules)]
+    return warnings
+
+
+def _unused(imported: list[Imported], resolved: Resolved) -> list[Diagnostic]:
+    used = {*reached(resolved.holder.root, resolved.holder.schema), *reached(resolved.wire.root, resolved.wire.schema), *resolved.enums}
+    known = {name_parts(name) for name in resolved.holder.schema.types}
+    return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
+
+
+def _is_used(one: Imported, used: set[str], known: set[tuple[str, ...]]) -> bool:
+    measured = any(name_parts(each.text) in known for file in one.units for each in file.types)
+    return measured or bool(used & one.schema.types.keys())
+
+
+def _sorted(problems: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    def place(problem: Diagnostic) -> tuple[str, int]:
+        return ("", -1) if problem.span is None else (problem.span.source.name, problem.span.start)
+
+    return tuple(sorted(dict.fromkeys(problems), key=place))

@@ -1,0 +1,56 @@
+"""Values that are rounded to float32 though no text says so: constants that no float32 is equal to, and values whose unit changes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.language.algebra.normal_form import rebuilt
+from rosetta_jit.language.conversions import describe, is_single, rounded_constant, same, widens
+from rosetta_jit.language.typed import Assign, Binary, Const, Convert, For, HostCall, Rescale, SetLength, When
+from rosetta_jit.language.units.wholes import inserted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.typed import Expr, Rule
+
+
+def rounded(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
+    """Warnings of one direction."""
+    for rule in rules:
+        match rule:
+            case Assign(value=value) | SetLength(value=value):
+                yield from _constants(value)
+                yield from _by_unit(rule)
+            case For(_, start, stop, body):
+                yield from (each for bound in (start, stop) for each in _constants(bound))
+                yield from rounded(body)
+            case When(condition, then, otherwise):
+                yield from _constants(condition)
+                yield from rounded((*then, *otherwise))
+            case _:
+                pass
+
+
+def _constants(expr: Expr) -> Iterator[Diagnostic]:
+    if isinstance(expr, Const) and (single := rounded_constant(expr)) is not None:
+        yield words.rounded(expr.span, float(expr.value), single)
+    below: list[Expr] = [*expr.arguments] if isinstance(expr, HostCall) else []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        yield from _constants(part)
+
+
+def _by_unit(rule: Assign | SetLength) -> Iterator[Diagnostic]:
+    """The conversion of a unit is computed in float64; that its result is a float32 may be the place's wish alone."""
+    change = inserted(rule) if isinstance(rule, Assign) and is_single(rule.place.type) else None
+    if not isinstance(change, Rescale):
+        return
+    value = rule.value.operand if isinstance(rule.value, Convert) else rule.value
+    while isinstance(value, Binary):
+        value = value.left
+    origin = value.operand if isinstance(value, Convert) and value.rule == "widen" else value
+    if not same(origin.type, rule.place.type) and not widens(origin.type, rule.place.type):
+        yield words.rounded_by_unit(origin.span, describe(origin.type), change.source, change.target)

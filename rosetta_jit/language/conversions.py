@@ -1,0 +1,201 @@
+"""Which scalar becomes which without a word: the conversions that cannot change a value.
+
+An integer becomes a wider one, or an unsigned one a wider signed one; an integer becomes a float that holds all of its
+values; float32 becomes float64. A constant becomes any type that can hold it; a constant float is rounded to float32.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.typed import INT64, Const, Convert
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.typed import Expr
+    from rosetta_jit.model.types import Type
+
+FLOAT64 = Float(64)
+EXACT_BITS = {32: 24, 64: 53}
+"""Bits of an integer that a float of so many bits always holds: IEEE 754, table 3.5, precision p."""
+
+
+def describe(type_: Type) -> str:
+    """A type as a report names it."""
+    match type_:
+        case Bool():
+            return "bool"
+        case Int(bits, signed):
+            return f"{'' if signed else 'u'}int{bits}"
+        case Float(bits):
+            return f"float{bits}"
+        case String():
+            return "text"
+        case Bytes():
+            return "bytes"
+        case Enum(name=name):
+            return f"enum {name}"
+        case Array(element, length):
+            return f"an array of {f'{length} ' if isinstance(length, int) else ''}{describe(element)}"
+        case Struct(name=name) | Union(name=name) | Ref(name=name):
+            return name
+        case Optional(value):
+            return describe(value)
+        case Map(key, value):
+            return f"a map of {describe(key)} to {describe(value)}"
+
+
+def same(left: Type, right: Type) -> bool:
+    """Whether two types have the same values, however their IDLs spell them."""
+    match left, right:
+        case (Bool(), Bool()) | (String(), String()) | (Bytes(), Bytes()):
+            return True
+        case Int(bits, signed), Int(other_bits, other_signed):
+            return bits == other_bits and signed == other_signed
+        case Float(bits), Float(other):
+            return bits == other
+        case _:
+            return left == right
+
+
+def widens(source: Type, target: Type) -> bool:
+    """Whether every value of one scalar is a value of the other."""
+    match source, target:
+        case Int(bits, signed), Int(target_bits, target_signed):
+            return bits < target_bits if signed == target_signed else target_signed and bits < target_bits
+        case Int(bits), Float(target_bits):
+            return bits <= EXACT_BITS[target_bits]
+        case Float(bits), Float(target_bits):
+            return bits < target_bits
+        case _:
+            return False
+
+
+def is_single(type_: Type) -> bool:
+    """Whether a type is float32, however its IDL calls it."""
+    return isinstance(type_, Float) and type_.bits == 32
+
+
+def in_single(value: Const) -> Const | None:
+    """A number as the nearest float32; None where that is beyond the greatest one."""
+    number = float(value.value)
+    if not _fits_float32(number):
+        return None
+    return replace(value, value=struct.unpack("<f", struct.pack("<f", number))[0], type=Float(32))
+
+
+def as_single(value: Expr) -> Expr | None:
+    """A float32 as it is, and a constant that is equal to one; None of all else, which meets a float32 as float64."""
+    if is_single(value.type) or not isinstance(value, Const) or value.declared or not isinstance(value.type, Int | Float):
+        return value if is_single(value.type) else None
+    known = in_single(value)
+    return known if known is not None and known.value == value.value else None
+
+
+def rounded_constant(value: Const) -> float | None:
+    """The float32 that a constant becomes where none is equal to it; None of all other constants."""
+    if not isinstance(value.value, float) or not is_single(value.type):
+        return None
+    known = in_single(value)
+    return None if known is None or known.value == value.value else float(known.value)
+
+
+def holds(type_: Int, value: int) -> bool:
+    """Whether an integer type has this value."""
+    low, high = bounds(type_)
+    return low <= value <= high
+
+
+def bounds(type_: Int) -> tuple[int, int]:
+    """The least and the greatest value of an integer type."""
+    return (-(1 << type_.bits - 1), (1 << type_.bits - 1) - 1) if type_.signed else (0, (1 << type_.bits) - 1)
+
+
+def wrap(type_: Int, value: int) -> int:
+    """The value of an integer type that is equal to ``value`` modulo its number of values."""
+    low, _ = bounds(type_)
+    return (value - low) % (1 << type_.bits) + low
+
+
+def convert(value: Expr, target: Type) -> Expr | None:
+    """``value`` as ``target`` if that needs no word, else None."""
+    if isinstance(value, Const):
+        return adapt(value, target)
+    if same(value.type, target):
+        return value
+    return Convert(value, target, "widen", value.span) if widens(value.type, target) else None
+
+
+def adapt(value: Const, target: Type) -> Const | None:
+    """A constant as ``target``, or None where that type cannot hold it."""
+    match value.value, value.type, target:
+        case int(number), Int(), Int() if holds(target, number):
+            return replace(value, type=target)
+        case int(number), Int(), Float(bits) if _float_holds(number, bits):
+            return replace(value, value=float(number), type=target)
+        case float(number), Float(), Float(bits) if bits == 64 or _fits_float32(number):
+            return replace(value, type=target)
+        case str(), String(), String() | Bytes():
+            return replace(value, type=target)
+        case _:
+            return value if same(value.type, target) else None
+
+
+def _float_holds(number: int, bits: int) -> bool:
+    magnitude = abs(number)
+    return magnitude == 0 or magnitude.bit_length() - _trailing_zeros(magnitude) <= EXACT_BITS[bits]
+
+
+def _trailing_zeros(number: int) -> int:
+    return (number & -number).bit_length() - 1
+
+
+def _fits_float32(number: float) -> bool:
+    if not math.isfinite(number):
+        return True
+    try:
+        struct.pack("<f", number)
+    except OverflowError:
+        return False
+    return True
+
+
+def word_for(source: Type, target: Type) -> str:
+    """How a mapping says that a value may change; empty where no word can say it."""
+    name = describe(target)
+    match source, target:
+        case Bool() | Enum(), Int():
+            return f"`{name}(...)`"
+        case Int(), Int():
+            return f"`{name}(...)` refuses what does not fit; `{name}(..., saturate)` and `{name}(..., wrap)` do not"
+        case Float(), Int():
+            return f"`{name}(...)` refuses fractions; `{name}(..., round)`, `{name}(..., truncate)` and `{name}(..., saturate)` do not"
+        case Int() | Float(), Float():
+            return f"`{name}(...)` rounds to the nearest"
+        case Int(), Enum(name=enum):
+            return f"`{enum}(...)` refuses a number that it does not name"
+        case Int(), Bool():
+            return "`bool(...)` refuses all but 0 and 1"
+        case _:
+            return ""
+
+
+def other_way(source: Type, target: Type) -> str:
+    """What to do where a whole value has another type; empty where nothing helps."""
+    match source, target:
+        case ((Map() | Array()), (Map() | Array())) if Map in (type(source), type(target)):
+            return "set the `key` and the `value` of each entry: `.a[].key = .b[].key` and `.a[].value = .b[].value`"
+        case Array(), Array():
+            return "assign its elements in a loop, and convert each"
+        case Struct(), Struct():
+            return "assign its fields one by one"
+        case _:
+            return ""
+
+
+def as_int64(value: Expr) -> Expr | None:
+    """An integer of any type but uint64 as int64."""
+    return convert(value, INT64) if isinstance(value.type, Int) else None

@@ -1,0 +1,1 @@
+"""What mappings import, and where it is found."""

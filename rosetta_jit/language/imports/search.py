@@ -1,0 +1,195 @@
+"""The search path: where a mapping and what it imports are found.
+
+In this order: texts given by the caller, the importing file's folder, the user's folders (argument, then the environment
+variable ROSETTA_JIT_PATH), and what is shipped with the package.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import field, replace
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.source import Source
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.sha import sha256
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosetta_jit.parsing.idl import Load
+
+MAX_FILE_BYTES = 4 << 20
+MAX_TEXT_BYTES = 64 << 20
+"""Of all files that one program is made from."""
+ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
+
+
+@dataclass(frozen=True, slots=True)
+class Lookup:
+    """One file that was asked for: by which name, by whom, where it was, and the SHA-256 of its text."""
+
+    asked: str
+    importer: str | None
+    found: str
+    digest: str
+
+
+@dataclass(slots=True)
+class Reading:
+    """Collects what was read to make a program, for the key of the kernel cache."""
+
+    lookups: list[Lookup] = field(default_factory=list[Lookup])
+    size_bytes: int = 0
+
+    def record(self, asked: str, importer: Source | None, found: Source) -> None:
+        data = found.text.encode()
+        self.size_bytes += len(data)
+        if self.size_bytes > MAX_TEXT_BYTES:
+            raise SchemaError((words.texts_too_large(found.name, MAX_TEXT_BYTES),))
+        digest = sha256(data).hexdigest()
+        self.lookups.append(Lookup(asked, importer.name if importer else None, found.name, digest))
+
+
+@dataclass(frozen=True, slots=True)
+class SearchPath:
+    """Folders and in-memory files, in the order in which they are searched.
+
+    Parameters
+    ----------
+    folders
+        Searched after ``files`` and the importing file's folder.
+    files
+        Names and texts, as if they lay on the search path.
+    """
+
+    folders: tuple[Path, ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        folders: Iterable[str | os.PathLike[str]] = (),
+        *,
+        files: Mapping[str, str] | None = None,
+        environment: Mapping[str, str] = os.environ,
+    ) -> SearchPath:
+        """The user's search path: ``folders``, those of the environment, then the shipped ones."""
+        named = [folder for folder in environment.get(ENVIRONMENT_VARIABLE, "").split(os.pathsep) if folder]
+        users = tuple(Path(folder) for folder in (*folders, *named))
+        return cls(users + shipped_folders(), tuple((files or {}).items()))
+
+    def find(self, name: str, importer: Source | None = None) -> Source | None:
+        """The file that an import names, or None.
+
+        Raises
+        ------
+        SchemaError
+            The name leaves the search path, or the file or text is too large or no text.
+        """
+        why = refusal(name)
+        if why:
+            raise SchemaError((words.import_name(None, name, why),))
+        texts = dict(self.files)
+        if name in texts:
+            return _given(name, texts[name])
+        beside = (Path(importer.name).parent,) if importer and importer.name not in texts else ()
+        candidates = (folder / name for folder in (*beside, *self.folders))
+        return next((_read(path) for path in candidates if _is_file(path)), None)
+
+    def preferred(self, lookup: Lookup) -> tuple[str, ...]:
+        """The paths at which a file would have been found before the one that was."""
+        if lookup.importer is None:
+            return ()
+        beside = () if lookup.importer in dict(self.files) else (Path(lookup.importer).parent,)
+        candidates = [str(folder / lookup.asked) for folder in (*beside, *self.folders)]
+        return tuple(candidates[: candidates.index(lookup.found)]) if lookup.found in candidates else ()
+
+    def open(self, path: str | os.PathLike[str]) -> Source:
+        """The mapping that the user names: a text in memory, a path of any form, or a name on the search path.
+
+        Raises
+        ------
+        MappingError
+            There is none, or it cannot be read.
+        """
+        name = os.fspath(path)
+        texts = dict(self.files)
+        try:
+            if name in texts:
+                return _given(name, texts[name])
+            found = _read(Path(name)) if _is_file(Path(name)) else None if refusal(name) else self.find(name)
+        except SchemaError as error:
+            raise MappingError(error.diagnostics) from error
+        if found is None:
+            raise MappingError((words.mapping_not_found(name, map(str, self.folders)),))
+        return found
+
+    def loader(self, reading: Reading, importer: Source | None = None) -> Load:
+        """`find` as front ends take it: every file that they get is recorded in ``reading``."""
+
+        def load(name: str) -> Source | None:
+            found = self.find(name, importer)
+            if found is not None:
+                reading.record(name, importer, found)
+            return found
+
+        return load
+
+
+def refusal(name: str) -> str:
+    """Why a name must not be imported; empty if it may be."""
+    parts = PurePosixPath(name).parts
+    if not parts or not name.isprintable():
+        return "it is not a file name"
+    if name.startswith(("/", "~")) or "\\" in name or ":" in parts[0]:
+        return "it is not relative"
+    if ".." in parts:
+        return "it leaves the search path"
+    return ""
+
+
+def shipped_folders() -> tuple[Path, ...]:
+    """The IDL files and mappings of the package: in its data folder when installed, else those of the checkout."""
+    package = Path(__file__).parents[2]
+    root = package / "share" if (package / "share").is_dir() else package.parent
+    return (root / "idl", root / "mappings")
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that the file system cannot have
+        return False
+
+
+def _read(path: Path) -> Source:
+    name = str(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_FILE_BYTES + 1)
+    except OSError as error:
+        why = error.strerror or "unknown reason"
+        raise SchemaError((words.file_unreadable(name, why),)) from error
+    return _text(name, data)
+
+
+def _given(name: str, text: str) -> Source:
+    """A text that the caller gave, which Python may have let him make of halves of characters."""
+    try:
+        data = text[: MAX_FILE_BYTES + 1].encode()
+    except UnicodeEncodeError as error:
+        raise SchemaError((words.file_not_text(name),)) from error
+    return replace(_text(name, data), text=text)
+
+
+def _text(name: str, data: bytes) -> Source:
+    if len(data) > MAX_FILE_BYTES:
+        raise SchemaError((words.file_too_large(name, MAX_FILE_BYTES),))
+    try:
+        return Source(name, data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise SchemaError((words.file_not_text(name),)) from error

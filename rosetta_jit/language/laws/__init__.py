@@ -1,0 +1,1 @@
+"""What a mapping guarantees of values that go there and come back."""

@@ -1,0 +1,181 @@
+"""What a mapping in both directions guarantees: which values come back as they were, which are rounded, and what is lost.
+
+Whatever cannot be shown counts as lost. The laws are about messages and holders that the first direction does not refuse; what the second
+one may refuse is lost.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.language.algebra.equality import given_back, reads_other, same_number
+from rosetta_jit.language.algebra.normal_form import normal
+from rosetta_jit.language.check.left_out import untouched
+from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
+from rosetta_jit.language.laws.roundtrip import Result, Trip, UnfollowedError, Way, ways
+from rosetta_jit.language.places import field_names, shown_names, shown_place
+from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, When
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.language.laws.chain import Outcome
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.source import Span
+
+ORDINARY = (1e-30, 1e30)
+"""Magnitudes beyond which a bound is not shown."""
+
+MAX_WORK = 200_000
+"""Rules of the second direction, times ways through the first one, that are followed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """A field, and why it does not come back; ``""`` stands for the message."""
+
+    place: str
+    why: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """What comes back through both directions.
+
+    ``rounded`` says of each field that is not exactly the same how far off it may be: see `rosetta_jit.language.laws.chain.Rounding`.
+    """
+
+    rounded: tuple[tuple[str, Rounding], ...]
+    losses: tuple[Loss, ...]
+
+    @property
+    def kind(self) -> Literal["exact", "rounded", "lossy"]:
+        return "lossy" if self.losses else "rounded" if self.rounded else "exact"
+
+    def __str__(self) -> str:
+        if self.losses:
+            return "\n  ".join(["lossy", *(f"{loss.place or 'the message'}: {loss.why}" for loss in self.losses)])
+        if not self.rounded:
+            return "exact inverse"
+        return "\n  ".join(["inverse up to rounding", *(f"{place}: {shown(rounding)}" for place, rounding in self.rounded)])
+
+
+@dataclass(frozen=True, slots=True)
+class Laws:
+    """``messages`` is about encode(decode(message)), ``holders`` about decode(encode(holder))."""
+
+    messages: Law
+    holders: Law
+
+    def __str__(self) -> str:
+        return f"messages: {self.messages}\nholders: {self.holders}"
+
+
+def laws_of(unpack: tuple[Rule, ...], pack: tuple[Rule, ...], holder: Message, wire: Message) -> Laws:
+    """The laws of the rules of both directions."""
+    there, back = normal(unpack), normal(pack)
+    return Laws(_law(there, back, wire), _law(back, there, holder))
+
+
+def shown(rounding: Rounding) -> str:
+    """A rounding in words."""
+    text = f"{rounding.ulp} ulp of float{rounding.bits}"
+    floor = f", of {rounding.floor:g} for smaller values" if rounding.floor > ORDINARY[0] else ""
+    limit = f", up to {rounding.limit:.3g}" if rounding.limit < ORDINARY[1] else ""
+    return text + floor + limit
+
+
+def _law(first: tuple[Rule, ...], second: tuple[Rule, ...], message: Message) -> Law:
+    try:
+        found = ways(first)
+    except UnfollowedError:
+        return Law((), (Loss("", "there are too many ways through the rules to follow them"),))
+    if len(found) * _size(second) > MAX_WORK:
+        return Law((), (Loss("", "there are too many rules to follow them"),))
+    rounded: dict[str, Rounding] = {}
+    losses: dict[tuple[str, str], Loss] = {}
+    for way in found:
+        for place, outcome, span in _outcomes(way, second, message):
+            match outcome:
+                case Rounding():
+                    rounded[place] = _worse(rounded.get(place, outcome), outcome)
+                case Lost(why):
+                    losses.setdefault((place, why), Loss(place, why, span))
+                case None:
+                    pass
+    return Law(tuple(rounded.items()), tuple(losses.values()))
+
+
+def _size(rules: tuple[Rule, ...]) -> int:
+    total = 0
+    for rule in rules:
+        match rule:
+            case For(body=body):
+                total += _size(body)
+            case When(_, then, otherwise):
+                total += 1 + _size(then) + _size(otherwise)
+            case _:
+                total += 1
+    return total
+
+
+def _worse(left: Rounding, right: Rounding) -> Rounding:
+    bits = 32 if 32 in (left.bits, right.bits) else 64
+    return Rounding(max(left.ulp, right.ulp), bits, max(left.floor, right.floor), min(left.limit, right.limit))
+
+
+def _outcomes(way: Way, second: tuple[Rule, ...], message: Message) -> Iterator[tuple[str, Outcome, Span | None]]:
+    """What becomes of each field on one way; whether the message can go back at all."""
+    trip = Trip(way)
+    results = list(trip.run(second))
+    if trip.refused:
+        yield "", Lost("some messages are rejected on the way back"), None
+        return
+    for refusal in trip.refusals:
+        yield "", Lost(f'some are refused on the way back: "{refusal.text}"'), refusal.span
+    for result in results:
+        yield _shown(result), _outcome(result, trip), result.span
+    touched = {field_names(result.place) for result in results}
+    for names in untouched(touched, message, message.root, ()):
+        yield shown_names(names, message), Lost("no rule sets it on the way back"), None
+
+
+def _shown(result: Result) -> str:
+    text = shown_place(result.place.steps)
+    return f"len({text})" if result.is_length else text
+
+
+def _outcome(result: Result, trip: Trip) -> Outcome:
+    """What becomes of one field, which is lost where its rule may refuse it."""
+    found = _value_outcome(result, trip)
+    is_lost = isinstance(found, Lost) or not result.may_be_refused
+    return found if is_lost else Lost("it is refused where a conversion does not take it")
+
+
+def _value_outcome(result: Result, trip: Trip) -> Outcome:
+    trip.ranges = result.ranges
+    place, value = result.place, result.value
+    goal = LenOf(place) if result.is_length else Access(place, place.type)
+    value = None if value is None else given_back(trip.towards(value, goal))
+    match value:
+        case None:
+            return Lost("it is left out: 0, empty or absent")
+        case Local("?"):
+            return Lost("it cannot be shown by which block of a `when` it comes back")
+        case Access(other) | LenOf(other) if other.side != place.side:
+            is_element = any(isinstance(step, IndexStep) for step in other.steps)
+            return None if value in trip.equal_to(goal) else UNSHOWN if is_element else Lost("nothing of it is kept")
+        case _ if trip.is_same(value, goal) or value == goal or any(value == other for other in trip.equal_to(goal)):
+            return None
+        case Const(constant) if any(isinstance(other, Const) and other.value == constant for other in trip.equal_to(goal)):
+            return None
+        case Const(constant):
+            return Lost(f"it becomes {constant!r}")
+        case _ if reads_other(value, place.side):
+            return Lost("it comes back as something that does not follow from it")
+        case _:
+            known = any(same_number(value, each) for each in (goal, *trip.equal_to(goal)))
+            return None if known else come_back(value, goal)

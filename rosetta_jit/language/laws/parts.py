@@ -1,0 +1,107 @@
+"""Values that are taken apart and put together again: what is left of them, for both directions one after the other.
+
+floor_divide(x · c + y, c) = x      modulo(x · c + y, c) = y      where 0 ≤ y < c is known
+floor_divide(x, c) · c + modulo(x, c) = x
+nanoseconds(x, y) as x · 10⁹ + y, of which 0 ≤ y < 10⁹ is checked
+seconds(iso8601(x, y)) = x          fraction(iso8601(x, y)) = y
+iso8601(seconds(x), fraction(x)) = iso8601(nanoseconds(x)), and timestamp likewise
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Call, Const, Convert, TextCall
+from rosetta_jit.model.types import Int
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.typed import Expr
+
+SECOND, ZERO = Const(10**9, INT64), Const(0, INT64)
+
+Truth = Callable[["Expr"], "bool | None"]
+
+Parts = tuple["Expr", "Expr", Const]
+"""A number as x · c + y, with x, y and c."""
+
+
+def simplified(expr: Expr, truth: Truth) -> Expr | None:
+    """What an expression of parts comes to; None where that does not follow. ``truth`` says of conditions whether they hold."""
+    match expr:
+        case Call(("floor_divide" | "modulo") as function, (number, Const() as divisor)):
+            found = _sum(bare(number), truth)
+            return None if found is None or found[2].value != divisor.value else found[0 if function == "floor_divide" else 1]
+        case TextCall(("seconds" | "fraction") as function, (TextCall("iso8601", (whole, behind)),)):
+            return whole if function == "seconds" else behind
+        case TextCall("nanoseconds", (whole, behind)):
+            return _whole(bare(whole), bare(behind), SECOND)
+        case TextCall("iso8601" | "timestamp", (whole, behind)):
+            return _moment(expr, bare(whole), bare(behind))
+        case Binary("+", left, right):
+            return _added(bare(left), bare(right)) or _added(bare(right), bare(left))
+        case _:
+            return None
+
+
+def bare(expr: Expr) -> Expr:
+    """An integer without the conversions that leave it the same number."""
+    while (
+        isinstance(expr, Convert) and expr.rule in {"widen", "exact"} and isinstance(expr.type, Int) and isinstance(expr.operand.type, Int)
+    ):
+        expr = expr.operand
+    return expr
+
+
+def _sum(number: Expr, truth: Truth) -> Parts | None:
+    match number:
+        case TextCall("nanoseconds", (whole, behind)):
+            return whole, behind, SECOND
+        case Binary("+", left, right):
+            for product, rest in ((bare(left), right), (bare(right), left)):
+                match product:
+                    case Binary("*", inner, Const() as factor) | Binary("*", Const() as factor, inner) if _is_digit(rest, factor, truth):
+                        return inner, rest, factor
+                    case _:
+                        pass
+            return None
+        case _:
+            return None
+
+
+def _is_digit(value: Expr, factor: Const, truth: Truth) -> bool:
+    """Whether a value is known to be from 0 to below a number."""
+    number = bare(value)
+    for each in (number, Convert(number, INT64, "widen")):  # as it is compared with what its type holds, or does not
+        below = Binary("<", each, replace(ZERO, type=each.type), BOOL)
+        above = Binary(">=", each, replace(factor, type=each.type), BOOL)
+        if truth(below) is False and truth(above) is False:
+            return True
+    return False
+
+
+def _moment(call: TextCall, whole: Expr, behind: Expr) -> Expr | None:
+    """What both parts of one moment make: where they do not fit an int64 of nanoseconds, this is not computed."""
+    match whole, behind:
+        case TextCall("seconds", (moment,)), TextCall("fraction", (other,)) if moment == other:
+            return replace(call, arguments=(TextCall("nanoseconds", (moment,), INT64),))
+        case _:
+            return None
+
+
+def _added(product: Expr, rest: Expr) -> Expr | None:
+    match product:
+        case Binary("*", inner, Const() as factor) | Binary("*", Const() as factor, inner):
+            return _whole(bare(inner), rest, factor)
+        case _:
+            return None
+
+
+def _whole(high: Expr, low: Expr, factor: Const) -> Expr | None:
+    """A number of its quotient and what that leaves."""
+    match high, low:
+        case Call("floor_divide", (number, Const(by))), Call("modulo", (other, Const(also))) if number == other:
+            return number if by == also == factor.value else None
+        case _:
+            return None

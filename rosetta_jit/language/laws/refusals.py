@@ -1,0 +1,51 @@
+"""Conversions on the way back that may refuse what came through the first direction.
+
+`int8(x)` refuses a number that does not fit, and a fraction. The conversion of a whole value is left out here: where that value is known
+to come back, it fits.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.algebra.normal_form import rebuilt
+from rosetta_jit.language.conversions import bounds, same
+from rosetta_jit.language.laws.chain import come_back, field_in
+from rosetta_jit.language.typed import Convert
+from rosetta_jit.model.types import Float, Int
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rosetta_jit.language.typed import Expr
+
+
+def may_refuse(value: Expr, of: Callable[[Expr], Expr]) -> bool:
+    """Whether a conversion within the value of a rule may refuse; ``of`` gives an expression as one of what the first direction read."""
+    return any(not _fits(each, of) for each in _exact(value) if each is not value)
+
+
+def _exact(expr: Expr) -> Iterator[Convert]:
+    if (
+        isinstance(expr, Convert)
+        and expr.rule == "exact"
+        and isinstance(expr.type, Int | Float)
+        and isinstance(expr.operand.type, Int | Float)
+    ):
+        yield expr
+    below: list[Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        yield from _exact(part)
+
+
+def _fits(conversion: Convert, of: Callable[[Expr], Expr]) -> bool:
+    made = of(conversion)
+    field = field_in(made)
+    if field is not None and same(field.type, conversion.type) and come_back(made, field) is None:
+        return True
+    source = of(conversion.operand).type
+    if not isinstance(source, Int) or not isinstance(conversion.type, Int):
+        return not isinstance(made, Convert) or made.rule != "exact"
+    (low, high), (least, most) = bounds(source), bounds(conversion.type)
+    return least <= low and high <= most

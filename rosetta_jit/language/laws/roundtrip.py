@@ -1,0 +1,443 @@
+"""One direction after the other: what each rule of the second gives, as expressions of what the first one read.
+
+The first direction is followed along each of its ways. Its rules say what the places between have; what it rejects, and the conditions of
+the way, are known. The second direction then decides its own conditions, as far as they follow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.algebra.equality import digit, fact, has_local, reads_other, same_number, same_place, same_ranges, unify
+from rosetta_jit.language.algebra.normal_form import placed, rebuilt, renamed
+from rosetta_jit.language.algebra.quotients import Facts
+from rosetta_jit.language.conversions import adapt, same
+from rosetta_jit.language.laws.chain import come_back
+from rosetta_jit.language.laws.loop_orders import round_of
+from rosetta_jit.language.laws.parts import simplified
+from rosetta_jit.language.laws.refusals import may_refuse
+from rosetta_jit.language.places import field_names
+from rosetta_jit.language.typed import (
+    BOOL,
+    Access,
+    Assign,
+    Binary,
+    Call,
+    Choice,
+    Const,
+    Convert,
+    Default,
+    FieldStep,
+    For,
+    Given,
+    Has,
+    IndexStep,
+    LenOf,
+    Local,
+    Nearest,
+    Reject,
+    SetLength,
+    TextCall,
+    Unary,
+    When,
+)
+from rosetta_jit.model.expr import Literal
+from rosetta_jit.model.types import Array, Float, Map, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.language.algebra.equality import Ranges
+    from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.model.expr import Side
+    from rosetta_jit.source import Span
+
+MAX_WAYS = 64
+"""Ways through the first direction that are followed."""
+
+MAX_LOOKED = 300
+"""Rules for one field that are looked at."""
+
+MAX_ORDERED = 1_000
+"""Rules in loops that are compared with other loops."""
+
+Known = tuple[tuple["Expr", bool, "Ranges"], ...]
+"""Conditions, whether they hold, and the loops in all of whose rounds."""
+
+
+class UnfollowedError(Exception):
+    """More ways than `MAX_WAYS`; never leaves the laws."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way through a direction: what is known on it, and the rules that run."""
+
+    known: Known
+    rules: tuple[Rule, ...]
+
+
+def ways(rules: tuple[Rule, ...]) -> list[Way]:
+    """Every way through a direction that is not rejected.
+
+    Raises
+    ------
+    UnfollowedError
+    """
+    found = [Way((), ())]
+    for rule in rules:
+        parts = _ways_of(rule)
+        if len(found) * len(parts) > MAX_WAYS:
+            raise UnfollowedError
+        found = [Way((*before.known, *part.known), (*before.rules, *part.rules)) for before in found for part in parts]
+    return found
+
+
+def _ways_of(rule: Rule) -> list[Way]:
+    match rule:
+        case When(condition, then, otherwise):
+            blocks = [(condition, True, then), (condition, False, otherwise)]
+            return [Way(((known, holds, ()), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
+        case For(_, start, stop, body):
+            found = ways(body)
+            around = [tuple((known, holds, ((start, stop), *ranges)) for known, holds, ranges in way.known) for way in found]
+            return [Way(known, (replace(rule, body=way.rules),)) for known, way in zip(around, found, strict=True)]
+        case Reject():
+            return []
+        case _:
+            return [Way((), (rule,))]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a place has when both directions are done, in loops over ``ranges``; None where that does not follow.
+
+    ``may_be_refused`` is whether a conversion within the rule is not known to take all that came through the first direction.
+    """
+
+    place: Place
+    is_length: bool
+    value: Expr | None
+    span: Span | None
+    ranges: Ranges
+    may_be_refused: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Write:
+    """What a rule sets, in loops over these ranges."""
+
+    is_length: bool
+    place: Place
+    value: Expr
+    ranges: Ranges
+
+
+class Trip:
+    """The second direction, run on what one way through the first one leaves."""
+
+    """``by_round`` is whether rounds of loops take different ways, ``left`` how many more rules are compared with other loops.
+
+    ``refusals`` are the rejections of the text for which nothing shows that what came through the first direction passes them.
+    """
+
+    def __init__(self, way: Way) -> None:
+        self.writes: dict[tuple[str, ...], list[_Write]] = {}
+        for write in _writes(way.rules, ()):
+            self.writes.setdefault(field_names(write.place), []).append(write)
+        places = [found[0].place for found in self.writes.values()]
+        self.origin: Side = "holder" if places and places[0].side == "wire" else "wire"
+        self.plain: Facts | None = None
+        self.ranges: Ranges = ()
+        self.truths: dict[Expr, tuple[bool, Ranges]] = {}
+        self.equal: dict[Expr, list[tuple[Expr, Ranges]]] = {}
+        for condition, holds, ranges in way.known:
+            self.know(condition, ranges, holds=holds)
+        self.refused = False
+        self.refusals: list[Reject] = []
+        self.by_round = any(has_local(condition) for condition, _, _ in way.known)
+        self.left = MAX_ORDERED
+
+    def know(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
+        """What follows from a condition, in all rounds of loops over ``ranges``."""
+        match condition:
+            case Unary("not", operand):
+                self.know(operand, ranges, holds=not holds)
+            case Binary("and" | "or" as operator, left, right) if (operator == "and") == holds:
+                self.know(left, ranges, holds=holds)
+                self.know(right, ranges, holds=holds)
+            case Binary("==" | "!=" as operator, left, right):
+                if (operator == "==") == holds:
+                    self.same(left, right, ranges)
+                self.true(replace(condition, operator="=="), ranges, holds=(operator == "==") == holds)
+                self.true(replace(condition, operator="!="), ranges, holds=(operator == "!=") == holds)
+            case Binary("differs", left, right) if not holds:
+                self.same(left, right, ranges)
+                self.true(condition, ranges, holds=holds)
+            case _:
+                self.true(condition, ranges, holds=holds)
+
+    def same(self, left: Expr, right: Expr, ranges: Ranges) -> None:
+        self.plain = None
+        self.equal.setdefault(left, []).append((right, ranges))
+        self.equal.setdefault(right, []).append((left, ranges))
+
+    def true(self, condition: Expr, ranges: Ranges, *, holds: bool) -> None:
+        self.truths[_without_span(condition)] = holds, ranges
+
+    def applies(self, expr: Expr, ranges: Ranges) -> bool:
+        """Whether what is known of each round of some loops is known in this round: where the loops are these."""
+        return not has_local(expr) or same_ranges(ranges, self.ranges[: len(ranges)], self.always())
+
+    def truth(self, condition: Expr) -> bool | None:
+        """Whether a condition is known to hold."""
+        holds, ranges = self.truths.get(_without_span(condition), (None, ()))
+        return holds if holds is None or self.applies(condition, ranges) else None
+
+    def equal_to(self, expr: Expr) -> list[Expr]:
+        """What an expression is known to be equal to."""
+        return [other for other, ranges in self.equal.get(expr, []) if self.applies(Binary("==", expr, other, BOOL), ranges)]
+
+    def run(self, rules: tuple[Rule, ...]) -> Iterator[Result]:
+        for rule in rules:
+            match rule:
+                case Assign(place, value) | SetLength(place, value):
+                    where = placed(place, self.of)
+                    made = self.of(_changed(rule, value))
+                    yield Result(where, isinstance(rule, SetLength), made, rule.span, self.ranges, may_refuse(value, self.of))
+                case Default(place):
+                    yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
+                case For(_, start, stop, body):
+                    around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
+                    yield from self.run(body)
+                    self.ranges = around
+                case When(condition, then, otherwise):
+                    yield from self.when(self.of(condition), then, otherwise)
+                case Reject():
+                    self.refused = True
+                case _:
+                    pass
+
+    def when(self, condition: Expr, then: tuple[Rule, ...], otherwise: tuple[Rule, ...]) -> Iterator[Result]:
+        match condition:
+            case Const(bool(holds)):
+                yield from self.run(then if holds else otherwise)
+            case _ if all(isinstance(rule, Reject) for rule in then):
+                self.refusals += [rule for rule in then if isinstance(rule, Reject) and rule.written]
+                self.know(condition, self.ranges, holds=False)
+                yield from self.run(otherwise)
+            case _ if otherwise and all(isinstance(rule, Reject) for rule in otherwise):
+                self.refusals += [rule for rule in otherwise if isinstance(rule, Reject) and rule.written]
+                self.know(condition, self.ranges, holds=True)
+                yield from self.run(then)
+            case _:
+                for write in _writes((*then, *otherwise), ()):
+                    yield Result(write.place, is_length=False, value=Local("?"), span=None, ranges=self.ranges)
+
+    # --- expressions ---------------------------------------------------------------------------------------------------
+
+    def of(self, expr: Expr) -> Expr:
+        """An expression of the places between, as one of what the first direction read."""
+        match expr:
+            case Access(place):
+                return self.read(replace(expr, place=placed(place, self.of)), length=False)
+            case LenOf(place):
+                return self.read(replace(expr, place=placed(place, self.of)), length=True)
+            case Has(place) if self.is_set(placed(place, self.of)):
+                return Const(value=True, type=BOOL)
+            case _:
+                return self.simple(rebuilt(expr, self.of))
+
+    def read(self, expr: Access | LenOf, *, length: bool) -> Expr:
+        """What the first direction gave a place."""
+        place = expr.place
+        last = place.steps[-1] if place.steps else None
+        if isinstance(last, FieldStep) and isinstance(last.field.constant, Literal):
+            return Const(last.field.constant.value, place.type)
+        names = field_names(place)
+        found = list(self.matching(names, place, length=length)) or list(self.ordered(names, place, length=length))
+        if len(found) == 1:
+            return self.simple(found[0])
+        for count in range(len(names) if not found else 0, 0, -1):
+            around = [self.around(place, write) for write in self.writes.get(names[:count], []) if not write.is_length]
+            inner = [each for each in around if each is not None]
+            if len(inner) == 1:
+                return LenOf(inner[0]) if length else Access(inner[0], place.type)
+        return expr
+
+    def is_set(self, place: Place) -> bool:
+        """Whether the first direction sets a number or a text, which then is there."""
+        is_plain = not isinstance(place.type, Array | Struct | Union | Map)
+        return is_plain and bool(list(self.matching(field_names(place), place, length=False)))
+
+    def matching(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
+        alike: list[tuple[_Write, Expr]] = []
+        for write in self.writes.get(names, [])[:MAX_LOOKED]:
+            bound: dict[str, Expr] = {}
+            if write.is_length == length and (unify(write.place.steps, place.steps, bound) or self.alike(write.place, place, bound)):
+                alike.append((write, renamed(write.value, bound)))
+        # Where several loops set such an element, it is the one over the same numbers that sets this.
+        mine = [each for each in alike if same_ranges(each[0].ranges, self.ranges)] if len(alike) > 1 else alike
+        yield from (value for _, value in mine)
+
+    def ordered(self, names: tuple[str, ...], place: Place, *, length: bool) -> Iterator[Expr]:
+        """What loops that run in another order set an element to."""
+        side: Side = "wire" if place.side == "holder" else "holder"
+        indices = [step.index for step in place.steps if isinstance(step, IndexStep)]
+        bounds = [each for bounds in self.ranges for each in bounds]
+        if self.by_round or any(reads_other(each, side) for each in (*indices, *bounds)):
+            return
+        facts = self.facts(side)
+        for write in self.writes.get(names, []):
+            if write.is_length == length and self.left > 0:
+                self.left -= 1
+                bound = round_of(write.place, write.ranges, place, self.ranges, facts)
+                if bound is not None:
+                    yield renamed(write.value, bound)
+
+    def facts(self, side: Side) -> Facts:
+        """What is known of integers of the side that the first direction reads."""
+        pairs = [(expr, other) for expr in self.equal if isinstance(expr, Access | LenOf) for other in self.equal_to(expr)]
+        found = [fact(*pair) for pair in pairs if not any(reads_other(each, side) for each in pair)]
+        digits = [digit(each, self.truth) for each in self.truths if not reads_other(each, side)]
+        return Facts(tuple(each for each in found if each is not None), tuple(each for each in digits if each is not None))
+
+    def always(self) -> Facts:
+        """What lengths and integers are known to be whatever the round."""
+        if self.plain is None:
+            pairs = [(expr, other) for expr, others in self.equal.items() if isinstance(expr, Access | LenOf) for other, _ in others]
+            found = [fact(*pair) for pair in pairs if not any(has_local(each) or reads_other(each, self.origin) for each in pair)]
+            self.plain = Facts(tuple(each for each in found if each is not None))
+        return self.plain
+
+    def is_same(self, value: Expr, goal: Access | LenOf) -> bool:
+        """Whether a value is what lies at a place, whatever its indices look like."""
+        side = goal.place.side
+        if reads_other(value, side):
+            return False
+        facts = self.facts(side)
+        return same_place(value, goal, facts) or same_number(value, goal, facts)
+
+    def towards(self, value: Expr, goal: Access | LenOf) -> Expr:
+        """A value, with the place that it is to come back to named as there."""
+        if isinstance(value, Access):
+            return goal if self.is_same(value, goal) else value
+        return rebuilt(value, lambda part: self.towards(part, goal))
+
+    @staticmethod
+    def alike(write: Place, place: Place, bound: dict[str, Expr]) -> bool:
+        """Whether a place is the one that a rule sets in the round of the same number, whatever their indices look like."""
+        side: Side = "wire" if write.side == "holder" else "holder"
+        pairs = [
+            (a.index, b.index)
+            for a, b in zip(write.steps, place.steps, strict=False)
+            if isinstance(a, IndexStep) and isinstance(b, IndexStep)
+        ]
+        bound.clear()
+        return len(write.steps) == len(place.steps) and all(same_number(a, b) and not reads_other(b, side) for a, b in pairs)
+
+    def around(self, place: Place, write: _Write) -> Place | None:
+        """A place within one that was assigned as a whole, where it came from."""
+        bound: dict[str, Expr] = {}
+        size = len(write.place.steps)
+        if not isinstance(write.value, Access) or size > len(place.steps) or not unify(write.place.steps, place.steps[:size], bound):
+            return None
+        source = renamed(write.value, bound)
+        assert isinstance(source, Access)
+        return replace(source.place, steps=(*source.place.steps, *place.steps[size:]), type=place.type)
+
+    def simple(self, expr: Expr) -> Expr:
+        """An expression in place of which something simpler can stand."""
+        known = self.truth(expr)
+        if known is not None:
+            return Const(known, BOOL)
+        match expr:
+            case Convert(Const() as constant, type_, rule) if rule in {"widen", "exact", "nearest"}:
+                return adapt(constant, type_) or expr
+            case Unary("not", Const(bool(value))):
+                return Const(not value, BOOL)
+            case Binary("differs", left, right) if left == right:
+                return Const(value=False, type=BOOL)
+            case Binary("differs", Const(a), Const(b)):
+                return Const(repr(a) != repr(b), BOOL)
+            case Binary("==" | "!=" as operator, left, right) if left == right and not isinstance(left.type, Float):
+                return Const(operator == "==", BOOL)
+            case Binary("==" | "!=" as operator, Const(a), Const(b)):
+                return Const((a == b) == (operator == "=="), BOOL)
+            case Binary("and" | "or" as operator, left, right):
+                return _logic(operator == "and", left, right, expr)
+            case Choice(cases, otherwise):
+                return _decided(cases, otherwise, expr)
+            case Convert() | Unary() | Binary() | Nearest():
+                return _itself(expr) or simplified(expr, self.truth) or expr
+            case Call() | TextCall():
+                return simplified(expr, self.truth) or expr
+            case _:
+                return expr
+
+
+def _changed(rule: Assign | SetLength, value: Expr) -> Expr:
+    """The value of a rule; one within which units change is not followed."""
+    return value if isinstance(rule, SetLength) or rule.change is None else Given("in other units", (), value.type)
+
+
+def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:
+    """What rules set."""
+    for rule in rules:
+        match rule:
+            case Assign(place, value) | SetLength(place, value):
+                yield _Write(isinstance(rule, SetLength), place, _changed(rule, value), ranges)
+            case For(_, start, stop, body):
+                yield from _writes(body, (*ranges, (start, stop)))
+            case When(_, then, otherwise):
+                yield from _writes((*then, *otherwise), ranges)
+            case _:
+                pass
+
+
+def _logic(is_and: bool, left: Expr, right: Expr, expr: Expr) -> Expr:
+    match left, right:
+        case (Const(bool(value)), other) | (other, Const(bool(value))):
+            return other if value == is_and else Const(value, BOOL)
+        case _:
+            return expr
+
+
+def _decided(cases: tuple[tuple[Expr, Expr], ...], otherwise: Expr | None, choice: Choice) -> Expr:
+    """A choice without the cases that cannot be."""
+    left: list[tuple[Expr, Expr]] = []
+    for condition, value in cases:
+        match condition:
+            case Const(bool(holds)):
+                if holds:
+                    return replace(choice, cases=tuple(left), otherwise=value) if left else value
+            case _:
+                left.append((condition, value))
+    if not left and otherwise is not None:
+        return otherwise
+    return replace(choice, cases=tuple(left), otherwise=otherwise)
+
+
+def _itself(expr: Expr) -> Expr | None:
+    """The field that an expression is, when all that is done to it is undone."""
+    leaf: Expr | None = expr
+    while leaf is not None and not isinstance(leaf, Access | LenOf):
+        leaf = _operand(leaf)
+    return leaf if leaf is not None and same(leaf.type, expr.type) and come_back(expr, leaf) is None else None
+
+
+def _operand(expr: Expr) -> Expr | None:
+    match expr:
+        case Convert(operand) | Unary(_, operand) | Nearest(operand) | Binary(_, operand, Const()) | Binary(_, Const(), operand):
+            return operand
+        case Call("radians" | "degrees", (argument,)) | Call("divide", (argument, Const())):
+            return argument
+        case _:
+            return None
+
+
+def _without_span(expr: Expr) -> Expr:
+    """An expression that is the same wherever it is written."""
+    return replace(expr, span=None) if isinstance(expr, Binary) else expr

@@ -1,0 +1,1 @@
+"""Parameters of mappings: values that are given when a program is made."""

@@ -1,0 +1,1 @@
+"""Text of mappings and side files of units → the model."""

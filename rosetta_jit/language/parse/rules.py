@@ -1,0 +1,277 @@
+"""Rules and expressions of a mapping: the parser's tree → the model.
+
+The walks are recursive; the caller has bounded the depth of the tree.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.language.parse.templates import pieces_of
+from rosetta_jit.model.expr import (
+    Binary,
+    Call,
+    Choice,
+    Each,
+    Index,
+    Item,
+    Keyed,
+    Len,
+    List,
+    Literal,
+    Member,
+    Name,
+    Path,
+    Pick,
+    Slice,
+    Unary,
+)
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Parameter, Reject, Relation, SameNames, SetLength, Via, When
+from rosetta_jit.parsing.lalr import Token, Tree
+from rosetta_jit.source import Span
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.expr import Expr, Operator, Side, Step
+    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.source import Source
+
+ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
+
+OTHERWISE = ("otherwise", "otherwise_of_both")
+
+MAX_DIGITS = 400
+"""The longest number that is looked at: a float64 has at most 309 digits before its point."""
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """Which side the rules of a block write and which they read, and where their problems go."""
+
+    source: Source
+    target: Side
+    origin: Side
+    problems: list[Diagnostic]
+
+    def span(self, node: Tree | Token) -> Span:
+        if isinstance(node, Token):
+            return Span(self.source, node.start_pos, node.end_pos)
+        return Span(self.source, node.start_pos, node.end_pos)
+
+
+def read_rule(tree: Tree, context: Context) -> Rule:
+    """One rule: the place is on the target's side, everything else on the origin's."""
+    span = context.span(tree)
+    match str(tree.data):
+        case "assign":
+            place, value, *via = _trees(tree)
+            return Assign(_path(place, context.target, context), _expr(value, context), span, via=_via(via, context))
+        case "set_length":
+            place, value = _trees(tree)
+            return SetLength(_path(place, context.target, context), _expr(value, context), span)
+        case "relation" | "length_relation":
+            left, right, *via = _trees(tree)
+            place = _path(left, context.target, context)
+            related = place if tree.data == "relation" else Len(place, place.span)
+            return Relation(related, _expr(right, context), span, _via(via, context))
+        case "arranged" | "arranged_both":
+            return _arranged(tree, context, span)
+        case "when" | "when_of_both":
+            condition, *body = _trees(tree)
+            return _when(_expr(condition, context), body, context, span)
+        case "ignore":
+            return Ignore(_path(_trees(tree)[0], context.origin, context), span)
+        case "default":
+            return Default(_path(_trees(tree)[0], context.target, context), span)
+        case "same":
+            return SameNames(tuple(_path(each, context.target, context) for each in _trees(tree)), span)
+        case "reject":
+            return _reject(tree, context, span)
+        case _:
+            start, stop, *body = _trees(tree)
+            variable = str(_tokens(tree)[0])
+            rules = tuple(read_rule(rule, context) for rule in body)
+            return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+
+
+def _arranged(tree: Tree, context: Context, span: Span) -> Arranged:
+    place, flag, *entries = _trees(tree)
+    cases = [tuple(_expr(part, context) for part in _trees(entry)) for entry in entries]
+    both = (_path(place, context.target, context), _path(flag, context.target, context))
+    return Arranged(*both, tuple((key, value) for key, value in cases), span)
+
+
+def _via(trees: list[Tree], context: Context) -> Via | None:
+    if not trees:
+        return None
+    name, *depth = (token for token in _tokens(trees[0]) if token.type in {"STRING", "INTEGER"})
+    deepest = _integer(depth[0], context) if depth else None
+    return Via(read_string(name, context.source, context.problems), deepest, context.span(trees[0]))
+
+
+def _when(condition: Expr, body: list[Tree], context: Context, span: Span) -> When:
+    then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
+    others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
+    return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)
+
+
+def _reject(tree: Tree, context: Context, span: Span) -> Rule:
+    text, pieces = _template(tree, context)
+    rejection = Reject(text, span, pieces, written=True)
+    for condition in _trees(tree):
+        return When(_expr(condition, context), (rejection,), (), span)
+    return rejection
+
+
+def _template(tree: Tree, context: Context) -> tuple[str, tuple[Expr, ...]]:
+    """A text and, where it has values in braces, what it consists of."""
+    text, place = _text(tree, context), context.span(_tokens(tree)[0])
+    return text, pieces_of(text, place, context.problems, lambda value: _expr(value, context))
+
+
+def _text(tree: Tree, context: Context) -> str:
+    return read_string(_tokens(tree)[0], context.source, context.problems)
+
+
+def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str:
+    """The characters that a quoted text stands for."""
+    text = str(token)[1:-1]
+    start = token.start_pos + 1
+    problems.extend(
+        words.escape(Span(source, start + escape.start(), start + escape.end()), escape[0])
+        for escape in re.finditer(r"\\(.)", text)
+        if escape[1] not in ESCAPES
+    )
+    return re.sub(r"\\(.)", lambda escape: ESCAPES.get(escape[1], escape[1]), text)
+
+
+def _expr(tree: Tree, context: Context) -> Expr:
+    span = context.span(tree)
+    match str(tree.data):
+        case "integer":
+            return Literal(_integer(_tokens(tree)[0], context), span)
+        case "real":
+            return Literal(_real(_tokens(tree)[0], context), span)
+        case "string":
+            return Literal(_text(tree, context), span)
+        case "true" | "false":
+            return Literal(str(tree.data) == "true", span)
+        case "name":
+            return Name(str(_tokens(tree)[0]), span)
+        case "path":
+            return _path(tree, context.origin, context)
+        case "length":
+            measured = _expr(_trees(tree)[0], context)
+            return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
+        case "list":
+            return List(tuple(_expr(item, context) for item in _trees(tree)), span)
+        case "item":
+            index = _trees(_trees(tree)[0])[0]
+            return Item(Name(str(_tokens(tree)[0]), span), _expr(index, context), span)
+        case "negative" | "inversion":
+            return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
+        case "conditional":
+            then, condition, other = (_expr(part, context) for part in _trees(tree))
+            return Choice(((condition, then),), other, span=span)
+        case "table":
+            return _table(tree, context, span)
+        case "binary":
+            left, right = (_expr(operand, context) for operand in _trees(tree))
+            return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
+        case "group":
+            return _expr(_trees(tree)[0], context)
+        case _:
+            arguments = tuple(_expr(argument, context) for argument in _trees(tree))
+            return Call(str(_tokens(tree)[0]), arguments, span)
+
+
+def _table(tree: Tree, context: Context, span: Span) -> Choice:
+    """A table, as a choice among comparisons of its subject."""
+    subject, *entries = _trees(tree)
+    compared = _expr(subject, context)
+    cases: list[tuple[Expr, Expr]] = []
+    otherwise, reason, pieces = None, "the table has no entry for it", ()
+    for entry in entries:
+        values = [_expr(part, context) for part in _trees(entry)]
+        if entry.data == "entry":
+            cases.append((Binary("==", compared, values[0], context.span(entry)), values[1]))
+        elif values:
+            otherwise = values[0]
+        else:
+            reason, pieces = _template(entry, context)
+    return Choice(tuple(cases), otherwise, reason, span, pieces)
+
+
+def _path(tree: Tree, side: Side, context: Context) -> Path:
+    return Path(side, tuple(_step(step, context) for step in tree.children), context.span(tree))
+
+
+def _step(step: Tree | Token, context: Context) -> Step:
+    if isinstance(step, Token):
+        return Member(str(step)[1:].strip('"'), context.span(step))
+    span, parts = context.span(step), [_expr(part, context) for part in _trees(step)]
+    match str(step.data), parts:
+        case "keyed", [Path(steps=steps, span=place), value]:
+            return Keyed(_names(steps, place, context), value, span)
+        case "each", _:
+            return Each(span)
+        case "slice", [start, *bounds]:
+            stop, by = (*bounds, None, None)[:2]
+            return Slice(start, stop, by or Literal(1), span)
+        case _, [List(items)]:
+            return Pick(_numbers(items, context), span)
+        case _, [index, *_]:
+            return Index(index, span)
+        case _:
+            raise AssertionError(step)
+
+
+def _names(steps: tuple[Step, ...], span: Span | None, context: Context) -> tuple[str, ...]:
+    """The field of an element by which it is known."""
+    if not all(isinstance(step, Member) for step in steps):
+        context.problems.append(words.key_field(span))
+    return tuple(step.name for step in steps if isinstance(step, Member))
+
+
+def _numbers(items: tuple[Expr, ...], context: Context) -> tuple[int, ...]:
+    """The elements that a list names: numbers that stand in the text."""
+    numbers = [item.value for item in items if isinstance(item, Literal) and type(item.value) is int]
+    context.problems.extend(words.picked(item.span) for item in items if not (isinstance(item, Literal) and type(item.value) is int))
+    return tuple(numbers)
+
+
+def _integer(token: Token, context: Context) -> int:
+    if len(token) <= MAX_DIGITS:
+        value = int(token, 16) if token[:2] in {"0x", "0X"} else int(token)
+        if value < 2**64:
+            return value
+    context.problems.append(words.number(context.span(token), "an integer of 64 bits"))
+    return 0
+
+
+def _real(token: Token, context: Context) -> float:
+    value = float(token) if len(token) <= MAX_DIGITS else math.inf
+    if math.isinf(value):
+        context.problems.append(words.number(context.span(token), "a float64"))
+        return 0.0
+    return value
+
+
+def read_parameter(tree: Tree, context: Context) -> Parameter:
+    """A parameter with the name of its type, whatever that is."""
+    name, *_, type_ = (token for token in _tokens(tree) if token.type == "NAME")
+    default = next((_expr(value, context) for value in _trees(tree)), None)
+    is_list = any(token.type == "LIST" for token in _tokens(tree))
+    return Parameter(str(name), str(type_), is_list, default, context.span(tree))
+
+
+def _trees(tree: Tree) -> list[Tree]:
+    return [child for child in tree.children if isinstance(child, Tree)]
+
+
+def _tokens(tree: Tree) -> list[Token]:
+    return [child for child in tree.children if isinstance(child, Token)]

@@ -1,0 +1,102 @@
+"""Values in the text of a rejection: `"frame {.name} has {.count} joints"`; `{{` and `}}` stand for braces.
+
+What stands in braces is parsed as the condition of a rejection, the only rule of a block.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.model.expr import Literal
+from rosetta_jit.parsing.lalr import Token, Tree
+from rosetta_jit.parsing.parsers import parser_of
+from rosetta_jit.parsing.syntax import Recovery, parse_tokens
+from rosetta_jit.source import Span
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.parsing.lalr import Grammar
+
+GRAMMAR = Path(__file__).with_name("mapping.lark")
+MISTAKES = ("UNCLOSED", "STRANGE")
+"""Tokens that stand for mistakes."""
+
+PIECES = re.compile(r"\{\{|\}\}|\{[^{}]*\}|[{}]")
+MAX_PIECES = 20
+"""Values and the texts between them."""
+
+MAX_TOKENS = 64
+"""Of a value: that bounds how deep it nests."""
+
+BEFORE = (("UNPACK_RULES", "unpack-rules"), ("COLON", ":"), ("REJECT", "reject"), ("STRING", '""'), ("GUARD", "when"))
+"""The tokens before a condition."""
+
+NOWHERE = Recovery({}, frozenset(), opens=frozenset(), closes="")
+
+
+def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable[[Tree], Expr]) -> tuple[Expr, ...]:
+    """The texts and values that a template consists of; none where it has no braces.
+
+    Parameters
+    ----------
+    text
+        What the quoted text at ``place`` stands for.
+    read
+        Makes an expression of its tree.
+    """
+    found: list[Expr] = []
+    at = 0
+    for match in PIECES.finditer(text):
+        found.append(Literal(text[at : match.start()], place))
+        at = match.end()
+        here = Span(place.source, *(min(place.start + 1 + end, place.end) for end in match.span()))
+        if match[0] in {"{{", "}}"}:
+            found.append(Literal(match[0][0], place))
+        elif match[0] in {"{", "}"}:
+            problems.append(words.lone_brace(here))
+        else:
+            value = _value(match[0][1:-1], here, problems)
+            found += [] if value is None else [read(value)]
+    found.append(Literal(text[at:], place))
+    pieces = tuple(piece for piece in found if not (isinstance(piece, Literal) and piece.value == ""))
+    if len(pieces) > MAX_PIECES:
+        problems.append(words.many_pieces(place, MAX_PIECES))
+        return ()
+    return pieces if at else ()
+
+
+def _value(text: str, place: Span, problems: list[Diagnostic]) -> Tree | None:
+    """The tree of what stands in braces; mistakes at its end are reported for all of it."""
+    tokens = [token.at(place.start + 1 + token.start_pos, place.start + 1 + token.end_pos) for token in grammar().lex(text)]
+    if len(tokens) > MAX_TOKENS:
+        problems.append(words.nesting(place, MAX_TOKENS))
+        return None
+    before = [Token(kind, text, place.start, place.start) for kind, text in BEFORE]
+    tree = parse_tokens(grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)
+    if not isinstance(tree, Tree):
+        problems.extend(problem if _is_in(problem, place) else replace(problem, span=place) for problem in tree)
+        return None
+    statements = [rules for rules in tree.children if isinstance(rules, Tree)]
+    found = [rule for rules in statements for rule in rules.children if isinstance(rule, Tree)]
+    if len(found) > 1 or len(statements) > 1:
+        problems.append(words.no_value(place))
+        return None
+    return next(value for value in found[0].children if isinstance(value, Tree))
+
+
+def _is_in(problem: Diagnostic, place: Span) -> bool:
+    return problem.span is not None and place.start <= problem.span.start and problem.span.end <= place.end
+
+
+@cache
+def grammar() -> Grammar:
+    """The parser of mappings."""
+    return parser_of(GRAMMAR, told=MISTAKES)

@@ -1,0 +1,107 @@
+"""The places that rules set, and places as text.
+
+A place is shown as a mapping names it: a case of a union as a field of what is around the union, `.u.n` and not `.u._u.n`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, When
+from rosetta_jit.model.types import Array, Field, Struct, Union
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Place, Rule, Step
+    from rosetta_jit.model.types import Type
+
+
+def field_names(place: Place) -> tuple[str, ...]:
+    """The fields on the way to a place, without indices."""
+    return tuple(step.field.name for step in place.steps if isinstance(step, FieldStep))
+
+
+def places_in(rules: tuple[Rule, ...]) -> list[Place]:
+    """All places that rules set, those within blocks included."""
+    return [place for rule in rules for place in _places(rule)]
+
+
+def rules_within(rules: tuple[Rule, ...]) -> Iterator[Rule]:
+    """The rules in all blocks, without the blocks."""
+    for rule in rules:
+        match rule:
+            case For(body=body):
+                yield from rules_within(body)
+            case When(_, then, otherwise):
+                yield from rules_within((*then, *otherwise))
+            case _:
+                yield rule
+
+
+def _places(rule: Rule) -> list[Place]:
+    match rule:
+        case Assign(place) | SetLength(place) | Default(place):
+            return [place]
+        case For():
+            return places_in(rule.body)
+        case When():
+            return places_in((*rule.then, *rule.otherwise))
+        case Reject() | Ignore():
+            return []
+        case _:
+            assert_never(rule)
+
+
+# --- as text -----------------------------------------------------------------------------------------------------------
+
+
+def shown_place(steps: Sequence[Step]) -> str:
+    """The way to a place, with the indices that are constants: `.joints[0].name`, `.joints[].name`."""
+    return _joined([step.field if isinstance(step, FieldStep) else _shown_index(step) for step in steps])
+
+
+def shown_shape(steps: Sequence[Step]) -> str:
+    """The way to a place, whatever its indices are: `.joints[].name`."""
+    return _joined([step.field if isinstance(step, FieldStep) else "[]" for step in steps])
+
+
+def shown_fields(steps: Sequence[Step]) -> str:
+    """The fields on the way to a place: `.joints.name`."""
+    return _joined([step.field for step in steps if isinstance(step, FieldStep)])
+
+
+def shown_names(names: Sequence[str], message: Message) -> str:
+    """The same of a place of a message that is known by its names."""
+    parts: list[Field | str] = []
+    type_: Type = message.root
+    for name in names:
+        fields = type_.fields if isinstance(type_, Struct) else type_.cases if isinstance(type_, Union) else ()
+        found = next((field for field in fields if field.name == name), None)
+        parts.append(f".{name}" if found is None else found)
+        type_ = type_ if found is None else value_inside(message, found.type)
+    return _joined(parts)
+
+
+def value_inside(message: Message, type_: Type) -> Type:
+    """The type of a value, or of an array's innermost element."""
+    value = message.value_type(type_)
+    return value_inside(message, value.element) if isinstance(value, Array) else value
+
+
+def _shown_index(step: IndexStep) -> str:
+    return f"[{step.index.value}]" if isinstance(step.index, Const) else "[]"
+
+
+def _joined(parts: list[Field | str]) -> str:
+    """A text of fields and of what stands between them."""
+    following = [*parts, None][1:]
+    return "".join(part if isinstance(part, str) else _member(part, behind) for part, behind in zip(parts, following, strict=True))
+
+
+def _member(field: Field, behind: Field | str | None) -> str:
+    """A field; nothing for a union that a case of its own stands for, unless what is around has another field of that name."""
+    if isinstance(field.type, Union) and isinstance(behind, Field) and behind.name not in (field.name, field.type.discriminator):
+        return ""
+    return f".{field.name}"

@@ -1,0 +1,113 @@
+"""``default .place``: the values that the schema gives what nothing was said of, as rules.
+
+What the schema requires is there (proto2): with its default, else 0 or empty.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.resolve.absent_texts import written
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, Place
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.language.scope import Message
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.model.types import Field, Schema, Type
+    from rosetta_jit.source import Span
+
+MAX_DEFAULTS = 1_000
+"""Fields that one `default` sets: a struct of structs of structs has many."""
+
+MAX_NESTED = 20
+"""Structs within each other that are looked into for defaults."""
+
+
+class ManyDefaultsError(Exception):
+    """More than `MAX_DEFAULTS`; never leaves `rosetta_jit.language.resolve.rules`."""
+
+
+def default_rules(place: Place, message: Message, span: Span | None) -> list[Rule]:
+    """Assignments of the defaults at and below a place; the rest is left alone.
+
+    Raises
+    ------
+    ManyDefaultsError
+    """
+    found: list[Rule] = []
+    for rule in _rules(place, message, span):
+        found.append(rule)
+        if len(found) > MAX_DEFAULTS:
+            raise ManyDefaultsError
+    return found
+
+
+def _rules(place: Place, message: Message, span: Span | None) -> Iterator[Rule]:
+    last = place.steps[-1]
+    known = _default(last.field, place, span) if isinstance(last, FieldStep) else None
+    if isinstance(last, FieldStep) and _may_lack(last.field):
+        yield Default(place, span)
+    elif known is not None:
+        yield known
+    elif isinstance(place.type, Struct) and len(place.steps) < MAX_NESTED and _has_defaults(place.type, message):
+        for field in place.type.fields:
+            if field.constant is None:
+                yield from _rules(_below(place, field, message), message, span)
+    else:
+        yield Default(place, span)
+
+
+def _default(field: Field, place: Place, span: Span | None) -> Rule | None:
+    """The rule for a field that has a default."""
+    match place.type, field.default:
+        case Enum(values=((_, number), *_), closed=True), None if field.required:
+            return Assign(place, Const(number, place.type, span), span)
+        case Enum(values=values), str(name):
+            number = dict(values).get(name)
+            return None if number is None else Assign(place, Const(number, place.type, span), span)
+        case ((Bool() | Int() | Enum()), int(number)):
+            return Assign(place, Const(number, place.type, span), span)
+        case Float(), (int() | float()) as number:
+            return Assign(place, Const(float(number), place.type, span), span)
+        case ((String() | Bytes()), str(text)):
+            return Assign(place, Const(text, String(), span), span)
+        case Bytes(), bytes(data):
+            return Assign(place, written(data, span), span)
+        case _:
+            return None
+
+
+def _may_lack(field: Field) -> bool:
+    return isinstance(field.type, Optional) and not field.required
+
+
+def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
+    for field in struct.fields:
+        if _may_lack(field):
+            continue
+        if field.required or field.default is not None:
+            return True
+        inner = message.schema.resolve(field.type)
+        if isinstance(inner, Struct) and depth < MAX_NESTED and _has_defaults(inner, message, depth + 1):
+            return True
+    return False
+
+
+def has_array(type_: Type, schema: Schema, *, told: bool, seen: frozenset[str] = frozenset()) -> bool:
+    """Whether there are always elements in a type: as many as other fields have ``told``, or as the type fixes."""
+    match schema.resolve(type_):
+        case Array(length=length, element=element):
+            return length is not None and (isinstance(length, int) != told or has_array(element, schema, told=told, seen=seen))
+        case Bytes(length=length):
+            return length is not None and isinstance(length, int) != told
+        case Struct(name=name, fields=fields) if name not in seen:
+            return any(has_array(field.type, schema, told=told, seen=seen | {name}) for field in fields)
+        case _:
+            return False
+
+
+def _below(place: Place, field: Field, message: Message) -> Place:
+    return Place(place.side, (*place.steps, FieldStep(field)), message.value_type(field.type), place.span)

@@ -1,0 +1,282 @@
+"""Types of expressions: model expression → typed expression, every conversion made explicit.
+
+Integers are computed in int64, where `/` and `%` truncate; two float32 in float32, and all else in float64. What
+cannot be typed is reported and gives None; whoever asked stops there, so that one mistake makes one report.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import reduce
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.language.both_ways.inverse_texts import for_comparison, for_type
+from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, holds, in_single, is_single
+from rosetta_jit.language.functions.calls import type_call
+from rosetta_jit.language.functions.decisions import type_choice, type_comparison, type_logic, type_not
+from rosetta_jit.language.functions.texts import concatenation, is_textual
+from rosetta_jit.language.functions.user_functions import type_host_call
+from rosetta_jit.language.resolve.absent_texts import length_there, text_there
+from rosetta_jit.language.resolve.held_values import type_held, type_nearest
+from rosetta_jit.language.resolve.key_search import is_found, type_search
+from rosetta_jit.language.resolve.list_items import compared_text, type_listed
+from rosetta_jit.language.scope import Broken, Sought, resolve_path
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
+from rosetta_jit.language.units.conversion import check_agree
+from rosetta_jit.model import expr as model
+from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.typed import Expr
+    from rosetta_jit.source import Span
+
+CONSTANTS = {"pi": math.pi}
+SUMS = frozenset("+-%")
+SHIFTS = frozenset(("<<", ">>"))
+MOST_BITS = 63
+"""By which an int64 is shifted."""
+
+
+def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
+    """The typed form of an expression, or None where it has none; the problems are in the scope."""
+    match expr:
+        case model.Literal():
+            return _literal(expr)
+        case model.Name():
+            return _name(expr, scope)
+        case model.Path():
+            place = resolve_path(expr, scope, type_index)
+            return None if isinstance(place, Broken) else text_there(place, expr.span)
+        case model.Len():
+            return _length(expr, scope)
+        case model.Unary("not"):
+            return type_not(expr, scope, type_expr)
+        case model.Unary():
+            return _negative(expr, scope)
+        case model.Binary(operator) if operator in model.COMPARISONS:
+            return type_comparison(expr, scope, type_expr, compared_text)
+        case model.Binary(operator) if operator in model.LOGIC:
+            return type_logic(expr, scope, type_expr)
+        case model.Binary():
+            return _binary(expr, scope)
+        case model.Call(function) if function in scope.functions:
+            return type_host_call(expr, scope.functions[function], scope, type_expr)
+        case model.Call("has" | "index" as function, (model.Path() as path,)):
+            return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
+        case model.Call():
+            return type_call(for_comparison(expr), scope, type_expr)
+        case model.Choice():
+            return type_choice(expr, scope, type_expr)
+        case model.List() | model.Item() | model.Given():
+            return type_listed(expr, scope, type_expr)
+        case model.Held() | model.Nearest():
+            return type_held(expr, scope, type_expr, type_index) if isinstance(expr, model.Held) else type_nearest(expr, scope, type_expr)
+        case _:
+            assert_never(expr)
+
+
+def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
+    """An expression that must be an integer, as int64."""
+    typed = type_expr(for_type(expr, INT64), scope)
+    if typed is None:
+        return None
+    integer = as_int64(typed)
+    if integer is None:
+        scope.problems.append(words.integer_needed(typed.span, what, describe(typed.type)))
+    return integer
+
+
+def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
+    """The index of an element."""
+    if isinstance(expr, Sought):
+        return type_search(expr, scope, type_expr)
+    return type_integer(expr, scope, "an index")
+
+
+def _literal(expr: model.Literal) -> Const:
+    match expr.value:
+        case bool():
+            return Const(expr.value, Bool(), expr.span)
+        case int():
+            return Const(expr.value, Int(64, signed=holds(INT64, expr.value)), expr.span, declared=expr.type is not None)
+        case float():
+            is_float32 = expr.type is not None and is_single(expr.type)
+            return Const(expr.value, Float(32) if is_float32 else FLOAT64, expr.span, declared=expr.type is not None)
+        case str():
+            return Const(expr.value, String(), expr.span)
+
+
+def _name(expr: model.Name, scope: Scope) -> Expr | None:
+    if expr.name in scope.locals:
+        return Local(expr.name + scope.suffix, INT64, expr.span)
+    if expr.name == model.NEAREST and scope.nearest is not None:
+        return Local(expr.name, scope.nearest, expr.span)
+    if expr.name in CONSTANTS:
+        return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
+    if expr.name in scope.constants:
+        enum, number = scope.constants[expr.name]
+        scope.named_enums.add(enum.name)
+        return Const(number, enum, expr.span)
+    known = {*scope.locals, *CONSTANTS, *scope.constants}
+    scope.problems.append(words.unknown_name(expr.span, expr.name, known))
+    return None
+
+
+def _length(expr: model.Len, scope: Scope) -> Expr | None:
+    place = resolve_path(expr.path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    match place.type:
+        case Array(length=int(length)):
+            return Const(length, INT64, expr.span)
+        case Array() | Bytes() | String() | Map():
+            return length_there(place, expr.span)
+        case other:
+            scope.problems.append(words.no_length(expr.path.span, describe(other)))
+            return None
+
+
+def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
+    place = resolve_path(path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    schema = scope.messages[place.side].schema
+    asked = is_found(place)
+    if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
+        asked.append(Has(place, span=span))
+    if asked:
+        return reduce(lambda left, right: Binary("and", left, right, BOOL, span), asked)
+    scope.problems.append(words.always_there(span, describe(place.type)))
+    return None
+
+
+def _number_of(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
+    """The number of an element that a key tells."""
+    place = resolve_path(path, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    match place.steps:
+        case (*_, IndexStep(Search() as search)):
+            return replace(search, span=span)
+        case _:
+            scope.problems.append(words.no_number_of(span))
+            return None
+
+
+def _negative(expr: model.Unary, scope: Scope) -> Expr | None:
+    operand = type_expr(expr.operand, scope)
+    if operand is None:
+        return None
+    if isinstance(operand, Const) and isinstance(operand.type, Int | Float) and isinstance(operand.value, int | float):
+        return _folded(expr, operand, operand, -operand.value, scope)
+    number = _computable(operand, "-", scope)
+    wide = as_int64(number) if number is not None and isinstance(number.type, Int) else number
+    return None if wide is None else Unary("-", wide, wide.type, expr.span)
+
+
+def _binary(expr: model.Binary, scope: Scope) -> Expr | None:
+    left, right = type_expr(expr.left, scope), type_expr(expr.right, scope)
+    if left is None or right is None:
+        return None
+    if expr.operator == "+" and (is_textual(left.type) or is_textual(right.type)):
+        return concatenation(left, right, expr.span, scope)
+    if isinstance(right, Const) and isinstance(right.type, Int | Float) and right.value == 0 and expr.operator in {"/", "%"}:
+        scope.problems.append(words.zero_division(right.span))
+        return None
+    if expr.operator in SHIFTS and isinstance(right, Const) and isinstance(right.value, int) and not 0 <= right.value <= MOST_BITS:
+        scope.problems.append(words.shift_range(right.span, right.value, MOST_BITS))
+        return None
+    match left, right:
+        case Const(value=int(x), type=Int()), Const(value=int(y), type=Int()) if expr.operator == "/" and x % y:
+            scope.problems.append(words.fraction(expr.span, x, y))
+            return None
+        case Const(value=int() | float() as x, type=Int() | Float()) as one, Const(
+            value=int() | float() as y, type=Int() | Float()
+        ) as other:
+            if expr.operator not in model.BITWISE:
+                return _folded(expr, one, other, _compute(expr.operator, x, y), scope)
+        case _:
+            pass
+    if expr.operator in SUMS and not check_agree(f"`{expr.operator}`", (left, right), expr.span, scope):
+        return None
+    numbers = _computable(left, expr.operator, scope), _computable(right, expr.operator, scope)
+    if numbers[0] is None or numbers[1] is None:
+        return None
+    pair = unify(numbers[0], numbers[1], scope)
+    return None if pair is None else Binary(expr.operator, *pair, pair[0].type, expr.span)
+
+
+def _computable(operand: Expr, operator: str, scope: Scope) -> Expr | None:
+    """A number that can be computed with; uint64 cannot, as its values do not fit int64."""
+    match operand.type:
+        case Float() if operator not in model.BITWISE:
+            return operand
+        case Int() as type_ if type_.signed or type_.bits < 64:
+            return operand
+        case other:
+            scope.problems.append(words.operand(operand.span, operator, describe(other)))
+            return None
+
+
+def unify(left: Expr, right: Expr, scope: Scope) -> tuple[Expr, Expr] | None:
+    """Two numbers as the type in which they are computed: int64 of two integers, float32 of two float32, else float64.
+
+    A constant is a float32 beside one, where one is equal to it.
+    """
+    if isinstance(left.type, Int) and isinstance(right.type, Int):
+        pair = as_int64(left), as_int64(right)
+        return None if pair[0] is None or pair[1] is None else (pair[0], pair[1])
+    singles = as_single(left), as_single(right)
+    if singles[0] is not None and singles[1] is not None:
+        return singles[0], singles[1]
+    pair = convert(left, FLOAT64), convert(right, FLOAT64)
+    if pair[0] is not None and pair[1] is not None:
+        return pair[0], pair[1]
+    wide = left if pair[0] is None else right
+    scope.problems.append(words.needs_word(wide.span, describe(wide.type), "float64", "`float64(...)` rounds to the nearest"))
+    return None
+
+
+def _compute(operator: model.Operator, x: float, y: float) -> float | None:
+    """The value of a constant expression; None where a float overflows."""
+    whole = isinstance(x, int) and isinstance(y, int)
+    try:
+        match operator:
+            case "+":
+                return x + y
+            case "-":
+                return x - y
+            case "*":
+                return x * y
+            case "/":
+                return int(x) // int(y) if whole else x / y
+            case "%":
+                return abs(int(x)) % abs(int(y)) * (-1 if x < 0 else 1) if whole else math.fmod(x, y)
+            case _:
+                raise AssertionError(operator)
+    except OverflowError:
+        return None
+
+
+def _folded(expr: model.Unary | model.Binary, left: Const, right: Const, value: float | None, scope: Scope) -> Const | None:
+    """What two constants come to, of the type that they have in arithmetic."""
+    made = _constant(value, expr.span, scope)
+    if made is None:
+        return None
+    made = replace(made, declared=left.declared or right.declared)
+    return in_single(made) if is_single(left.type) and is_single(right.type) else made
+
+
+def _constant(value: float | None, span: Span | None, scope: Scope) -> Const | None:
+    match value:
+        case int() if -(2**63) <= value < 2**64:
+            return Const(value, Int(64, signed=value < 2**63), span)
+        case float() if math.isfinite(value):
+            return Const(value, FLOAT64, span)
+        case _:
+            target = "int64" if isinstance(value, int) else "float64"
+            scope.problems.append(words.constant_range(span, "the result", target))
+            return None

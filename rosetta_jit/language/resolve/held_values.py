@@ -1,0 +1,58 @@
+"""What rules that are written for both directions know of the other side before it is written: values as a place holds them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.both_ways.inverse_texts import for_type
+from rosetta_jit.language.conversions import convert
+from rosetta_jit.language.functions.calls import rules_between
+from rosetta_jit.language.scope import Broken, resolve_path
+from rosetta_jit.language.typed import Binary, Convert, Local, Nearest
+from rosetta_jit.language.units.conversion import in_unit
+from rosetta_jit.model.expr import NEAREST, Held, Path
+from rosetta_jit.model.expr import Binary as Operation
+from rosetta_jit.model.types import Float, Int
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.language.scope import Scope, Sought
+    from rosetta_jit.language.typed import Expr
+    from rosetta_jit.model import expr as model
+    from rosetta_jit.model.types import Type
+
+    TypeExpr = Callable[[model.Expr, Scope], Expr | None]
+    TypeIndex = Callable[[model.Expr | Sought, Scope], Expr | None]
+
+
+def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: TypeIndex) -> Expr | None:
+    """The typed form of a value in the unit and of the type of a place; what cannot be is reported where the place is set."""
+    place = resolve_path(expr.place, scope, type_index)
+    if isinstance(place, Broken):
+        return None
+    value = type_expr(for_type(expr.value, place.type), scope)
+    if value is None:
+        return None
+    measured = in_unit(value, place, scope)
+    return None if measured is None else fitted(measured, place.type)
+
+
+def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr | None:
+    """The typed form of a solved relation: of a float for an integer the nearest integer, if the relation gives its place back."""
+    value = type_expr(expr.value, scope)
+    if value is None or not isinstance(expr.type, Int) or not isinstance(value.type, Float):
+        return value
+    again = Held(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
+    check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, nearest=expr.type))
+    return Nearest(value, Local(NEAREST, expr.type), check, expr.type, expr.span) if isinstance(check, Binary) else None
+
+
+def fitted(value: Expr, target: Type) -> Expr:
+    """A number as the type of its place, by a check where it may not fit."""
+    free = convert(value, target)
+    if free is not None:
+        return replace(free, span=value.span)
+    rules = rules_between(value.type, target)
+    return Convert(value, target, rules[0], value.span) if rules else value

@@ -1,0 +1,193 @@
+"""Messages within messages that have a mapping of their own: its rules, at the place where the message lies.
+
+``.pose = .pose via "pose.mapping"`` becomes the rules of that mapping for `.pose`; of arrays of messages, those of a loop. Without `via`, a
+mapping that is imported is found by the two types. A mapping may be used in the direction that it has for them, whichever is its holder.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import nested as words
+from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.imports.mappings import MAX_COPIED, MAX_USES, EnoughError, Use
+from rosetta_jit.language.resolve.expressions import type_index
+from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
+from rosetta_jit.language.typed import (
+    BOOL,
+    INT64,
+    Binary,
+    Const,
+    Default,
+    For,
+    Has,
+    Ignore,
+    IndexStep,
+    LenOf,
+    Local,
+    Place,
+    Reject,
+    SetLength,
+    When,
+)
+from rosetta_jit.model.expr import Path
+from rosetta_jit.model.types import Array, Optional, Struct, same_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.model import mapping as model
+    from rosetta_jit.model.expr import Side
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
+
+    RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[Rule, ...]]
+
+MAX_DEPTH = 16
+"""The deepest `to depth`."""
+
+
+def nest(rule: model.Assign, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...] | None:
+    """The rules that an assignment of messages stands for; None if it is none that a mapping makes."""
+    if rule.via is None and not scope.others.by_type():
+        return None
+    if not isinstance(rule.value, Path):
+        if rule.via is not None:
+            scope.problems.append(words.not_a_field(rule.value.span))
+        return None
+    ends = _ends(rule, rule.value, scope)
+    if ends is None:
+        return None
+    place, origin = ends
+    target, source = (_message(end, scope) for end in ends)
+    if rule.via is None and (target is None or source is None or target == source):
+        return None
+    if target is None or source is None:
+        scope.problems.append(words.no_messages(rule.span, describe(origin.type), describe(place.type)))
+        return (Default(place, rule.span), Ignore(origin, rule.span))
+    found = _chosen(rule, target, source, scope)
+    return None if found is None and rule.via is None else _used(found, rule, place, origin, scope, rules_of)
+
+
+def _ends(rule: model.Assign, value: Path, scope: Scope) -> tuple[Place, Place] | None:
+    """Both places; without `via`, what does not resolve is reported by whoever assigns it."""
+    quiet = scope if rule.via is not None else replace(scope, problems=[])
+    place, origin = resolve_path(rule.place, quiet, type_index), resolve_path(value, quiet, type_index)
+    return None if isinstance(place, Broken) or isinstance(origin, Broken) else (place, origin)
+
+
+def _message(place: Place, scope: Scope) -> Struct | None:
+    """The message at a place, or that of each element."""
+    type_ = place.type.element if isinstance(place.type, Array) else place.type
+    found = _value_type(type_, place, scope)
+    return found if isinstance(found, Struct) else None
+
+
+def _value_type(type_: Type, place: Place, scope: Scope) -> Type:
+    return scope.messages[place.side].value_type(type_)
+
+
+def _chosen(rule: model.Assign, target: Struct, source: Struct, scope: Scope) -> tuple[model.Mapping, Side] | None:
+    """The mapping, and which of its sides is the target."""
+    if rule.via is None:
+        for each in scope.others.by_type():
+            side = _side(each, target, source)
+            if side is not None:
+                return each, side
+        return None
+    other = scope.others.named(rule.via)
+    if other is None:
+        return None
+    side = _side(other, target, source)
+    if side is None:
+        names = other.holder_type, other.wire_type
+        scope.problems.append(words.other_types(rule.via.span, rule.via.mapping, names, (source.name, target.name)))
+    return None if side is None else (other, side)
+
+
+def _side(mapping: model.Mapping, target: Struct, source: Struct) -> Side | None:
+    names = mapping.holder_type, mapping.wire_type
+    if mapping.unpack_rules and same_name(names[0], target.name) and same_name(names[1], source.name):
+        return "holder"
+    if mapping.pack_rules and same_name(names[1], target.name) and same_name(names[0], source.name):
+        return "wire"
+    return None
+
+
+def _used(
+    found: tuple[model.Mapping, Side] | None, rule: model.Assign, place: Place, origin: Place, scope: Scope, rules_of: RulesOf
+) -> tuple[Rule, ...]:
+    """The rules of the mapping; ignored where it could not be read, so that nothing more is said of the two places."""
+    if found is None:
+        return (Default(place, rule.span), Ignore(origin, rule.span))
+    mapping, side = found
+    others = scope.others
+    others.uses.append(Use(mapping, side, place, origin, rule.span))
+    depth = others.using.count(mapping.source.name)
+    most = None if rule.via is None else rule.via.depth
+    if depth and (most is None or most > MAX_DEPTH):
+        scope.problems.append(words.no_depth(rule.span, mapping.source.name, MAX_DEPTH))
+    elif len(others.uses) > MAX_USES:
+        scope.problems.append(words.many_uses(rule.span, MAX_USES))
+        raise EnoughError
+    elif others.copied() > MAX_COPIED:
+        scope.problems.append(words.many_copies(rule.span, MAX_COPIED))
+        raise EnoughError
+    elif most is not None and depth > most:
+        return _too_deep(most, place, origin, rule.span)
+    else:
+        inner = replace(scope, others=replace(others, using=(*others.using, mapping.source.name)), suffix=f"~{len(others.uses)}")
+        return _at(mapping, side, (place, origin), rule.span, inner, rules_of)
+    return (Default(place, rule.span), Ignore(origin, rule.span))
+
+
+def _too_deep(most: int, place: Place, origin: Place, span: Span | None) -> tuple[Rule, ...]:
+    """What is there beyond the depth is refused."""
+    if isinstance(origin.type, Array):
+        there: Binary | Has = Binary("!=", LenOf(origin), Const(0, INT64), BOOL)
+    else:
+        there = Has(origin)
+    return (When(there, (Reject(words.too_deep(most), span),), (), span), Default(place, span))
+
+
+def _at(
+    mapping: model.Mapping, side: Side, ends: tuple[Place, Place], span: Span | None, scope: Scope, rules_of: RulesOf
+) -> tuple[Rule, ...]:
+    """The rules of a mapping for two messages, or for each of their elements."""
+    place, origin = ends
+    if not isinstance(place.type, Array) or not isinstance(origin.type, Array):
+        rules = _inside(mapping, side, place, origin, scope, rules_of)
+        return (When(Has(origin), rules, (), span),) if _may_lack(place, scope) and _may_lack(origin, scope) else rules
+    number = Local(f"each{scope.suffix}")
+    element, source = (_element(end, number, scope) for end in ends)
+    rules = _inside(mapping, side, element, source, scope, rules_of)
+    fixed = place.type.fixed
+    length: Rule = SetLength(place, LenOf(origin) if fixed is None else Const(fixed, INT64), span)
+    return (length, For(number, Const(0, INT64), LenOf(origin), rules, span))
+
+
+def _element(place: Place, number: Local, scope: Scope) -> Place:
+    assert isinstance(place.type, Array)
+    return Place(place.side, (*place.steps, IndexStep(number)), _value_type(place.type.element, place, scope), place.span)
+
+
+def _may_lack(place: Place, scope: Scope) -> bool:
+    """Whether a message can be absent."""
+    last = place.steps[-1]
+    if isinstance(last, IndexStep) or last.field.required:
+        return False
+    return isinstance(scope.messages[place.side].schema.resolve(last.field.type), Optional)
+
+
+def _inside(mapping: model.Mapping, side: Side, place: Place, origin: Place, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...]:
+    """The rules of a mapping whose two messages lie at these places."""
+    other: Side = "wire" if side == "holder" else "holder"
+    schema = scope.messages[place.side].schema
+    target, source = place.type, origin.type
+    assert isinstance(target, Struct)
+    assert isinstance(source, Struct)
+    messages: dict[Side, Message] = {side: Message(target, schema), other: Message(source, schema)}
+    inner = replace(scope, messages=messages, bases={side: place, other: origin}, target=side, locals=())
+    return rules_of((mapping.unpack_rules if side == "holder" else mapping.pack_rules) or (), inner)

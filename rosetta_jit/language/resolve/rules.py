@@ -1,0 +1,424 @@
+"""Names and types of a mapping's rules: `model.mapping` → `language.typed`.
+
+Every rule that can be typed is typed; what cannot be is reported, and the field that it meant is remembered, so that
+the checks that follow do not report the same mistake in other words.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import layouts, texts
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue.pipeline import too_large
+from rosetta_jit.language.arrays.elementwise import elementwise
+from rosetta_jit.language.both_ways.inverse_texts import for_type
+from rosetta_jit.language.conversions import convert, describe, other_way, same, widens, word_for
+from rosetta_jit.language.functions.decisions import type_condition
+from rosetta_jit.language.functions.images import is_bytes
+from rosetta_jit.language.functions.texts import is_textual, type_pieces
+from rosetta_jit.language.functions.user_functions import signatures
+from rosetta_jit.language.imports.mappings import EnoughError
+from rosetta_jit.language.places import field_names, places_in
+from rosetta_jit.language.resolve.defaults import MAX_DEFAULTS, ManyDefaultsError, default_rules, has_array
+from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
+from rosetta_jit.language.resolve.held_values import fitted
+from rosetta_jit.language.resolve.keyed_rules import numbered
+from rosetta_jit.language.resolve.lengths_first import lengths_first
+from rosetta_jit.language.resolve.list_items import adapted
+from rosetta_jit.language.resolve.nested import nest
+from rosetta_jit.language.resolve.same_names import OF_TYPES, rule_for, unlike
+from rosetta_jit.language.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.language.typed import (
+    Access,
+    Assign,
+    Choice,
+    Const,
+    Convert,
+    Default,
+    For,
+    Ignore,
+    ImageCall,
+    Listed,
+    Local,
+    Reject,
+    SetLength,
+    TextCall,
+    When,
+)
+from rosetta_jit.language.units.conversion import in_unit
+from rosetta_jit.language.units.wholes import change_within
+from rosetta_jit.model import expr
+from rosetta_jit.model import mapping as model
+from rosetta_jit.model.expansion import excess
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union, same_name
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.functions.user_functions import Signature
+    from rosetta_jit.language.imports.mappings import Others
+    from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.model.expr import Side
+    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.source import Span
+
+
+MAX_TEXTS = 50
+"""Cases of a choice among texts."""
+
+MAX_PROBLEMS = 200
+"""Reports of one mapping after which no more rules are looked at: most of them say the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class TypedRules:
+    """One direction: the rules that have types, and the fields that broken rules meant to set."""
+
+    rules: tuple[Rule, ...]
+    broken: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """Both directions, None where the mapping has no block; the enums that they name; what is wrong with names and types."""
+
+    holder: Message
+    wire: Message
+    unpack: TypedRules | None
+    pack: TypedRules | None
+    enums: frozenset[str]
+    problems: tuple[Diagnostic, ...]
+    functions: Mapping[str, Signature]
+
+
+def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+    """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
+
+    ``others`` are the mappings that its rules may use.
+    """
+    problems: list[Diagnostic] = []
+    holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
+    wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
+    if holder_type is None or wire_type is None:
+        return tuple(problems)
+    enums = enums_of(holder, wire)
+    messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
+    named: set[str] = set()
+    functions = signatures((mapping, *others.mappings()), problems)
+    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
+    try:
+        unpack = _block(mapping.unpack_rules, scope)
+        pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+    except EnoughError:
+        return tuple(problems)
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
+
+
+def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
+    found = schema.types.get(name) or next((type_ for known, type_ in schema.types.items() if same_name(known, name)), None)
+    if isinstance(found, Struct):
+        why = excess(found, schema)
+        problems += [too_large(found.name, span, why)] if why else []
+        return None if why else Message(found, schema)
+    if found is None:
+        problems.append(words.unknown_type(span, name, [known for known, type_ in schema.types.items() if isinstance(type_, Struct)]))
+    else:
+        problems.append(words.not_a_message(span, name))
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """Types the rules of one direction."""
+
+    broken: list[tuple[str, ...]] = field(default_factory=list[tuple[str, ...]])
+
+    def whole(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+        """All rules of one mapping for a direction."""
+        return self.rules(elementwise(numbered(rules, scope), scope, self.broken), scope)
+
+    def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+        for rule, behind in pairwise(rules):
+            if isinstance(rule, model.Reject):
+                scope.problems.append(words.rules_behind_reject(behind.span))
+        typed = [made for rule in rules for made in self.made(rule, scope)]
+        found = tuple(rule for rule in typed if rule is not None)
+        same = [rule for rule in rules if isinstance(rule, model.SameNames)]
+        scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
+        return lengths_first(found if not same else (*found, *self.same_names(same[0], found, scope)))
+
+    def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
+        """Rules for the fields of the message that no other rule sets, and that the other side has too."""
+        origin, aim = (scope.messages[side].root for side in (scope.origin, scope.target))
+        names = {field.name for field in origin.fields}
+        excepted = [resolve_path(path, scope, type_index) for path in rule.but]
+        set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
+        around = len(field_names(scope.base(scope.target)))
+        taken = {fields[around] for fields in (*set_already, *self.broken) if len(fields) > around}
+        wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
+        if not wanted:
+            scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
+        return [each for name in wanted for each in self.same_name(name, rule, scope)]
+
+    def same_name(self, name: str, rule: model.SameNames, scope: Scope) -> list[Rule]:
+        """The rules for one field; what is wrong with them is said once, of the field."""
+        problems: list[Diagnostic] = []
+        tried = replace(scope, problems=problems)
+        rules = elementwise((rule_for(name, rule, scope),), tried, self.broken)
+        found = [made for each in rules for made in self.made(each, tried)]
+        if any(problem.code in OF_TYPES for problem in problems):
+            problem = unlike(name, rule, scope)
+            scope.problems.extend([] if problem is None else [problem])
+            return []
+        scope.problems.extend(problems)
+        return [each for each in found if each is not None]
+
+    def made(self, rule: model.Rule, scope: Scope) -> list[Rule | None]:
+        """The rules that one of the mapping stands for."""
+        if isinstance(rule, model.Assign):
+            nested = nest(rule, scope, self.whole)
+            if nested is not None:
+                return [*nested]
+        found = self.rule(rule, scope)
+        if not isinstance(found, Default):
+            return [found]
+        try:
+            return [*default_rules(found.place, scope.messages[scope.target], found.span)]
+        except ManyDefaultsError:
+            scope.problems.append(words.many_defaults(found.span, MAX_DEFAULTS))
+            return [found]
+
+    def rule(self, rule: model.Rule, scope: Scope) -> Rule | None:
+        if len(scope.problems) >= MAX_PROBLEMS:
+            raise EnoughError
+        match rule:
+            case model.Assign():
+                return self.assign(rule, scope)
+            case model.SetLength():
+                return self.set_length(rule, scope)
+            case model.For():
+                return self.loop(rule, scope)
+            case model.When():
+                return self.when(rule, scope)
+            case model.Reject(text, span, pieces, written):
+                return Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
+            case model.Ignore(path) | model.Default(path):
+                return self.left_alone(rule, path, scope)
+            case model.SameNames():
+                return None  # when all other rules of the block are known
+            case model.Relation() | model.Arranged():
+                raise AssertionError(rule)
+            case _:
+                assert_never(rule)
+
+    def left_alone(self, rule: model.Ignore | model.Default, path: expr.Path, scope: Scope) -> Rule | None:
+        place = resolve_path(path, scope, type_index)
+        if isinstance(place, Broken):
+            self.broken.append(place.fields)
+            return None
+        if isinstance(rule, model.Ignore):
+            return Ignore(place, rule.span)
+        if has_array(place.type, scope.messages[scope.target].schema, told=True):
+            scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            self.broken.append(field_names(place))
+            return None
+        return Default(place, rule.span)
+
+    def when(self, rule: model.When, scope: Scope) -> When | None:
+        condition = type_condition(rule.condition, scope, type_expr)
+        then, otherwise = self.rules(rule.then, scope), self.rules(rule.otherwise, scope)
+        if condition is None:
+            self.broken.extend(field_names(place) for place in places_in((*then, *otherwise)))
+            return None
+        return When(condition, then, otherwise, rule.span)
+
+    def assign(self, rule: model.Assign, scope: Scope) -> Rule | None:
+        place = self.place(rule, scope)
+        if place is not None and rule.fits:
+            rule = replace(rule, value=for_type(rule.value, place.type))
+        value = type_expr(rule.value, scope)
+        if place is None:
+            return None
+        if value is not None:
+            value = in_unit(value, place, scope)
+        if value is not None and rule.fits:
+            value = fitted(value, place.type)
+        fitting = None if value is None else _fit(value, place, scope)
+        if fitting is None:
+            self.broken.append(field_names(place))
+            return None
+        change = change_within(fitting, place, scope)
+        made = _by_case(place, fitting, rule.span)
+        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
+
+    def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
+        place = self.place(rule, scope)
+        value = type_integer(rule.value, scope, "a length")
+        if place is None:
+            return None
+        if value is None or not _length_can_be(value, place, scope):
+            self.broken.append(field_names(place))
+            return None
+        return SetLength(place, value, rule.span)
+
+    def place(self, rule: model.Assign | model.SetLength, scope: Scope) -> Place | None:
+        place = resolve_path(rule.place, scope, type_index)
+        if isinstance(place, Broken):
+            self.broken.append(place.fields)
+            return None
+        return place
+
+    def loop(self, rule: model.For, scope: Scope) -> For | None:
+        if rule.variable in scope.locals:
+            scope.problems.append(words.shadowed(rule.span, rule.variable))
+        start = type_integer(rule.start, scope, "where a loop starts")
+        stop = type_integer(rule.stop, scope, "where a loop ends")
+        body = self.rules(rule.body, scope.inside(rule.variable))
+        if start is None or stop is None:
+            self.broken.extend(field_names(place) for place in places_in(body))
+            return None
+        if isinstance(start, Const) and isinstance(stop, Const) and int(stop.value) < int(start.value):
+            scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
+            self.broken.extend(field_names(place) for place in places_in(body))
+            return None
+        return For(Local(rule.variable + scope.suffix), start, stop, body, rule.span)
+
+
+def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
+    if rules is None:
+        return None
+    block = _Block()
+    typed = block.whole(rules, scope)
+    return TypedRules(typed, tuple(block.broken))
+
+
+def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
+    """A choice among texts as one rule a text: numbers alone are chosen in an expression."""
+    if not (isinstance(value, Choice) and isinstance(place.type, String | Bytes)):
+        return Assign(place, value, span)
+    rest: tuple[Rule, ...] = (
+        (Reject(value.reason, span, value.pieces),) if value.otherwise is None else (_by_case(place, value.otherwise, span),)
+    )
+    for condition, chosen in reversed(value.cases):
+        rest = (When(condition, (_by_case(place, chosen, span),), rest, span),)
+    return rest[0]
+
+
+def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
+    """The value as the type of the place, reported where that takes a word or cannot be."""
+    target = place.type
+    if isinstance(value, Choice) and isinstance(target, String | Bytes):
+        return _fit_choice(value, place, scope)
+    if isinstance(value, Choice):
+        value = _adapted(value, target)
+    if isinstance(value, Listed):
+        value = adapted(value, target)
+    if isinstance(value, Access) and _whole(value.type, target, scope):
+        return value
+    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
+        return value
+    if isinstance(value, TextCall) and value.function == "split" and _holds_texts(target, scope):
+        return value
+    if isinstance(value, TextCall) and is_textual(value.type):
+        if is_textual(target):
+            return value
+        if isinstance(target, String):
+            scope.problems.append(texts.text_length(value.span))
+            return None
+    scalar = not isinstance(target, Array | Struct | Union | Map)
+    fitting = convert(value, target) if scalar else None
+    if fitting is None:
+        scope.problems.append(_mismatch(value, target))
+    return fitting
+
+
+def _holds_texts(target: Type, scope: Scope) -> bool:
+    """Whether a type is an array of texts."""
+    if not isinstance(target, Array):
+        return False
+    element = scope.messages[scope.target].value_type(target.element)
+    return isinstance(element, String | Bytes) and is_textual(element)
+
+
+def _adapted(value: Choice, target: Type) -> Choice:
+    """A choice whose values all fit without a word, as that type."""
+    cases = [(condition, _adapted_to(chosen, target)) for condition, chosen in value.cases]
+    otherwise = None if value.otherwise is None else _adapted_to(value.otherwise, target)
+    known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
+    if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
+        return value
+    return replace(value, cases=known, otherwise=otherwise, type=target)
+
+
+def _adapted_to(value: Expr, target: Type) -> Expr | None:
+    if isinstance(value, Convert) and value.rule == "widen":  # as its choice needed it, not as the place does
+        value = value.operand
+    return convert(_adapted(value, target) if isinstance(value, Choice) else value, target)
+
+
+def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
+    """Each text of a choice as the type of the place."""
+    if len(value.cases) > MAX_TEXTS:
+        scope.problems.append(words.many_cases(value.span, MAX_TEXTS))
+        return None
+    cases = [(condition, _fit(chosen, place, scope)) for condition, chosen in value.cases]
+    otherwise = None if value.otherwise is None else _fit(value.otherwise, place, scope)
+    known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
+    if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
+        return None
+    return replace(value, cases=known, otherwise=otherwise, type=place.type)
+
+
+def _whole(source: Type, target: Type, scope: Scope) -> bool:
+    """Whether an array, struct, text or blob can be assigned as a whole."""
+    origin, aim = (scope.messages[side] for side in (scope.origin, scope.target))
+    source, target = origin.value_type(source), aim.value_type(target)
+    match source, target:
+        case ((String() | Bytes()), (String() | Bytes())):
+            return True
+        case Array(length=int(length)), Array(length=int(other)) if length != other:
+            return False
+        case Array(element=element), Array(element=wanted):
+            return _whole(element, wanted, scope) or same(element, wanted) or widens(element, wanted)
+        case (Struct(), Struct()) | (Union(), Union()) | (Map(), Map()):
+            return source == target
+        case _:
+            return False
+
+
+def _mismatch(value: Expr, target: Type) -> Diagnostic:
+    source, aim = describe(value.type), describe(target)
+    match value, target:
+        case Const(value=int(number), type=Int()), Int() | Float():
+            return words.constant_range(value.span, str(number), aim)
+        case Const(value=float(number), type=Float()), Float():
+            return words.constant_range(value.span, repr(number), aim)
+        case _ if isinstance(value.type, Bool | Enum) and isinstance(target, Int):
+            return words.no_number(value.span, source, aim, word_for(value.type, target))
+        case _:
+            how = word_for(value.type, target)
+            return (
+                words.needs_word(value.span, source, aim, how)
+                if how
+                else words.type_clash(value.span, source, aim, other_way(value.type, target))
+            )
+
+
+def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:
+    match place.type:
+        case Array(length=int(length)) if not (isinstance(value, Const) and value.value == length):
+            scope.problems.append(words.length_not_settable(place.span, describe(place.type)))
+            return False
+        case Array() | Bytes() | Map():
+            return True
+        case Bool() | Int() | Float() | Enum():
+            scope.problems.append(layouts.one_value(place.span))
+            return False
+        case other:
+            scope.problems.append(words.length_not_settable(place.span, describe(other)))
+            return False

@@ -1,0 +1,205 @@
+"""What the rules of a mapping can name: the two messages, enum constants, loop variables."""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.catalogue import layouts
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.typed import Const, FieldStep, IndexStep, Place
+from rosetta_jit.model.expr import Each, Index, Keyed, Member, Pick, Slice
+from rosetta_jit.model.layout import map_entry
+from rosetta_jit.model.types import Array, Bytes, Enum, Int, Map, Optional, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.functions.user_functions import Signature
+    from rosetta_jit.language.imports.mappings import Others
+    from rosetta_jit.language.typed import Expr, Step
+    from rosetta_jit.model.expr import Expr as Untyped
+    from rosetta_jit.model.expr import Path, Side
+    from rosetta_jit.model.types import Field, Schema, Type
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One side of a mapping: its type, and the schema that its references are looked up in."""
+
+    root: Struct
+    schema: Schema
+
+    def value_type(self, type_: Type) -> Type:
+        """The type of a value that is there: without Optional, references resolved."""
+        resolved = self.schema.resolve(type_)
+        return self.value_type(resolved.value) if isinstance(resolved, Optional) else resolved
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The names that are known at one point of a mapping; where problems go, and the enums that were named.
+
+    Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
+    ``suffix`` tells its loop variables from those around. ``nearest`` is the type of `model.expr.NEAREST`, where that is one.
+    """
+
+    messages: Mapping[Side, Message]
+    enums: Mapping[str, Enum]
+    constants: Mapping[str, tuple[Enum, int]]
+    target: Side
+    locals: tuple[str, ...]
+    problems: list[Diagnostic]
+    named_enums: set[str]
+    functions: Mapping[str, Signature]
+    others: Others
+    bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
+    suffix: str = ""
+    nearest: Int | None = None
+
+    def inside(self, variable: str) -> Scope:
+        return replace(self, locals=(*self.locals, variable))
+
+    @property
+    def origin(self) -> Side:
+        """The side that rules read."""
+        return "wire" if self.target == "holder" else "holder"
+
+    def base(self, side: Side) -> Place:
+        """The message of a side."""
+        return self.bases.get(side) or Place(side, (), self.messages[side].root)
+
+
+def enums_of(*schemas: Schema) -> dict[str, Enum]:
+    """All enums by qualified name."""
+    return {name: found for schema in schemas for name, found in schema.types.items() if isinstance(found, Enum)}
+
+
+def constants_of(enums: Mapping[str, Enum]) -> dict[str, tuple[Enum, int]]:
+    """Enum constants by qualified name: within their enum and, as protobuf and OMG IDL scope them, beside it."""
+    beside = {_scope(name) + value: (enum, number) for name, enum in enums.items() for value, number in enum.values}
+    scoped = {f"{name}::{value}": (enum, number) for name, enum in enums.items() if "::" in name for value, number in enum.values}
+    within = {f"{name}.{value}": (enum, number) for name, enum in enums.items() for value, number in enum.values}
+    return beside | scoped | within
+
+
+def _scope(name: str) -> str:
+    """What stands before the name of an enum, and before its constants beside it."""
+    between = "::" if "::" in name else "."
+    outer = name.rpartition(between)[0]
+    return f"{outer}{between}" if outer else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """A path that does not resolve: the fields that it may have meant, so that nothing more is said about them."""
+
+    fields: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sought:
+    """An element that is known by a key: the array, the message of each element, and which one it is."""
+
+    array: Place
+    element: Message
+    step: Keyed
+
+
+def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped | Sought, Scope], Expr | None]) -> Place | Broken:
+    """The place that a path names; ``index`` types the expressions within."""
+    message, base = scope.messages[path.side], scope.base(path.side)
+    type_: Type = message.root
+    steps: list[Step] = [*base.steps]
+    for step in path.steps:
+        found: tuple[list[Step], Type] | Broken
+        match step:
+            case Member():
+                found = _member(step, type_, message, scope, path.side)
+            case Index():
+                found = _element(step, type_, scope, index)
+            case Keyed():
+                found = _sought(step, Place(base.side, tuple(steps), type_, path.span), message, scope, index)
+            case Slice() | Pick() | Each():
+                scope.problems.append(layouts.out_of_place(step.span))
+                found = Broken(())
+            case _:
+                assert_never(step)
+        if isinstance(found, Broken):
+            return Broken(tuple(done.field.name for done in steps if isinstance(done, FieldStep)) + found.fields)
+        steps += found[0]
+        type_ = message.value_type(found[1])
+    return Place(base.side, tuple(steps), type_, path.span)
+
+
+def _member(step: Member, type_: Type, message: Message, scope: Scope, side: Side) -> tuple[list[Step], Type] | Broken:
+    if not isinstance(type_, Struct | Union):
+        scope.problems.append(words.not_a_struct(step.span, step.name, describe(type_)))
+        return Broken(())
+    # Most names are a field's own; all that can be named is gathered for the others alone.
+    own = next((field for field in (type_.fields if isinstance(type_, Struct) else type_.cases) if field.name == step.name), None)
+    if own is not None:
+        return [FieldStep(own)], own.type
+    members = members_of(type_, message.schema)
+    if step.name in members:
+        fields = members[step.name]
+        return [FieldStep(field) for field in fields], fields[-1].type
+    elsewhere = ""
+    if side != scope.target and step.name in members_of(scope.messages[scope.target].root, scope.messages[scope.target].schema):
+        elsewhere = words.other_side(f".{step.name}", side)
+    scope.problems.append(words.unknown_field(step, side, type_.name, members.keys(), elsewhere))
+    return Broken((words.nearest(step.name, members.keys()) or step.name,))
+
+
+def members_of(type_: Struct | Union, schema: Schema) -> dict[str, tuple[Field, ...]]:
+    """What can be named in a struct: its fields, and the cases of its unions as if they were fields."""
+    fields = type_.fields if isinstance(type_, Struct) else type_.cases
+    members: dict[str, tuple[Field, ...]] = {}
+    for each in fields:
+        union = schema.resolve(each.type)
+        if isinstance(union, Union):
+            members |= {case.name: (each, case) for case in union.cases}
+    return members | {each.name: (each,) for each in fields}
+
+
+def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, Scope], Expr | None]) -> tuple[list[Step], Type] | Broken:
+    index = typed(step.index, scope)
+    if not isinstance(type_, Array | Bytes | Map):
+        scope.problems.append(words.not_indexable(step.span, describe(type_)))
+        return Broken(())
+    if index is None or not _in_range(index, type_, scope):
+        return Broken(())
+    return [IndexStep(index, step.span)], element_type(type_)
+
+
+def _sought(
+    step: Keyed, array: Place, message: Message, scope: Scope, typed: Callable[[Untyped | Sought, Scope], Expr | None]
+) -> tuple[list[Step], Type] | Broken:
+    element = message.value_type(element_type(array.type)) if isinstance(array.type, Array | Map) else None
+    if not isinstance(element, Struct):
+        scope.problems.append(words.no_keys(step.span, describe(array.type)))
+        return Broken(())
+    index = typed(Sought(array, Message(element, message.schema), step), scope)
+    return Broken(()) if index is None else ([IndexStep(index, step.span)], element)
+
+
+def _in_range(index: Expr, type_: Array | Bytes | Map, scope: Scope) -> bool:
+    length = type_.fixed if isinstance(type_, Array) else None
+    if not isinstance(index, Const) or 0 <= int(index.value) < (2**63 if length is None else length):
+        return True
+    scope.problems.append(words.index_range(index.span, int(index.value), length))
+    return False
+
+
+def element_type(type_: Array | Bytes | Map) -> Type:
+    """The type of one element; a byte is a uint8, an entry of a map has the fields ``key`` and ``value``."""
+    match type_:
+        case Array(element):
+            return element
+        case Bytes():
+            return Int(8, signed=False)
+        case Map(key, value):
+            return map_entry(key, value)

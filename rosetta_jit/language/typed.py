@@ -1,0 +1,434 @@
+"""Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
+
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Choice | Listed | Given | Calls
+    each with `type`
+    Calls = Call | TextCall | BytesCall | Asked
+    Asked = Told | HostCall | ImageCall
+    Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
+    Change = Rescale | EachElement | EachMember
+    Rule = Assign(Place, Expr, Change?) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
+         | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
+
+Every change of a scalar type is a `Convert`; both operands of a `Binary` have one type, which is its own unless it compares.
+Numbers of different units are converted by a `Binary` of `*`, and of `+` where their scales have different origins; within a whole value,
+by the `change` of its `Assign`.
+Only an `Assign` of a whole array, struct, string or blob (`Access` as the value) may have two types: elements are then widened,
+text is checked, and a length that the target fixes is checked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING
+from typing import Literal as OneOf
+
+from rosetta_jit.model.types import Bool, Int
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.expr import Operator, Side
+    from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.source import Span
+
+INT64 = Int(64)
+BOOL = Bool()
+
+ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate", "nearest"]
+"""``widen`` cannot fail; ``exact``, ``round`` (half to even) and ``truncate`` (toward zero) are a range error where the
+target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
+
+Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
+Function = OneOf[
+    "radians",
+    "degrees",
+    Angular,
+    "atan2",
+    "sqrt",
+    "floor",
+    "ceil",
+    "round",
+    "abs",
+    "min",
+    "max",
+    "align",
+    "divide",
+    "floor_divide",
+    "modulo",
+    "others",
+]
+
+OfTexts = OneOf[
+    "lower",
+    "upper",
+    "strip",
+    "replace",
+    "slice",
+    "part",
+    "behind",
+    "before",
+    "until_nul",
+    "padded",
+    "concatenated",
+    "decoded",
+    "bytes",
+    "join",
+    "split",
+]
+FromText = OneOf[
+    "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
+]
+TextFunction = OneOf[OfTexts, FromText, "written", "iso8601", "timestamp"]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldStep:
+    """A member of a struct or a case of a union."""
+
+    field: Field
+
+
+@dataclass(frozen=True, slots=True)
+class IndexStep:
+    """An element, counted from 0; outside the array it is an error of kind ``index``."""
+
+    index: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Step = FieldStep | IndexStep
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place on one side. ``type`` is that of the last step, without Optional and with references resolved."""
+
+    side: Side
+    steps: tuple[Step, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """A number, text or enum value that is known; floats that a float32 cannot hold exactly are rounded when used.
+
+    A parameter's is ``declared``: in arithmetic it is of the type that the mapping says, whatever else may hold it.
+    """
+
+    value: bool | int | float | str
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+    declared: bool = field(default=False, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A loop variable, int64."""
+
+    name: str
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """The value at a place."""
+
+    place: Place
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LenOf:
+    """The number of elements, or of bytes, at a place; int64."""
+
+    place: Place
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """``-operand``, of int64 or a float; ``not operand``, of a bool."""
+
+    operator: OneOf["-", "not"]
+    operand: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Arithmetic of two int64, or of two floats of one size; comparisons of two scalars of one type; logic of two bools."""
+
+    operator: Operator
+    left: Expr
+    right: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Convert:
+    """A scalar as another type."""
+
+    operand: Expr
+    type: Type
+    rule: ConversionRule
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """The integer nearest to a float, for which ``check`` must hold, where ``variable`` is it: else an error of kind ``range``.
+
+    It packs what a relation computes in floats from an integer: ``check`` says that the relation gives the same of it.
+    """
+
+    operand: Expr
+    variable: Local
+    check: Binary
+    type: Int
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function of the language; all arguments and the result have ``type``."""
+
+    function: Function
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class IsText:
+    """Whether a string or bytes field holds a text that the mapping writes down."""
+
+    place: Place
+    text: str
+    type: Type = BOOL
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Has:
+    """Whether something that can be absent is there: an optional field, a case of a union, and all on the way to it."""
+
+    place: Place
+    type: Type = BOOL
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """The number of the one element of an array for which a condition on it, by the number ``variable``, holds; int64.
+
+    None, or several, are an error of kind ``index``, whose text is ``wanted``; unless it is ``required``, none give -1 and several -2.
+    """
+
+    place: Place
+    variable: Local
+    condition: Expr
+    wanted: str
+    required: bool
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class BytesCall:
+    """A number within a string or bytes field (`float32_at`: field, place, whether its high byte comes first), or a `byte` of a number."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """When this message came, in ns since 1970, or how many came before it; int64."""
+
+    what: OneOf["now", "number"]
+    type: Type = INT64
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class HostCall:
+    """A function that the mapping declares and its user gives; the arguments have the types that it declares."""
+
+    function: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TextCall:
+    """A function of texts (strings, bytes, arrays of 8-bit integers) or moments. ``compared`` is below, at or above 0."""
+
+    function: TextFunction
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+ImageFunction = OneOf["decompress", "compress", "image_width", "image_height", "image_channels", "image_depth"]
+
+
+@dataclass(frozen=True, slots=True)
+class ImageCall:
+    """Bytes as an image, or as the pixels of one: ``numbers`` are their width, height, channels and quality, if it is compressed."""
+
+    function: ImageFunction
+    bytes: Expr
+    type: Type
+    format: str = ""
+    numbers: tuple[Expr, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The value of the first case whose condition holds, else ``otherwise``; without that the message is rejected, with ``reason``.
+
+    All values have ``type``. A choice among texts stands only as the whole value of an `Assign`.
+    """
+
+    cases: tuple[tuple[Expr, Expr], ...]
+    otherwise: Expr | None
+    reason: str
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """One of several values of ``type``, by its number from 0; outside of them it is an error of kind ``index``.
+
+    One among texts stands only as the whole value of an `Assign`.
+    """
+
+    items: tuple[Expr, ...]
+    index: Expr
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A parameter, an item or the length of one, in a mapping that is checked before they are given; it is never lowered."""
+
+    name: str
+    arguments: tuple[Expr, ...]
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Asked = Told | HostCall | ImageCall
+"""What the kernel's host answers."""
+
+Calls = Call | TextCall | BytesCall | Asked
+Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Choice | Listed | Given | Calls
+
+
+@dataclass(frozen=True, slots=True)
+class Rescale:
+    """A number in another unit: times the factor, plus the offset."""
+
+    source: str
+    target: str
+    factor: float
+    offset: float
+
+
+@dataclass(frozen=True, slots=True)
+class EachElement:
+    """What changes in the elements of an array or the values of a map; ``numbered`` are those that are not like the rest."""
+
+    rest: Change | None
+    numbered: tuple[tuple[int, Change | None], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class EachMember:
+    """What changes in the members of a struct or union, by name."""
+
+    members: tuple[tuple[str, Change], ...]
+
+
+Change = Rescale | EachElement | EachMember
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """``.place = value``; where that is a whole array, struct, union or map, ``change`` says which of its numbers have another unit."""
+
+    place: Place
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+    change: Change | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SetLength:
+    """``len(.place) = value``"""
+
+    place: Place
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """A loop; ``stop`` is exclusive, and below ``start`` it is an error of kind ``count``."""
+
+    variable: Local
+    start: Expr
+    stop: Expr
+    body: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """One block or the other."""
+
+    condition: Expr
+    then: tuple[Rule, ...]
+    otherwise: tuple[Rule, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """The message is refused, with this text, or with what the ``pieces`` say, which are texts; ``written`` is as in `mapping.Reject`."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+    pieces: tuple[Expr, ...] = ()
+    written: bool = field(default=False, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Ignore:
+    """Nothing reads this place, and that is meant."""
+
+    place: Place
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Default:
+    """Nothing sets this place, and that is meant: numbers are 0, texts and arrays empty, what can be absent is."""
+
+    place: Place
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Rule = Assign | SetLength | For | When | Reject | Ignore | Default

@@ -1,0 +1,161 @@
+"""Units of values: what a value is measured in, and its conversion to what its place is measured in.
+
+Where a value and its place have units, the conversion between them is inserted, also into each element of a whole array
+(`language.units.wholes`). Functions of angles take and give theirs, what is added or compared must agree, and a value that was
+multiplied or divided is taken to have been converted by hand.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import units as words
+from rosetta_jit.language.conversions import FLOAT64, convert, describe
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Nearest, Unary
+from rosetta_jit.language.units.dimensions import conversion
+from rosetta_jit.language.units.places import Mixed, pairs_in_step, unit_at
+from rosetta_jit.model.types import Enum, Float, Int
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.typed import Expr, Place
+    from rosetta_jit.language.units.places import Unit
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
+
+GIVES = {"radians": "radian", "degrees": "degree", **dict.fromkeys(("asin", "acos", "atan", "atan2"), "radian")}
+TAKES = {"radians": "degree", "degrees": "radian", **dict.fromkeys(("sin", "cos", "tan"), "radian")}
+KEEPS = frozenset(("abs", "min", "max", "round", "floor", "ceil"))
+JOINS = frozenset(("min", "max", "atan2"))
+"""Functions whose arguments must be in one unit."""
+
+Factors = tuple[float, float]
+"""What a value is multiplied by, and what is added then."""
+
+
+def in_unit(value: Expr, place: Place, scope: Scope) -> Expr | None:
+    """The value in the unit of its place; None, and reported, where that cannot be."""
+    if not isinstance(place.type, Int | Float | Enum):
+        return value
+    known, wanted = unit_of(value), unit_at(place)
+    if _is_plain(value) and (known is None) != (wanted is None):
+        scope.problems.append(words.one_sided(value.span, shown(known or wanted), is_source=wanted is None))
+    if known is None or wanted is None or (known == wanted and isinstance(known, str)) or _in_step(value, place):
+        return value
+    if isinstance(known, Mixed) or isinstance(wanted, Mixed):
+        scope.problems.append(words.mixed(value.span, shown(known), shown(wanted)))
+        return None
+    factors = factors_between(known, wanted, value.span, scope.problems)
+    if factors is None or factors == (1.0, 0.0):
+        return None if factors is None else value
+    if factors[1] and _is_computed(value):
+        scope.problems.append(words.offset(value.span, known, wanted))
+        return None
+    converted = scaled(value, place.type, factors)
+    if converted is None:
+        scope.problems.append(words.no_float(value.span, describe(value.type if convert(value, FLOAT64) is None else place.type)))
+    return converted
+
+
+def factors_between(known: str, wanted: str, span: Span | None, problems: list[Diagnostic]) -> Factors | None:
+    """How a value gets from one unit into another; None, and reported, where it cannot. A unit that nobody knows is left alone."""
+    factors = conversion(known, wanted)
+    if isinstance(factors, str):
+        problems.append(words.unknown_unit(span, factors))
+        return 1.0, 0.0
+    if factors is None:
+        problems.append(words.incompatible(span, known, wanted))
+    return factors
+
+
+def scaled(value: Expr, target: Type, factors: Factors) -> Expr | None:
+    """The value times the factor, plus the offset, in float64; None where one of the two is no float."""
+    wide = convert(value, FLOAT64)
+    if wide is None or not isinstance(target, Float):
+        return None
+    factor, offset = factors
+    result: Expr = Binary("*", wide, Const(factor, FLOAT64), FLOAT64, value.span)
+    if offset:
+        result = Binary("+", result, Const(offset, FLOAT64), FLOAT64, value.span)
+    return result if target.bits == FLOAT64.bits else Convert(result, target, "nearest", value.span)
+
+
+def unit_of(value: Expr) -> Unit:
+    """What a value is measured in, if that is known."""
+    match value:
+        case Access(place):
+            return unit_at(place)
+        case Unary(_, operand) | Convert(operand) | Nearest(operand):
+            return unit_of(operand)
+        case Binary("+" | "-" | "%", left, right):
+            return unit_of(left) or unit_of(right)
+        case Call(function) if function in GIVES:
+            return GIVES[function]
+        case Call(function, arguments) if function in KEEPS:
+            return next((unit for argument in arguments if (unit := unit_of(argument))), None)
+        case Choice(cases, otherwise):
+            return next((unit for case in (*(value for _, value in cases), otherwise) if case and (unit := unit_of(case))), None)
+        case _:
+            return None
+
+
+def check_arguments(function: str, arguments: Sequence[Expr], span: Span | None, scope: Scope) -> bool:
+    """Whether arguments are measured in what a function takes."""
+    if function in JOINS:
+        return check_agree(f"`{function}`", arguments, span, scope)
+    known = unit_of(arguments[0]) if function in TAKES else None
+    if not isinstance(known, str) or conversion(known, TAKES[function]) == (1.0, 0.0):
+        return True
+    scope.problems.append(words.wrong_way(span, function, known, TAKES[function]))
+    return False
+
+
+def check_agree(what: str, values: Sequence[Expr], span: Span | None, scope: Scope) -> bool:
+    """Whether values that are added, compared or chosen from are in one unit, as far as that is known."""
+    units = [unit for value in values if (unit := unit_of(value)) is not None]
+    for one, other in pairwise(units):
+        if one == other and isinstance(one, str):
+            continue
+        factors = conversion(other, one) if isinstance(one, str) and isinstance(other, str) else None
+        if factors != (1.0, 0.0):
+            scope.problems.append(words.disagree(span, what, shown(one), shown(other), factors if isinstance(factors, tuple) else None))
+            return False
+    return True
+
+
+def shown(unit: Unit) -> str:
+    """A unit as a report names it."""
+    return " or ".join(each or "nothing" for each in unit.units[:4]) if isinstance(unit, Mixed) else unit or "nothing"
+
+
+def _in_step(value: Expr, place: Place) -> bool:
+    """Whether a value and its place change their units together, element by element, so that nothing is to be converted."""
+    if not (isinstance(value, Access) and isinstance(unit_at(place), Mixed)):
+        return False
+    return all(one == other or (one and other and conversion(one, other) == (1.0, 0.0)) for one, other in pairs_in_step(value.place, place))
+
+
+def _is_computed(value: Expr) -> bool:
+    """Whether two values with units were added or subtracted: a difference has no offset."""
+    match value:
+        case Binary(_, left, right):
+            return unit_of(left) is not None and unit_of(right) is not None
+        case Unary(_, operand) | Convert(operand):
+            return _is_computed(operand)
+        case _:
+            return False
+
+
+def _is_plain(value: Expr) -> bool:
+    """Whether a value is a field as it came, with nothing done to it that could be a conversion by hand."""
+    match value:
+        case Access():
+            return True
+        case Convert(operand) | Unary(_, operand):
+            return _is_plain(operand)
+        case _:
+            return False

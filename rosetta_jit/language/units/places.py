@@ -1,0 +1,128 @@
+"""In which unit the values at a place are: what is said nearest to them.
+
+A field's unit is that of all numbers within it, unless something within says another. Of two that are said of one value, by the field
+itself and by one around it, the outer one counts: it knows more.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeGuard
+
+from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep
+from rosetta_jit.model.types import Array, Optional
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.language.typed import Expr, Place, Step
+    from rosetta_jit.model.types import Field, PartUnit, Type
+
+MAX_KINDS = 500
+"""Kinds of elements that are told apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What is known at a place: the unit of the numbers there, and those of parts of it."""
+
+    unit: str | None = None
+    parts: tuple[PartUnit, ...] = ()
+
+    def member(self, field: Field) -> Context:
+        """What is known at a member of a struct or union."""
+        below = self._below(field.name)
+        unit = next((unit for path, unit in below if not path), field.unit or self.unit)
+        return Context(unit, (*(part for part in below if part[0]), *field.part_units))
+
+    def element(self, index: int | None) -> Context:
+        """What is known at an element; None for all that nothing is said of by number."""
+        return self._element((() if index is None else self._below(index)) + self._below(None))
+
+    @property
+    def elements(self) -> dict[int | None, Context]:
+        """The same for all elements, by number; those that nothing is said of last."""
+        below: defaultdict[int | None, list[PartUnit]] = defaultdict(list)
+        for path, unit in self.parts:
+            for step in path[:1]:
+                if not isinstance(step, str):
+                    below[step].append((path[1:], unit))
+        each = below.pop(None, [])
+        numbered: dict[int | None, Context] = {
+            number: self._element((*below[number], *each)) for number in sorted(filter(_is_number, below))
+        }
+        return numbered | {None: self._element(tuple(each))}
+
+    def _element(self, below: tuple[PartUnit, ...]) -> Context:
+        return Context(next((unit for path, unit in below if not path), self.unit), tuple(part for part in below if part[0]))
+
+    def _below(self, step: str | int | None) -> tuple[PartUnit, ...]:
+        return tuple((path[1:], unit) for path, unit in self.parts if path[:1] == (step,))
+
+
+def _is_number(step: int | None) -> TypeGuard[int]:
+    return step is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Mixed:
+    """The units of elements of which a rule means any."""
+
+    units: tuple[str | None, ...]
+
+
+Unit = str | Mixed | None
+
+
+def unit_at(place: Place) -> Unit:
+    """The unit of the values at a place, if it is known."""
+    first, *others = dict.fromkeys(context.unit for context in contexts_at(place))
+    return Mixed((first, *others)) if others else first
+
+
+def pairs_in_step(one: Place, other: Place) -> Iterator[tuple[str | None, str | None]]:
+    """The units at two places, element by element where one variable says in both which; what is not so is a pair that differs."""
+    indices = {step.index for place in (one, other) for step in place.steps if isinstance(step, IndexStep)}
+    variables = [index for index in indices if not isinstance(index, Const)]
+    fields = [step.field for place in (one, other) for step in place.steps if isinstance(step, FieldStep)]
+    numbers = {step for field in fields for path, _ in field.part_units for step in path if isinstance(step, int)}
+    for number in (*numbers, max(numbers, default=0) + 1):
+        units = [unit_at(_fixed(place, variables[0], number)) for place in (one, other)] if len(variables) == 1 else ["", None]
+        yield (None, "") if isinstance(units[0], Mixed) or isinstance(units[1], Mixed) else (units[0], units[1])
+
+
+def _fixed(place: Place, variable: Expr, number: int) -> Place:
+    """The same place for one value of an index."""
+    known = Const(number, INT64)
+    return replace(place, steps=tuple(replace(step, index=known) if _is_at(step, variable) else step for step in place.steps))
+
+
+def _is_at(step: Step, variable: Expr) -> TypeGuard[IndexStep]:
+    return isinstance(step, IndexStep) and step.index == variable
+
+
+def contexts_at(place: Place) -> tuple[Context, ...]:
+    """What is known at a place: several where an index is not, and not all elements are alike."""
+    found: tuple[Context, ...] = (Context(),)
+    length = None
+    for step in place.steps:
+        found = tuple(dict.fromkeys(each for context in found for each in _behind(step, context, length)))[:MAX_KINDS]
+        length = _length(step.field.type) if isinstance(step, FieldStep) else None
+    return found
+
+
+def _length(type_: Type) -> int | None:
+    return type_.fixed if isinstance(type_, Array) else _length(type_.value) if isinstance(type_, Optional) else None
+
+
+def _behind(step: Step, context: Context, length: int | None) -> tuple[Context, ...]:
+    match step:
+        case FieldStep(field):
+            return (context.member(field),)
+        case _ if isinstance(step.index, Const):
+            return (context.element(int(step.index.value)),)
+        case _:
+            every = context.elements
+            return tuple(found for number, found in every.items() if number is not None or len(every) - 1 != (length or -1))

@@ -1,0 +1,83 @@
+"""The end of a message: the padding behind it, and what may be left over."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import WIDTH, Binary, Compare, Const, Convert, For, If, Load, Local, Store
+from rosetta_jit.kernel.terms import BEGIN, END, add, index
+from rosetta_jit.lowering.codec.leaves import align, distance
+from rosetta_jit.lowering.writer import MESSAGE, block, integer
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.lowering.writer import Writer
+    from rosetta_jit.wire.codec import Encoding, Ending
+
+BITS = 3
+"""Those of the byte that say how much padding there is."""
+LEFT_OVER = "bytes are left over"
+REMEDY = 'lenient=["trailing"]'
+ANY = 1 << 31
+"""Where so many bytes may be left over, there are no more in any message."""
+
+
+def end(writer: Writer, encoding: Encoding) -> None:
+    """Behind the value of a message: nothing more is read than may be there, and its padding is written."""
+    ending, most = encoding.ending, encoding.forgivable
+    if writer.direction != "decode":
+        if ending is not None:
+            _pad(writer, ending)
+        return
+    if encoding.spare:
+        _at_most(writer, encoding.spare)
+        return
+    told = index(0) if ending is None else _skip(writer, ending)
+    if ending is None and not 0 < most < ANY:
+        writer.expect(
+            Compare("eq", writer.position, END), "trailing", MESSAGE, f"{LEFT_OVER}; {REMEDY} leaves them alone" if most else LEFT_OVER
+        )
+        return
+    with writer.nested() as longer:
+        _at_most(writer, most)
+        _zeros(writer, 1 if ending is None else ending.untold, told, f"{LEFT_OVER}; {REMEDY} forgives up to {most}")
+    writer.emit(If(Compare("lt", writer.position, END), block(longer)))
+
+
+def _skip(writer: Writer, ending: Ending) -> Expr:
+    """Exactly as much padding as is announced, whatever its bytes are; gives its size."""
+    told = add(BEGIN, ending.told)
+    writer.require(WIDTH["u8"], MESSAGE, at=told)
+    size = writer.let("padding", Binary("and", integer(Load("u8", told)), index(BITS)))
+    writer.require(size, MESSAGE, "the padding that its header announces is not there")
+    writer.advance(size)
+    return size
+
+
+def _at_most(writer: Writer, size: int) -> None:
+    """No more bytes are left over than ``trailing`` forgives."""
+    writer.expect(Compare("ge", add(writer.position, size), END), "trailing", MESSAGE, f"more than {size} bytes are left over")
+
+
+def _zeros(writer: Writer, untold: int, told: Expr, detail: str) -> None:
+    """All that is left over are zeros up to the next multiple of so many bytes, and no other padding was announced."""
+    padding = writer.let("zeros", distance(writer, untold))
+    whole = Compare("eq", add(writer.position, padding), END)
+    writer.expect(Binary("and", Compare("eq", told, index(0)), whole), "trailing", MESSAGE, detail)
+    number = Local("i64", writer.fresh("i"))
+    with writer.nested() as body:
+        at = writer.let("at", add(writer.position, number))
+        writer.require(WIDTH["u8"], MESSAGE, at=at)
+        writer.expect(Compare("eq", Load("u8", at), Const("u8", 0)), "trailing", MESSAGE, detail)
+    writer.emit(For(number.name, padding, block(body)))
+
+
+def _pad(writer: Writer, ending: Ending) -> None:
+    if ending.align == 1:
+        return
+    behind = writer.position
+    align(writer, ending.align)
+    if writer.direction == "encode" and ending.untold == 1:
+        told = add(BEGIN, ending.told)
+        writer.require(WIDTH["u8"], MESSAGE, "no room for the message", at=told)
+        writer.emit(Store(told, Convert("u8", Binary("sub", writer.position, behind))))

@@ -1,0 +1,391 @@
+"""The fields that a codec's leaves carry: what a walk over a codec reads from and writes to.
+
+A walk knows paths and directions; only `Fields` knows where a value lives. `HolderFields` keeps the values of a type in its own
+holder. The fields of a wire that a mapping relates to another type are `rosetta_jit.lowering.codec.wire_fields.WireFields`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
+
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Expr,
+    Fill,
+    For,
+    Get,
+    Local,
+    Place,
+    Reserve,
+    Scalar,
+    SetField,
+    Unary,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.terms import ROW, add, index, mul, type_of
+from rosetta_jit.lowering.writer import MAX_SIZE, MESSAGE, Where, Writer
+from rosetta_jit.model.layout import UNKNOWN, Layout, Member, Number, Row, Slot, Span, Variant
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.wire.codec import Choice, Codec, Path
+
+
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """How many bytes or elements a field has, and the row where they start, where it is known: both read at one moment."""
+
+    size: Expr
+    start: Expr | None = None
+
+
+OTHER_CASE = "another case is set than the discriminator says"
+
+
+class Fields(Protocol):
+    """Where the values of one message or element live."""
+
+    @property
+    def where(self) -> Where:
+        """Its place in the message, for errors."""
+        ...
+
+    def shown(self, path: Path) -> Where:
+        """The place of a field, for errors."""
+        ...
+
+    def put(self, path: Path, value: Expr) -> None:
+        """Decode: a number has come."""
+        ...
+
+    def get(self, path: Path) -> Expr | None:
+        """Encode: the number to write; None where it is written later, in its place."""
+        ...
+
+    def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
+        """Decode: bytes have come."""
+        ...
+
+    def stored(self, path: Path, fixed: int | None = None) -> Stored:
+        """Encode: the bytes or elements to write; their number, where the schema fixes it."""
+        ...
+
+    def copy_bytes(self, path: Path, stored: Stored) -> None:
+        """Encode: write bytes to the current position."""
+        ...
+
+    def open(self, path: Path, count: Expr) -> Elements:
+        """Decode: so many elements come, one after another."""
+        ...
+
+    def elements(self, path: Path, stored: Stored) -> Elements:
+        """Encode: the elements to write."""
+        ...
+
+    def branch(self, choice: Choice) -> None:
+        """Each alternative of a choice will put the same fields."""
+        ...
+
+    def choose(self, path: Path, number: int) -> None:
+        """The union at a path has this case, 0 for none: decode says so, encode checks it."""
+        ...
+
+    def scatter(self, path: Path) -> None:
+        """Decode: the fields of the struct at a path come in any order, or not at all."""
+        ...
+
+    def appear(self, path: Path) -> None:
+        """Decode: an optional field is there, whatever is put into it."""
+        ...
+
+    def present(self, path: Path) -> Expr:
+        """Encode: whether an optional field is there."""
+        ...
+
+    @property
+    def scope(self) -> Fields:
+        """The fields of the struct around: those that lengths are computed from."""
+        ...
+
+
+class Elements(Protocol):
+    """The fields of each element of an array."""
+
+    def place(self, item: Codec, first: Expr, step: int) -> Elements:
+        """The elements are of one size: the first lies there, the others each a step further."""
+        ...
+
+    def at(self, number: Expr) -> Fields:
+        """The fields of one element."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A slot of a row of a lane."""
+
+    lane: int
+    row: Expr
+    slot: Slot
+
+    def place(self, offset: int) -> Place:
+        return Place(self.lane, self.row, offset)
+
+
+@dataclass(frozen=True, slots=True)
+class HolderFields:
+    """Fields in the lanes of a holder. With ``borrow`` bytes stay in the message, and the holder says where."""
+
+    writer: Writer
+    layout: Layout
+    cell: Cell
+    where: Where = MESSAGE
+    borrow: bool = False
+    owner: HolderFields | None = None
+
+    @property
+    def scope(self) -> HolderFields:
+        return self.owner or self
+
+    def shown(self, path: Path) -> Where:
+        """As users name it: a case of a union stands among the fields around the union."""
+        where, slot = self.where, self.cell.slot
+        for number, name in enumerate(path, 1):
+            slot = member_of(slot, name).slot
+            where = where.member(name) if number == len(path) or not isinstance(slot, Variant) else where
+        return where
+
+    def put(self, path: Path, value: Expr) -> None:
+        cell = self.mark(path)
+        match cell.slot:
+            case Number(offset, scalar):
+                self.writer.emit(SetField(cell.place(offset), converted(value, scalar)))
+            case _:
+                raise AssertionError(path)
+
+    def get(self, path: Path) -> Expr | None:
+        cell = self.find(path)
+        match cell.slot:
+            case Number(offset, scalar):
+                return Get(scalar_name(scalar), cell.place(offset))
+            case _:
+                raise AssertionError(path)
+
+    def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
+        cell = self.mark(path)
+        span = span_of(cell)
+        if self.borrow:  # the sign says that the bytes are the message's
+            self.set_span(cell, at, Binary("sub", index(-1), size))
+            return
+        start = self.reserve(span.lane, size)
+        self.writer.emit(Copy(Place(span.lane, start), Wire(at), size))
+        self.set_span(cell, start, size)
+
+    def stored(self, path: Path, fixed: int | None = None) -> Stored:
+        del fixed
+        start, count = self.read_span(self.find(path), self.shown(path))
+        return Stored(count, start)
+
+    def copy_bytes(self, path: Path, stored: Stored) -> None:
+        assert stored.start is not None
+        source = Place(span_of(self.find(path)).lane, stored.start)
+        self.writer.emit(Copy(Wire(self.writer.position), source, stored.size))
+
+    def open(self, path: Path, count: Expr) -> HolderElements:
+        cell = self.mark(path)
+        lane = span_of(cell).lane
+        start = self.reserve(lane, count)
+        self.set_span(cell, start, count)
+        if has_gaps(self.layout.lanes[lane].element):
+            stride = self.layout.lanes[lane].stride
+            self.writer.expect(Compare("le", count, index(MAX_SIZE // stride)), "count", self.shown(path), "too many elements")
+            self.clear(lane, start, count)
+        return HolderElements(self, lane, start, self.shown(path))
+
+    def elements(self, path: Path, stored: Stored) -> HolderElements:
+        assert stored.start is not None
+        return HolderElements(self, span_of(self.find(path)).lane, stored.start, self.shown(path))
+
+    def branch(self, choice: Choice) -> None:
+        """Fields of a holder are written in whichever branch they come."""
+
+    def choose(self, path: Path, number: int) -> None:
+        cell = self.find(path)
+        assert isinstance(cell.slot, Variant)
+        place = cell.place(cell.slot.offset)
+        if self.writer.direction == "decode":
+            self.writer.emit(SetField(place, index(number)))
+        else:
+            agrees = Compare("eq", Get("i64", place), index(number))
+            self.writer.expect(agrees, "union", self.shown(path[:-1]), OTHER_CASE)
+
+    def scatter(self, path: Path) -> None:
+        """Lanes take fields in any order."""
+
+    def appear(self, path: Path) -> None:
+        self.mark(path)
+
+    def present(self, path: Path) -> Expr:
+        owner = self.find(path[:-1])
+        member = member_of(owner.slot, path[-1])
+        assert isinstance(owner.slot, Row)
+        assert member.presence is not None
+        place, mask = presence_bit(owner, owner.slot, member.presence)
+        return Compare("ne", Binary("and", Get("u64", place), mask), Const("u64", 0))
+
+    # --- places ------------------------------------------------------------------------------------------------------
+
+    def find(self, path: Path) -> Cell:
+        """The slot at a path."""
+        slot = self.cell.slot
+        for name in path:
+            slot = member_of(slot, name).slot
+        return replace(self.cell, slot=slot)
+
+    def mark(self, path: Path) -> Cell:
+        """The slot at a path that is about to be set: what can be absent on the way becomes present."""
+        slot = self.cell.slot
+        for name in path:
+            self.mark_member(slot, name)
+            slot = member_of(slot, name).slot
+        return replace(self.cell, slot=slot)
+
+    def mark_member(self, slot: Slot, name: str) -> None:
+        member = member_of(slot, name)
+        match slot:
+            case Row() if member.presence is not None:
+                place, mask = presence_bit(self.cell, slot, member.presence)
+                self.writer.emit(SetField(place, Binary("or", Get("u64", place), mask)))
+            case Variant(offset, members):
+                self.writer.emit(SetField(self.cell.place(offset), index(1 + members.index(member))))
+            case _:
+                pass
+
+    def reserve(self, lane: int, count: Expr) -> Expr:
+        """Take ``count`` new rows of a lane; gives the first."""
+        self.writer.emit(Reserve(lane, count))
+        start = self.writer.let("start", Used(lane))
+        self.writer.emit(Advance(lane, count))
+        return start
+
+    def clear(self, lane: int, start: Expr, count: Expr) -> None:
+        """Zeros in so many rows; but what `size` has left in their hidden words is kept for `encode`."""
+        links = self.layout.lanes[lane].links
+        if links is None or self.writer.direction != "encode":
+            self.writer.emit(Fill(Place(lane, start), mul(count, self.layout.lanes[lane].stride)))
+            return
+        number = self.writer.fresh("cleared")
+        row = add(start, Local("i64", number))
+        self.writer.emit(For(number, count, (Fill(Place(lane, row), index(links)),)))
+
+    def is_own_row(self, span: Span) -> bool:
+        """Whether a span leads to messages that can contain themselves."""
+        return self.layout.lanes[span.lane].links is not None
+
+    def set_span(self, cell: Cell, start: Expr, count: Expr) -> None:
+        offset = cell.slot.offset if isinstance(cell.slot, Span) else 0
+        self.writer.emit(SetField(cell.place(offset), start), SetField(cell.place(offset + 8), count))
+
+    def read_span(self, cell: Cell, where: Where) -> tuple[Expr, Expr]:
+        """Start and count of a field's elements, checked: a damaged holder must not lead outside its lanes."""
+        span = span_of(cell)
+        start = self.writer.let("start", Get("i64", cell.place(span.offset)))
+        count = self.writer.let("count", Get("i64", cell.place(span.offset + 8)))
+        inside = Binary("and", Compare("ge", count, index(0)), Compare("le", count, Used(span.lane)))
+        self.writer.expect(inside, "length", where, "the holder is damaged")
+        inside = Binary("and", Compare("ge", start, index(0)), Compare("le", start, Binary("sub", Used(span.lane), count)))
+        self.writer.expect(inside, "length", where, "the holder is damaged")
+        return start, count
+
+
+@dataclass(frozen=True, slots=True)
+class HolderElements:
+    """The rows of an array from a first one on."""
+
+    parent: HolderFields
+    lane: int
+    start: Expr
+    where: Where
+
+    def place(self, item: Codec, first: Expr, step: int) -> HolderElements:
+        del item, first, step
+        return self
+
+    def at(self, number: Expr) -> HolderFields:
+        slot = self.parent.layout.lanes[self.lane].element
+        cell = Cell(self.lane, add(self.start, number), slot)
+        owner = None if isinstance(slot, Row) else self.parent.scope
+        return replace(self.parent, cell=cell, where=self.where.element(number), owner=owner)
+
+
+def root_fields(writer: Writer, layout: Layout, *, borrow: bool = False) -> HolderFields:
+    """The fields of the message itself: row `row` of lane 0."""
+    return HolderFields(writer, layout, Cell(0, ROW, layout.root), borrow=borrow)
+
+
+def member_of(slot: Slot, name: str) -> Member:
+    """A field of a row, or a case of a union."""
+    match slot:
+        case Row(unknown=Span() as unknown) if name == UNKNOWN:
+            return Member(UNKNOWN, unknown)
+        case Row(members=members) | Variant(members=members):
+            return members.named[name]
+        case _:
+            raise AssertionError(name)
+
+
+def has_gaps(slot: Slot) -> bool:
+    """Whether reading a value may leave parts of its slot as they were: what is absent, the other cases of a union."""
+    match slot:
+        case Row(_, _, words, members):
+            return words > 0 or any(has_gaps(member.slot) for member in members)
+        case Variant():
+            return True
+        case _:
+            return False
+
+
+def span_of(cell: Cell) -> Span:
+    """The span at a cell that is one."""
+    match cell.slot:
+        case Span():
+            return cell.slot
+        case _:
+            raise AssertionError(cell)
+
+
+def presence_bit(cell: Cell, row: Row, bit: int) -> tuple[Place, Const]:
+    """The presence word of a field, and its bit in there."""
+    return cell.place(row.offset + 8 * (bit // 64)), Const("u64", 1 << bit % 64)
+
+
+def converted(value: Expr, scalar: str) -> Expr:
+    """A value as the scalar that a slot holds; nothing is checked."""
+    source, target = type_of(value), scalar_name(scalar)
+    if source == target:
+        return value
+    if target == "bool":
+        zero = Const(source, 0)
+        return Compare("ne", value, zero)
+    return Convert(target, value)
+
+
+def negated(condition: Expr) -> Expr:
+    """The opposite of a condition."""
+    return Unary("not", condition)
+
+
+def scalar_name(scalar: str) -> Scalar:
+    """The same word, as the kernel's type."""
+    match scalar:
+        case "bool" | "i8" | "u8" | "i16" | "u16" | "i32" | "u32" | "i64" | "u64" | "f32" | "f64":
+            return scalar
+        case _:
+            raise AssertionError(scalar)

@@ -1,0 +1,393 @@
+"""The leaves of a codec: the only place that asks for the direction.
+
+A number is loaded, stored, or counted; a constant is expected, stored, or counted; a count is read and checked, or written.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Expr,
+    Fill,
+    For,
+    If,
+    IsText,
+    Load,
+    Local,
+    Scalar,
+    Select,
+    Store,
+    Wire,
+)
+from rosetta_jit.kernel.terms import add, index, mul, type_of
+from rosetta_jit.lowering.codec.computed import evaluate
+from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, integer
+from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Utf16
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterable
+
+    from rosetta_jit.lowering.codec.fields import Fields
+    from rosetta_jit.model import expr
+    from rosetta_jit.wire.codec import Count
+
+Leaf = Number | Table | Constant | Computed | Padding | Align | Blob | Utf16
+
+LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 << 31, "u32": 1 << 32}
+"""The first count that a number on the wire cannot carry."""
+
+SHOWN_NUMBERS = 12
+"""How many numbers of a table an error lists."""
+
+
+def leaf(codec: Leaf, fields: Fields, writer: Writer) -> None:
+    """Read or write a leaf at the current position."""
+    match codec:
+        case Number(path, scalar, order):
+            _number(writer, fields, path, scalar_name(scalar), order)
+        case Table():
+            _table(writer, fields, codec)
+        case Constant(_, bytes(value)):
+            _text_constant(writer, fields, codec.path, value)
+        case Constant():
+            _number_constant(writer, fields, codec)
+        case Computed(path, scalar, value, order):
+            _computed(writer, fields, path, scalar_name(scalar), value, order)
+        case Padding(scalar, value, order):
+            _padding(writer, fields.where, scalar_name(scalar), value, order)
+        case Align(size):
+            align(writer, size)
+        case Blob():
+            _blob(writer, fields, codec)
+        case Utf16():
+            _utf16(writer, fields, codec)
+        case _:
+            assert_never(codec)
+
+
+def _number(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, order: str) -> None:
+    where = fields.shown(path)
+    if writer.direction == "decode":
+        fields.put(path, writer.load(scalar, where, order))
+        return
+    value = fields.get(path) if writer.direction == "encode" else None
+    if value is None:
+        writer.require(WIDTH[scalar], where, "no room for the message")
+        writer.advance(WIDTH[scalar])
+    else:
+        writer.store(_as(scalar, value), where, order)
+
+
+def _table(writer: Writer, fields: Fields, table: Table) -> None:
+    if table.scalar is None:
+        _implied(writer, fields, table)
+        return
+    where, scalar = fields.shown(table.path), scalar_name(table.scalar)
+    if writer.direction == "decode":
+        at = writer.position
+        wire = writer.let("code", integer(writer.load(scalar, where, table.order)))
+        known, value = _translated(wire, list(table.pairs))
+        writer.expect(known, "constant", where, f"not one of {_numbers(table)}", at=at)
+        fields.put(table.path, value)
+        return
+    value = fields.get(table.path) if writer.direction == "encode" else None
+    if value is None:
+        writer.require(WIDTH[scalar], where)
+        writer.advance(WIDTH[scalar])
+        return
+    known, wire = _translated(writer.let("code", integer(value)), [(value, number) for number, value in table.pairs])
+    writer.expect(known, "range", where, "the wire has no word for this value")
+    writer.store(_as(scalar, wire), where, table.order)
+
+
+def _implied(writer: Writer, fields: Fields, table: Table) -> None:
+    """A value that takes no bytes. What chooses this codec when encoding has looked at it."""
+    if writer.direction == "decode":
+        fields.put(table.path, index(table.pairs[0][1]))
+
+
+def _translated(word: Expr, pairs: list[tuple[int, int]]) -> tuple[Expr, Expr]:
+    """Whether a table has a word, and what it stands for. A run of numbers that stand for themselves needs no table."""
+    words = sorted(number for number, _ in pairs)
+    if all(number == value for number, value in pairs) and words == list(range(words[0], words[-1] + 1)):
+        inside = Binary("and", Compare("ge", word, index(words[0])), Compare("le", word, index(words[-1])))
+        return inside, word
+    tests: list[tuple[Expr, int]] = [(Compare("eq", word, index(number)), value) for number, value in pairs]
+    return _any(test for test, _ in tests), _select(tests)
+
+
+def _numbers(table: Table) -> str:
+    numbers = [str(number) for number, _ in table.pairs]
+    return ", ".join(numbers if len(numbers) <= SHOWN_NUMBERS else [*numbers[:SHOWN_NUMBERS], "…"])
+
+
+def _number_constant(writer: Writer, fields: Fields, constant: Constant) -> None:
+    where = fields.shown(constant.path)
+    scalar = scalar_name(constant.scalar)
+    value = Const(scalar, constant.value if isinstance(constant.value, int | float) else 0)
+    if writer.direction == "decode":
+        at = writer.position
+        found = writer.load(scalar, where, constant.order)
+        writer.expect(Compare("eq", found, value), constant.kind, where, f"must be {constant.value}", at=at)
+        if constant.kind == "constant" and constant.path:
+            fields.put(constant.path, value)
+    else:
+        writer.store(value, where, constant.order)
+
+
+def _text_constant(writer: Writer, fields: Fields, path: tuple[str, ...], value: bytes) -> None:
+    where = fields.shown(path)
+    writer.require(len(value), where)
+    for offset, number, scalar in _words(value):
+        at = add(writer.position, offset)
+        if writer.direction == "decode":
+            found = Compare("eq", Load(scalar, at), Const(scalar, number))
+            writer.expect(found, "constant", where, f"must be {value!r}", at=at)
+        elif writer.direction == "encode":
+            writer.emit(Store(at, Const(scalar, number)))
+    if writer.direction == "decode" and path:
+        fields.put_bytes(path, writer.position, index(len(value)))
+    writer.advance(len(value))
+
+
+def _computed(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, value: expr.Expr, order: str) -> None:
+    where = fields.shown(path)
+    if writer.direction == "size":
+        writer.advance(WIDTH[scalar])
+        return
+    if writer.direction == "decode":
+        fields.put(path, writer.load(scalar, where, order))
+        writer.deferred.append(lambda: _agrees(writer, fields, fields.get(path), value, where, "constant"))
+    else:
+        expected = evaluate(value, fields, writer, where)
+        _in_range(writer, where, expected, scalar)
+        writer.store(_as(scalar, expected), where, order)
+
+
+def _agrees(writer: Writer, fields: Fields, found: Expr | None, value: expr.Expr, where: Where, kind: str) -> None:
+    """Checked when the message has been read, since any of its fields may determine the value."""
+    assert found is not None
+    known = writer.let("found", integer(found))
+    expected = evaluate(value, fields, writer, where)
+    writer.expect(Compare("eq", known, expected), kind, where, "must agree with the fields that determine it")
+
+
+def _padding(writer: Writer, where: Where, scalar: Scalar, value: int, order: str) -> None:
+    if writer.direction == "decode":
+        writer.require(WIDTH[scalar], where)
+        writer.advance(WIDTH[scalar])
+    else:
+        writer.store(Const(scalar, value), where, order)
+
+
+def distance(writer: Writer, size: int) -> Expr:
+    """How many bytes there are to the next multiple of ``size`` bytes from the origin."""
+    return Binary("and", Binary("sub", writer.origin, writer.position), index(size - 1))
+
+
+def align(writer: Writer, size: int, when: Expr | None = None) -> None:
+    """Padding up to a multiple of ``size`` bytes from the origin, always or under a condition."""
+    padding = distance(writer, size)
+    padding = writer.let("padding", padding if when is None else Select(when, padding, index(0)))
+    writer.require(padding, Where())
+    if writer.direction == "encode":
+        writer.emit(Fill(Wire(writer.position), padding))
+    writer.advance(padding)
+
+
+def _blob(writer: Writer, fields: Fields, blob: Blob) -> None:
+    where = fields.shown(blob.path)
+    extra = int(blob.terminated)
+    if writer.direction == "decode":
+        total = read_count(writer, fields, blob.path, blob.count, "length", least=extra)
+        writer.require(total, where)
+        size = _without_terminator(writer, total, where) if blob.terminated else total
+        if blob.text:
+            writer.expect(IsText(Wire(writer.position), size), "text", where, "not valid UTF-8")
+        fields.put_bytes(blob.path, writer.position, size)
+        writer.advance(total)
+        return
+    stored = fields.stored(blob.path)
+    write_count(writer, fields, blob.count, stored.size, where, "length", extra=extra)
+    writer.require(stored.size, where, "no room for the message")
+    if writer.direction == "encode":
+        fields.copy_bytes(blob.path, stored)
+    writer.advance(stored.size)
+    if blob.terminated:
+        writer.store(Const("u8", 0), where)
+
+
+def _utf16(writer: Writer, fields: Fields, text: Utf16) -> None:
+    where = fields.shown(text.path)
+    if writer.direction == "decode":
+        units = read_count(writer, fields, text.path, text.count, "length")
+        writer.require(mul(units, 2), where)
+        little, marks = _byte_order_mark(writer, units)
+        begin = writer.let("text", add(writer.position, mul(marks, 2)))
+        count = writer.let("units", Binary("sub", units, marks))
+        writer.expect(Compare("ge", count, index(0)), "length", where, "no such length")  # true anyway; said for the proof
+        elements = fields.open(text.path, count)
+        with _each(writer, count) as number:
+            at = writer.let("unit", add(begin, mul(number, 2)))
+            writer.require(2, where, at=at)
+            elements.at(number).put((), Select(little, Load("u16", at), Load("u16", at, ">")))
+        writer.advance(mul(units, 2))
+        return
+    stored = fields.stored(text.path)
+    writer.expect(Compare("lt", stored.size, index(1 << 30)), "range", where, "too many for the wire")
+    marks = writer.let("marks", Convert("i64", Compare("gt", stored.size, index(0))))
+    write_count(writer, fields, text.count, writer.let("units", Binary("add", stored.size, marks)), where, "length")
+    writer.require(mul(add(stored.size, marks), 2), where, "no room for the message")
+    begin = writer.position
+    if writer.direction == "encode":
+        elements = fields.elements(text.path, stored)
+        with writer.nested() as marked:
+            writer.require(2, where, at=begin)
+            writer.emit(Store(begin, Const("u16", 0xFEFF)))
+        writer.emit(If(Compare("gt", marks, index(0)), tuple(marked)))
+        first = writer.let("text", add(begin, mul(marks, 2)))
+        with _each(writer, stored.size) as number:
+            at = writer.let("unit", add(first, mul(number, 2)))
+            writer.require(2, where, at=at)
+            unit = elements.at(number).get(())
+            assert unit is not None
+            writer.emit(Store(at, unit))
+    writer.advance(mul(add(stored.size, marks), 2))
+
+
+def _byte_order_mark(writer: Writer, units: Expr) -> tuple[Expr, Expr]:
+    """Whether a text is little-endian, and how many marks say so."""
+    mark = writer.var("mark", Const("u16", 0))
+    with writer.nested() as there:
+        writer.require(2, Where(), at=writer.position)
+        writer.assign(mark, Load("u16", writer.position, ">"))
+    writer.emit(If(Compare("gt", units, index(0)), tuple(there)))
+    little = writer.let("little", Compare("eq", mark, Const("u16", 0xFFFE)))
+    marked = Binary("or", little, Compare("eq", mark, Const("u16", 0xFEFF)))
+    return little, writer.let("marks", Select(marked, index(1), index(0)))
+
+
+@contextmanager
+def _each(writer: Writer, count: Expr) -> Generator[Local]:
+    """A loop over so many elements; gives the number of each."""
+    number = Local("i64", writer.fresh("i"))
+    with writer.nested() as body:
+        yield number
+    writer.emit(For(number.name, count, tuple(body)))
+
+
+def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:
+    last = Load("u8", Binary("sub", Binary("add", writer.position, total), index(1)))
+    writer.expect(Compare("eq", last, Const("u8", 0)), "constant", where, "a string must end with NUL")
+    return writer.let("length", Binary("sub", total, index(1)))
+
+
+def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
+    """A count that has come: not negative, and what the schema says it must be. ``least`` are counted, but are not of the value."""
+    where, at = fields.shown(path), writer.position
+    found = _told(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where, least)
+    if count.maximum is not None:
+        writer.expect(Compare("le", found, index(count.maximum + least)), kind, where, f"at most {count.maximum}", at=at)
+    if isinstance(count.value, int):
+        if count.scalar is None:
+            return found
+        writer.expect(Compare("eq", found, index(count.value)), kind, where, f"must be {count.value}", at=at)
+        return index(count.value)
+    rule = f"must be at least {least}" if least else "must not be negative"
+    writer.expect(Compare("ge", found, index(least)), kind, where, rule, at=at)
+    value = count.value
+    if value is not None and count.scalar is not None:
+        writer.deferred.append(lambda: _agrees(writer, fields, fields.stored(path).size, value, where, kind))
+    return found
+
+
+def _counted(writer: Writer, count: Count, where: Where, least: int) -> Expr:
+    """A count on the wire, of elements and of the ``least`` that are counted with them."""
+    at = writer.position
+    found = writer.let("count", integer(writer.load(scalar_name(count.scalar or ""), where, count.order)))
+    if count.unit == 1:
+        return found
+    units = add(found, -least)
+    whole = Compare("eq", Binary("rem", units, index(count.unit)), index(0))
+    writer.expect(
+        whole,
+        "length",
+        where,
+        f"must be {least} more than a multiple of {count.unit}" if least else f"must be a multiple of {count.unit}",
+        at=at,
+    )
+    return writer.let("elements", add(Binary("div", units, index(count.unit)), least))
+
+
+def _told(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
+    """A count that the type or another field tells."""
+    assert count.value is not None
+    return index(count.value) if isinstance(count.value, int) else writer.let("count", evaluate(count.value, fields.scope, writer, where))
+
+
+def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where: Where, kind: str = "count", *, extra: int = 0) -> None:
+    """A count to be written, ``extra`` more than the value has; one that the schema fixes, or other fields tell, must be that one."""
+    if count.maximum is not None:
+        writer.expect(Compare("le", value, index(count.maximum)), kind, where, f"at most {count.maximum}")
+    if count.value is not None and not isinstance(count.value, int):
+        agrees = Compare("eq", value, _told(writer, fields, count, where))
+        writer.expect(agrees, kind, where, "must agree with the fields that determine it")
+    value = add(value, extra)
+    if isinstance(count.value, int):
+        writer.expect(Compare("eq", value, index(count.value)), kind, where, f"must be {count.value}")
+    if count.scalar is None:
+        return
+    scalar = scalar_name(count.scalar)
+    if scalar in LIMITS:
+        writer.expect(Compare("lt", value, index(-(-LIMITS[scalar] // count.unit))), "range", where, "too many for the wire")
+    if count.unit != 1:
+        writer.expect(Compare("le", value, index(MAX_SIZE // count.unit)), "range", where, "too many for the wire")
+    writer.store(_as(scalar, add(mul(add(value, -extra), count.unit), extra)), where, count.order)
+
+
+# --- small things -----------------------------------------------------------------------------------------------------------
+
+
+def _as(scalar: Scalar, value: Expr) -> Expr:
+    return value if type_of(value) == scalar else Convert(scalar, value)
+
+
+def _in_range(writer: Writer, where: Where, value: Expr, scalar: Scalar) -> None:
+    limit = LIMITS[scalar]
+    low = -limit if scalar.startswith("i") else 0
+    inside = Binary("and", Compare("ge", value, index(low)), Compare("lt", value, index(limit)))
+    writer.expect(inside, "range", where, "does not fit on the wire")
+
+
+def _any(tests: Iterable[Expr]) -> Expr:
+    result: Expr | None = None
+    for test in tests:
+        result = test if result is None else Binary("or", result, test)
+    return result or Const("bool", value=False)
+
+
+def _select(pairs: list[tuple[Expr, int]]) -> Expr:
+    result: Expr = index(pairs[-1][1])
+    for test, value in reversed(pairs[:-1]):
+        result = Select(test, index(value), result)
+    return result
+
+
+def _words(value: bytes) -> list[tuple[int, int, Scalar]]:
+    """Bytes as the fewest little-endian words: offset, number, type."""
+    words: list[tuple[int, int, Scalar]] = []
+    offset = 0
+    sizes: tuple[tuple[int, Scalar], ...] = ((8, "u64"), (4, "u32"), (2, "u16"), (1, "u8"))
+    while offset < len(value):
+        size, scalar = next(each for each in sizes if each[0] <= len(value) - offset)
+        words.append((offset, int.from_bytes(value[offset : offset + size], "little"), scalar))
+        offset += size
+    return words

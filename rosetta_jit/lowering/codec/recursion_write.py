@@ -1,0 +1,270 @@
+"""Writing messages of recursive structs, and their sizes, without a stack.
+
+The scratch lane holds, from row 0 on: the number of rows n, where the lengths of the root message start, n pairs of lane and row (parents
+before children), then the lengths. To measure, the list is made and gone through from its end; to write, from its start.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import (
+    Binary,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Expect,
+    Expr,
+    Get,
+    If,
+    Local,
+    Place,
+    Reserve,
+    SetField,
+    Switch,
+    Used,
+    While,
+)
+from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
+from rosetta_jit.lowering.codec.fields import Cell, HolderFields, span_of
+from rosetta_jit.lowering.codec.recursion import BEGIN_WORD, MORE_WORD, SIZE_WORD, link
+from rosetta_jit.lowering.codec.tagged_write import Lengths, present, write_message, write_tag
+from rosetta_jit.lowering.codec.varint import write_varint
+from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire.codec import Entry, Recursion, Tagged
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Block
+    from rosetta_jit.wire.codec import Encoding
+
+HEADER = 2
+"""Rows of the scratch lane before the list."""
+
+DAMAGED = "the holder changed while it was written"
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """The list of rows: the scratch lane, how many there are, and how many there can be."""
+
+    scratch: int
+    number: Local
+    most: Expr
+
+
+def has_recursion(tagged: Tagged) -> bool:
+    """Whether a message has recursive ones among its fields, or theirs."""
+    return any(_is_recursive(entry) for entry in tagged.entries)
+
+
+def _is_recursive(entry: Entry) -> bool:
+    return isinstance(entry.value, Recursion) or (isinstance(entry.value, Tagged) and has_recursion(entry.value))
+
+
+def write_root(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer) -> None:
+    """The message itself and all rows below it."""
+    scratch = len(fields.layout.lanes)
+    if not has_recursion(tagged):
+        write_message(writer, fields, tagged, Lengths(scratch, writer.var("lengths", index(0)), write_child))
+    elif writer.direction == "size":
+        _measure(encoding, fields, tagged, writer, scratch)
+    else:
+        _write(encoding, fields, tagged, writer, scratch)
+
+
+def write_child(writer: Writer, fields: HolderFields, cell: Cell, recursion: Recursion, where: Where) -> None:
+    """The place of a message within another: its size is known, and it is told where it belongs."""
+    lane, row = cell.lane, cell.row
+    size = writer.let("size", Get("i64", link(fields.layout, lane, row, SIZE_WORD)))
+    sane = Binary("and", Compare("ge", size, index(0)), Compare("le", size, index(MAX_SIZE)))
+    writer.expect(sane, "length", where, DAMAGED)
+    if recursion.group is None:
+        write_varint(writer, Convert("u64", size), where)
+    if writer.direction == "encode":
+        writer.emit(SetField(link(fields.layout, lane, row, BEGIN_WORD), writer.position))
+    writer.require(size, where, "no room for the message")
+    writer.advance(size)
+    if recursion.group is not None:
+        write_tag(writer, recursion.group, 4, where)
+
+
+# --- measuring -----------------------------------------------------------------------------------------------------------------
+
+
+def _measure(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
+    rows = _list_rows(encoding, fields, tagged, writer, scratch)
+    count = writer.let("count", rows.number)
+    first = writer.let("first_length", add(mul(count, 2), HEADER))
+    writer.emit(Reserve(scratch, first))
+    lengths = Lengths(scratch, writer.var("lengths", first), write_child)
+    back = writer.var("back", index(0))
+    with writer.nested() as body:
+        writer.position = index(0)
+        _each_lane(encoding, fields, writer, scratch, Binary("sub", Binary("sub", count, back), index(1)), lengths)
+        writer.assign(back, add(back, 1))
+    writer.emit(While(Compare("lt", back, count), block(body), (Compare("ge", back, index(0)), *_lengths_invariant(lengths)), back))
+    writer.emit(
+        Reserve(scratch, index(HEADER)), SetField(Place(scratch, index(0)), count), SetField(Place(scratch, index(1)), lengths.next)
+    )
+    writer.position = index(0)
+    write_message(writer, fields, tagged, lengths)
+
+
+def _list_rows(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> Rows:
+    most: Expr = index(0)
+    for lane, _ in fields.layout.recursive:
+        most = add(most, Used(lane))
+    rows = Rows(scratch, writer.var("rows", index(0)), writer.let("most", most))
+    _visit(writer, fields, tagged, rows)
+    at = writer.var("at_row", index(0))
+    with writer.nested() as body:
+        cases = [(lane, _visit_row(writer, fields, encoding.recursive[struct], lane, rows, at)) for lane, struct in fields.layout.recursive]
+        writer.emit(Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
+        _say_again(writer, rows)
+        writer.assign(at, add(at, 1))
+    goes_on = Binary("and", Compare("lt", at, rows.number), Compare("lt", at, rows.most))
+    writer.emit(While(goes_on, block(body), (Compare("ge", at, index(0)), *_rows_invariant(rows)), at))
+    return rows
+
+
+def _visit_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, rows: Rows, at: Local) -> Block:
+    with writer.nested() as body:
+        row = _row_of(writer, rows.scratch, at, lane)
+        inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element))
+        _visit(writer, inner, tagged, rows)
+    return block(body)
+
+
+def _visit(writer: Writer, fields: HolderFields, tagged: Tagged, rows: Rows) -> None:
+    """Add all recursive messages among the fields of one to the list."""
+    for entry in tagged.entries:
+        if not _is_recursive(entry):
+            continue
+        there = present(fields, entry)
+        with writer.nested() as body:
+            _visit_field(writer, fields, entry, rows)
+        writer.emit(If(there if there is not None else Const("bool", value=True), block(body)))
+        _say_again(writer, rows)
+
+
+def _visit_field(writer: Writer, fields: HolderFields, entry: Entry, rows: Rows) -> None:
+    if isinstance(entry.value, Tagged) and entry.label == "single":
+        inner = HolderFields(writer, fields.layout, fields.find(entry.path), fields.where)
+        _visit(writer, inner, entry.value, rows)
+        return
+    cell = fields.find(entry.path)
+    start, count = fields.read_span(cell, fields.shown(entry.path))
+    lane, number = span_of(cell).lane, writer.var("i", index(0))
+    with writer.nested() as body:
+        row = writer.let("row_of_element", Binary("add", start, number))
+        if isinstance(entry.value, Recursion):
+            _append(writer, rows, lane, row)
+        elif isinstance(entry.value, Tagged):
+            inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element))
+            _visit(writer, inner, entry.value, rows)
+        writer.assign(number, add(number, 1))
+    invariant = (Compare("ge", number, index(0)), *_rows_invariant(rows))
+    writer.emit(While(Compare("lt", number, count), block(body), invariant, number))
+
+
+def _append(writer: Writer, rows: Rows, lane: int, row: Expr) -> None:
+    writer.expect(Compare("lt", rows.number, rows.most), "nesting", Where(), "a message contains itself")
+    place = writer.let("place", add(mul(rows.number, 2), HEADER))
+    writer.emit(
+        Reserve(rows.scratch, add(place, 2)),
+        SetField(Place(rows.scratch, place), index(lane)),
+        SetField(Place(rows.scratch, add(place, 1)), row),
+    )
+    writer.assign(rows.number, add(rows.number, 1))
+
+
+# --- writing -------------------------------------------------------------------------------------------------------------------
+
+
+def _write(encoding: Encoding, fields: HolderFields, tagged: Tagged, writer: Writer, scratch: int) -> None:
+    writer.expect(Compare("ge", Capacity(scratch), index(HEADER)), "length", fields.where, DAMAGED)
+    count = writer.let("count", Get("i64", Place(scratch, index(0))))
+    writer.expect(Binary("and", Compare("ge", count, index(0)), Compare("le", count, Capacity(scratch))), "length", fields.where, DAMAGED)
+    lengths = Lengths(scratch, writer.var("lengths", Get("i64", Place(scratch, index(1)))), write_child)
+    _expect_lengths(writer, lengths)
+    write_message(writer, fields, tagged, lengths)
+    end, at = writer.position, writer.var("at_row", index(0))
+    with writer.nested() as body:
+        _each_lane(encoding, fields, writer, scratch, at, lengths)
+        writer.assign(at, add(at, 1))
+    writer.emit(While(Compare("lt", at, count), block(body), (Compare("ge", at, index(0)), *_lengths_invariant(lengths)), at))
+    writer.position = end
+
+
+def _each_lane(encoding: Encoding, fields: HolderFields, writer: Writer, scratch: int, number: Expr, lengths: Lengths) -> None:
+    """Measure or write the row at a place of the list, whichever lane it is in."""
+    at = writer.let("number", number)
+    cases = [(lane, _one_row(writer, fields, encoding.recursive[struct], lane, at, lengths)) for lane, struct in fields.layout.recursive]
+    writer.emit(Switch(_listed(writer, scratch, at, 0), tuple(cases), _damaged(writer)))
+    _expect_lengths(writer, lengths)
+
+
+def _one_row(writer: Writer, fields: HolderFields, tagged: Tagged, lane: int, at: Expr, lengths: Lengths) -> Block:
+    layout = fields.layout
+    with writer.nested() as body:
+        row = _row_of(writer, lengths.lane, at, lane)
+        inner = HolderFields(writer, layout, Cell(lane, row, layout.lanes[lane].element), Where(f".{layout.lanes[lane].name}"))
+        more, size = link(layout, lane, row, MORE_WORD), link(layout, lane, row, SIZE_WORD)
+        if writer.direction == "size":
+            writer.emit(SetField(more, lengths.next))
+            writer.position = index(0)
+            write_message(writer, inner, tagged, lengths)
+            writer.emit(SetField(size, writer.position))
+        else:
+            writer.assign(lengths.next, Get("i64", more))
+            _expect_lengths(writer, lengths)
+            begin = writer.let("begin_of_message", Get("i64", link(layout, lane, row, BEGIN_WORD)))
+            writer.expect(Binary("and", Compare("ge", begin, BEGIN), Compare("le", begin, END)), "length", inner.where, DAMAGED)
+            writer.position = begin
+            write_message(writer, inner, tagged, lengths)
+            written = Binary("sub", writer.position, begin)
+            writer.expect(Compare("eq", written, Get("i64", size)), "length", inner.where, DAMAGED)
+    return block(body)
+
+
+# --- the list --------------------------------------------------------------------------------------------------------------------
+
+
+def _listed(writer: Writer, scratch: int, at: Expr, word: int) -> Expr:
+    """The lane (0) or the row (1) at a place of the list, which is checked to be in the scratch lane."""
+    inside = Binary("and", Compare("ge", at, index(0)), Compare("lt", at, index(MAX_SIZE)))
+    writer.expect(inside, "length", Where(), DAMAGED)
+    place = writer.let("place", add(mul(at, 2), HEADER + word))
+    writer.expect(Compare("lt", place, Capacity(scratch)), "length", Where(), DAMAGED)
+    return writer.let("listed", Get("i64", Place(scratch, place)))
+
+
+def _row_of(writer: Writer, scratch: int, at: Expr, lane: int) -> Expr:
+    row = _listed(writer, scratch, at, 1)
+    writer.expect(Binary("and", Compare("ge", row, index(0)), Compare("lt", row, Used(lane))), "length", Where(), DAMAGED)
+    return row
+
+
+def _damaged(writer: Writer) -> Block:
+    return (Expect(Const("bool", value=False), writer.failure("length", Where(), DAMAGED)),)
+
+
+def _rows_invariant(rows: Rows) -> tuple[Expr, ...]:
+    return Compare("ge", rows.number, index(0)), Compare("le", rows.number, rows.most)
+
+
+def _say_again(writer: Writer, rows: Rows) -> None:
+    """True anyway; said for the proof, which does not follow the number through branches."""
+    low, high = _rows_invariant(rows)
+    writer.expect(Binary("and", low, high), "length", Where(), DAMAGED)
+
+
+def _lengths_invariant(lengths: Lengths) -> tuple[Expr, ...]:
+    return Compare("ge", lengths.next, index(0)), Compare("le", lengths.next, Capacity(lengths.lane))
+
+
+def _expect_lengths(writer: Writer, lengths: Lengths) -> None:
+    low, high = _lengths_invariant(lengths)
+    writer.expect(Binary("and", low, high), "length", Where(), DAMAGED)

@@ -1,0 +1,444 @@
+"""Tagged messages (protobuf): the one place where the two directions honestly differ.
+
+Reading takes fields in any order: the last value of a single field wins, messages merge, arrays grow, unknown fields are skipped.
+Writing goes through the fields in the order of their numbers.
+
+The elements of one array lie together although the wire may interleave fields, because each array path has a lane of its own and nothing
+else is appended to it while its message is being read. So a message notes where its arrays start, and their counts follow at its end.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Advance,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Copy,
+    Expr,
+    Fill,
+    For,
+    Get,
+    If,
+    IsText,
+    Load,
+    Local,
+    Place,
+    Reserve,
+    Select,
+    SetField,
+    Used,
+    While,
+    Wire,
+)
+from rosetta_jit.kernel.terms import BEGIN, add, index, mul
+from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
+from rosetta_jit.lowering.codec.fields import Cell, HolderFields, converted, scalar_name, span_of
+from rosetta_jit.lowering.codec.unknown_fields import skip_unknown
+from rosetta_jit.lowering.codec.varint import from_varint, read_size, read_tag, read_varint, varint_bytes
+from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
+from rosetta_jit.model.layout import Number as NumberSlot
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire.codec import Blob, Entry, Number, Path, Recursion, Tagged, Varint
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.kernel.ir import Stmt
+
+BYTES, GROUP, END_GROUP = 2, 3, 4
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A message that is being read: its fields, where it stops, its presence words, and where its arrays start."""
+
+    writer: Writer
+    fields: HolderFields
+    tagged: Tagged
+    stop: Expr
+    presence: tuple[Local, ...]
+    starts: dict[Path, Local]
+    depth: Expr
+
+
+def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Expr, *, fresh: bool, depth: Expr) -> None:
+    """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into.
+
+    ``depth`` is how many messages of recursive structs there are around it.
+    """
+    presence = _presence_words(writer, fields, fresh=fresh)
+    message = Message(writer, fields, tagged, stop, presence, _array_starts(writer, fields, tagged, fresh=fresh), depth)
+    at = writer.var("at", writer.position)
+    ended = writer.var("ended", Const("bool", value=False)) if tagged.group is not None else None
+    with writer.nested() as body:
+        writer.position = at
+        _read_field(message, ended)
+        writer.expect(Compare("le", writer.position, stop), "truncated", fields.where, "a field goes beyond its message")
+        writer.assign(at, writer.position)
+    goes_on: Expr = Compare("lt", at, stop)
+    if ended is not None:
+        goes_on = Binary("and", goes_on, Compare("eq", ended, Const("bool", value=False)))
+    invariant = [Compare("ge", at, BEGIN), Compare("le", at, stop)]
+    for path, start in message.starts.items():
+        invariant += [Compare("ge", start, index(0)), Compare("le", start, Used(_lane(fields, path)))]
+    writer.emit(While(goes_on, block(body), tuple(invariant), at))
+    writer.position = at
+    if ended is not None:
+        writer.expect(ended, "truncated", fields.where, "the group has no end")
+    _finish(message)
+
+
+def _presence_words(writer: Writer, fields: HolderFields, *, fresh: bool) -> tuple[Local, ...]:
+    row = _row(fields)
+    zero = Const("u64", 0)
+    words = [fields.cell.place(row.offset + 8 * number) for number in range(row.presence_words)]
+    return tuple(writer.var("present", zero if fresh else Get("u64", word)) for word in words)
+
+
+def _array_starts(writer: Writer, fields: HolderFields, tagged: Tagged, *, fresh: bool) -> dict[Path, Local]:
+    starts: dict[Path, Local] = {}
+    kept = [(UNKNOWN,)] if _row(fields).unknown is not None else []
+    for path in (*kept, *(entry.path for entry in tagged.entries if entry.label != "single")):
+        if path not in starts:
+            span = span_of(fields.find(path))
+            used = Used(span.lane)
+            start: Expr = used
+            if not fresh:
+                known = writer.let("start", Get("i64", fields.cell.place(span.offset)))
+                sane = Binary("and", Compare("ge", known, index(0)), Compare("le", known, used))
+                writer.expect(sane, "length", fields.shown(path), "the holder is damaged")
+                start = Select(Compare("eq", Get("i64", fields.cell.place(span.offset + 8)), index(0)), used, known)
+            starts[path] = writer.let("first", start)
+    return starts
+
+
+def _finish(message: Message) -> None:
+    """Write down what was kept in locals, and see that what must come has come."""
+    writer, fields, row = message.writer, message.fields, _row(message.fields)
+    for path, start in message.starts.items():
+        cell = fields.find(path)
+        fields.set_span(cell, start, Binary("sub", Used(span_of(cell).lane), start))
+    for number, word in enumerate(message.presence):
+        writer.emit(SetField(fields.cell.place(row.offset + 8 * number), word))
+    for name in message.tagged.required:
+        bit = row.member(name).presence
+        assert bit is not None
+        mask = Const("u64", 1 << bit % 64)
+        present = Compare("ne", Binary("and", message.presence[bit // 64], mask), Const("u64", 0))
+        writer.expect(present, "missing", fields.where.member(name), "a required field did not come")
+
+
+def _read_field(message: Message, ended: Local | None) -> None:
+    writer, group = message.writer, message.tagged.group
+    begin = writer.position
+    tag = writer.let("tag", Convert("i64", read_tag(writer, message.fields.where)))
+    cases = list(_known_fields(message))
+    if ended is not None and group is not None:
+        cases.append(Case(group << 3 | END_GROUP, partial(writer.assign, ended, Const("bool", value=True))))
+
+    def unknown() -> None:
+        skip_unknown(writer, message.fields, tag, message.stop)
+        _keep(message, begin)
+
+    read_cases(writer, tag, cases, unknown, message.fields.where, message.stop)
+
+
+def _known_fields(message: Message) -> Iterator[Case]:
+    """A case for each way in which a field can be written, and what is likely to follow: another element, or the next field."""
+    entries = message.tagged.entries
+    # The proof does not follow where groups and recursive messages end.
+    guesses = message.tagged.group is None and message.depth == index(0)
+    for entry, following in zip(entries, (*entries[1:], None), strict=False):
+        next_tag = _likely_tag(message.tagged, following)
+        for wire in _wires(entry):
+            tag, packed = entry.number << 3 | wire, wire == 2 and entry.wire != 2
+            guess = next_tag if packed or entry.label == "single" else tag
+            yield Case(tag, partial(_read_entry, message, entry, packed=packed), guess if guesses else NONE, is_long=wire in (BYTES, GROUP))
+
+
+def _likely_tag(tagged: Tagged, following: Entry | None) -> int:
+    """The tag of the next field, if it must come."""
+    if following is None or following.path[-1] not in tagged.required:
+        return NONE
+    return following.number << 3 | (2 if following.label == "packed" else following.wire)
+
+
+def _wires(entry: Entry) -> tuple[int, ...]:
+    """Numbers of an array may come one by one or packed, whatever the schema prefers."""
+    return (entry.wire, 2) if entry.label != "single" and entry.wire in (0, 1, 5) else (entry.wire,)
+
+
+def _read_entry(message: Message, entry: Entry, *, packed: bool) -> None:
+    if packed:
+        _read_packed(message, entry)
+    elif entry.label == "single":
+        _read_single(message, entry)
+    else:
+        _read_element(message, entry)
+
+
+def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
+    """Append what was read since then to the unknown fields of the message, behind a tag if it had none of its own."""
+    unknown = _row(message.fields).unknown
+    if unknown is None:
+        return
+    writer = message.writer
+    size = writer.let("size_of_field", Binary("sub", writer.position, begin))
+    writer.expect(Compare("ge", size, index(0)), "length", message.fields.where, "a field goes beyond its message")  # said for the proof
+    start = message.fields.reserve(unknown.lane, add(size, len(tag)))
+    for number, byte in enumerate(tag):
+        writer.emit(SetField(Place(unknown.lane, add(start, number)), Const("u8", byte)))
+    writer.emit(Copy(Place(unknown.lane, add(start, len(tag))), Wire(begin), size))
+
+
+# --- one value ---------------------------------------------------------------------------------------------------------------
+
+
+def _read_single(message: Message, entry: Entry) -> None:
+    writer, fields, where = message.writer, message.fields, message.fields.shown(entry.path)
+    begin = writer.position
+    match entry.value:
+        case Number(_, scalar, order):
+            value = writer.let("value", writer.load(scalar_name(scalar), where, order))
+            _mark(message, entry.path)
+            _set(fields, entry.path, value)
+        case Varint() as varint:
+            value = _varint_value(message, varint, fields.find(entry.path).slot, where)
+            with writer.nested() as known:
+                _mark(message, entry.path)
+                _set(fields, entry.path, value)
+            _if_allowed(message, entry, value, known, begin)
+        case Blob(_, _, text, _):
+            start, size = _read_bytes(message, fields, span_of(fields.find(entry.path)), where, text=text)
+            _mark(message, entry.path)
+            fields.set_span(fields.find(entry.path), start, size)
+        case Tagged() as tagged:
+            stop = _stop(message, tagged, where)
+            _clear_other_case(message, entry.path)
+            _mark(message, entry.path)
+            inner = HolderFields(writer, fields.layout, fields.find(entry.path), where, fields.borrow)
+            read_message(writer, inner, tagged, stop, fresh=False, depth=message.depth)
+        case Recursion() as recursion:
+            from rosetta_jit.lowering.codec.recursion import read_recursive
+
+            _mark(message, entry.path)
+            read_recursive(message, entry, recursion, where)
+        case _:
+            raise AssertionError(entry)
+
+
+def _varint_value(message: Message, varint: Varint, slot: Slot, where: Where) -> Local:
+    scalar = slot.scalar if isinstance(slot, NumberSlot) else "u64"
+    value = from_varint(varint, read_varint(message.writer, where), scalar)
+    return message.writer.let("value", value if scalar == "bool" else converted(value, scalar))
+
+
+def _if_allowed(message: Message, entry: Entry, value: Local, known: list[Stmt], begin: Expr) -> None:
+    """A number that a closed enum does not name counts as an unknown field. It begins behind its tag."""
+    writer = message.writer
+    if not entry.allowed:
+        writer.emit(*known)
+        return
+    number = value if value.type == "i64" else Convert("i64", value)
+    low, high = entry.allowed[0], entry.allowed[-1]
+    if high - low + 1 == len(entry.allowed):
+        allowed: Expr = Binary("and", Compare("ge", number, index(low)), Compare("le", number, index(high)))
+    else:
+        allowed = Compare("eq", number, index(low))
+        for each in entry.allowed[1:]:
+            allowed = Binary("or", allowed, Compare("eq", number, index(each)))
+    with writer.nested() as unknown:
+        _keep(message, begin, varint_bytes(entry.number << 3))
+    writer.emit(If(allowed, block(known), block(unknown)))
+
+
+def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where, *, text: bool) -> tuple[Expr, Expr]:
+    """Bytes of a string or bytes field, taken into their lane or left where they are; start and count as a span has them."""
+    writer = message.writer
+    size = read_length(writer, where, message.stop)
+    at = writer.position
+    if text:
+        writer.expect(IsText(Wire(at), size), "text", where, "not valid UTF-8")
+    writer.advance(size)
+    if fields.borrow and not text:
+        return at, Binary("sub", index(-1), size)
+    start = fields.reserve(span.lane, size)
+    writer.emit(Copy(Place(span.lane, start), Wire(at), size))
+    return start, size
+
+
+def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
+    """A length of bytes that follow, and are there."""
+    size = writer.let("length", Convert("i64", read_size(writer, where)))
+    here = writer.position
+    fits = Binary("and", Compare("ge", size, index(0)), Compare("le", size, Binary("sub", stop, here)))
+    writer.expect(fits, "truncated", where, "longer than what is left of the message")
+    writer.require(size, where)
+    return size
+
+
+def _stop(message: Message, tagged: Tagged, where: Where) -> Expr:
+    """Where an inner message stops: behind its length, or with what is around it if it is a group."""
+    if tagged.group is not None:
+        message.writer.expect(Compare("le", message.writer.position, message.stop), "truncated", where, "the group goes beyond its message")
+        return message.stop
+    size = read_length(message.writer, where, message.stop)
+    return message.writer.let("stop", Binary("add", message.writer.position, size))
+
+
+def _mark(message: Message, path: Path) -> None:
+    """The field is there: its presence bit, or the case of its union."""
+    fields, row = message.fields, _row(message.fields)
+    member = row.member(path[0])
+    if member.presence is not None:
+        word = message.presence[member.presence // 64]
+        message.writer.assign(word, Binary("or", word, Const("u64", 1 << member.presence % 64)))
+    if isinstance(member.slot, Variant) and len(path) > 1:
+        number = next(n for n, case in enumerate(member.slot.members, 1) if case.name == path[1])
+        message.writer.emit(SetField(fields.cell.place(member.slot.offset), index(number)))
+
+
+def _clear_other_case(message: Message, path: Path) -> None:
+    """A message that becomes the case of a union starts empty; one that is the case already is merged into."""
+    member = _row(message.fields).member(path[0])
+    if isinstance(member.slot, Variant) and len(path) > 1:
+        number = next(n for n, case in enumerate(member.slot.members, 1) if case.name == path[1])
+        slot = member.slot.members[number - 1].slot
+        other = Compare("ne", Get("i64", message.fields.cell.place(member.slot.offset)), index(number))
+        empty = Fill(message.fields.cell.place(slot.offset), index(slot_end(slot) - slot.offset))
+        message.writer.emit(If(other, (empty,)))
+
+
+def slot_end(slot: Slot) -> int:
+    """The offset behind a slot."""
+    match slot:
+        case NumberSlot(offset, scalar):
+            return offset + WIDTH[scalar]
+        case Span(offset, _):
+            return offset + 16
+        case Row(offset, _, _, members):
+            return max([offset + slot.head_bytes, *(slot_end(member.slot) for member in members)])
+        case Variant(offset, members):
+            return max([offset + 8, *(slot_end(member.slot) for member in members)])
+
+
+def _set(fields: HolderFields, path: Path, value: Local) -> None:
+    cell = fields.find(path)
+    assert isinstance(cell.slot, NumberSlot)
+    fields.writer.emit(SetField(cell.place(cell.slot.offset), converted(value, cell.slot.scalar)))
+
+
+# --- arrays ------------------------------------------------------------------------------------------------------------------
+
+
+def _read_element(message: Message, entry: Entry) -> None:
+    """One more element at the end of its lane."""
+    writer, fields, begin = message.writer, message.fields, message.writer.position
+    lane = _lane(fields, entry.path)
+    where = fields.shown(entry.path).element(Binary("sub", Used(lane), message.starts[entry.path]))
+    match entry.value:
+        case Number(_, scalar, order):
+            value = writer.let("value", writer.load(scalar_name(scalar), where, order))
+            _append(message, lane, value)
+        case Varint() as varint:
+            value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
+            with writer.nested() as known:
+                _append(message, lane, value)
+            _if_allowed(message, entry, value, known, begin)
+        case Blob(_, _, text, _):
+            span = fields.layout.lanes[lane].element
+            assert isinstance(span, Span)
+            start, size = _read_bytes(message, fields, span, where, text=text)
+            row = fields.reserve(lane, index(1))
+            fields.set_span(Cell(lane, row, span), start, size)
+        case Tagged() as tagged:
+            stop = _stop(message, tagged, where)
+            row = fields.reserve(lane, index(1))
+            writer.emit(Fill(Place(lane, row), index(fields.layout.lanes[lane].stride)))
+            inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element), where, fields.borrow)
+            read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth)
+        case Recursion() as recursion:
+            from rosetta_jit.lowering.codec.recursion import read_recursive
+
+            read_recursive(message, entry, recursion, where)
+        case _:
+            raise AssertionError(entry)
+
+
+def _append(message: Message, lane: int, value: Local) -> None:
+    element = message.fields.layout.lanes[lane].element
+    assert isinstance(element, NumberSlot)
+    message.writer.emit(
+        Reserve(lane, index(1)), SetField(Place(lane, Used(lane)), converted(value, element.scalar)), Advance(lane, index(1))
+    )
+
+
+def _read_packed(message: Message, entry: Entry) -> None:
+    """Numbers without tags, as many as fill the length."""
+    writer, fields = message.writer, message.fields
+    where, lane = fields.shown(entry.path), _lane(fields, entry.path)
+    size = read_length(writer, where, message.stop)
+    match entry.value:
+        case Number(_, scalar, order):
+            _read_packed_fixed(writer, fields, lane, size, scalar, order, where)
+        case Varint() as varint:
+            _read_packed_varints(message, entry, varint, lane, size)
+        case _:
+            raise AssertionError(entry)
+
+
+def _read_packed_fixed(writer: Writer, fields: HolderFields, lane: int, size: Local, scalar: str, order: str, where: Where) -> None:
+    width = WIDTH[scalar]
+    count = writer.let("count", Binary("div", size, index(width)))
+    whole = Compare("eq", Binary("rem", size, index(width)), index(0))
+    writer.expect(whole, "length", where, f"not a multiple of {width} bytes")
+    start = fields.reserve(lane, count)
+    number = Local("i64", writer.fresh("i"))
+    first = writer.position
+    with writer.nested() as body:
+        writer.position = writer.let("item", Binary("add", first, mul(number, width)))
+        writer.require(width, where)
+        value = Load(scalar_name(scalar), writer.position, ">" if order == ">" else "<")
+        element = fields.layout.lanes[lane].element
+        assert isinstance(element, NumberSlot)
+        writer.emit(SetField(Place(lane, add(start, number)), converted(value, element.scalar)))
+    writer.emit(For(number.name, count, block(body)))
+    writer.advance(size)
+
+
+def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: int, size: Local) -> None:
+    writer, fields = message.writer, message.fields
+    where = fields.shown(entry.path)
+    stop = writer.let("stop", Binary("add", writer.position, size))
+    at = writer.var("at", writer.position)
+    with writer.nested() as body:
+        writer.position = at
+        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
+        with writer.nested() as known:
+            _append(message, lane, value)
+        _if_allowed(message, entry, value, known, at)
+        writer.expect(Compare("le", writer.position, stop), "truncated", where, "the last number goes beyond the array")
+        writer.assign(at, writer.position)
+    start = message.starts[entry.path]
+    invariant = (Compare("ge", at, BEGIN), Compare("le", at, stop), Compare("le", start, Used(lane)))
+    writer.emit(While(Compare("lt", at, stop), block(body), invariant, at))
+    writer.position = at
+
+
+# --- where things are -----------------------------------------------------------------------------------------------------------
+
+
+def _row(fields: HolderFields) -> Row:
+    assert isinstance(fields.cell.slot, Row)
+    return fields.cell.slot
+
+
+def _lane(fields: HolderFields, path: Path) -> int:
+    return span_of(fields.find(path)).lane

@@ -1,0 +1,1 @@
+"""The rules of a mapping as statements of the kernel."""

@@ -1,0 +1,101 @@
+"""What rows of lanes are born with, where rules set their parts one by one: fixed arrays whose elements get values, unions' first cases.
+
+An array that a rule gives a length, or sets as a whole, is opened there; all others must have their elements before the rules begin.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.kernel.ir import Fill, For, Local, Place, SetField
+from rosetta_jit.kernel.terms import add, index
+from rosetta_jit.language import typed
+from rosetta_jit.language.places import rules_within
+from rosetta_jit.lowering.codec.fields import member_of
+from rosetta_jit.lowering.writer import block
+from rosetta_jit.model.initial_values import FirstCase, FixedArray
+from rosetta_jit.model.layout import Number, Row, Span, Variant
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.lowering.codec.fields import HolderFields
+    from rosetta_jit.model.initial_values import Birth
+    from rosetta_jit.model.layout import Layout, Slot
+
+
+def bear(fields: HolderFields, births: tuple[Birth, ...], row: Expr, opened: frozenset[int]) -> None:
+    """Give a row what it is born with, but for what lies in ``opened`` lanes."""
+    writer = fields.writer
+    for birth in births:
+        match birth:
+            case FixedArray(lane, word, target, length, within, _) if target not in opened:
+                first = fields.reserve(target, index(length))
+                writer.emit(
+                    SetField(Place(lane, row, 8 * word), first),
+                    SetField(Place(lane, row, 8 * word + 8), index(length)),
+                    Fill(Place(target, first), index(length * fields.layout.lanes[target].stride)),
+                )
+                bear_each(fields, within, first, index(length), opened)
+            case FixedArray():
+                pass
+            case FirstCase(lane, word, number):
+                writer.emit(SetField(Place(lane, row, 8 * word), index(number)))
+            case _:
+                assert_never(birth)
+
+
+def bear_each(fields: HolderFields, births: tuple[Birth, ...], first: Expr, count: Expr, opened: frozenset[int]) -> None:
+    """The same for so many rows."""
+    writer = fields.writer
+    number = Local("i64", writer.fresh("born"))
+    with writer.nested() as body:
+        bear(fields, births, add(first, number), opened)
+    if body:
+        writer.emit(For(number.name, count, block(body)))
+
+
+def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side: str) -> frozenset[int]:
+    """The lanes whose rows rules take themselves: those of lengths that they set, and below what they set as a whole."""
+    found: set[int] = set()
+    for rule in rules_within(rules):
+        match rule:
+            case typed.SetLength(place) if place.side == side:
+                slot = _slot_at(place, layout, root)
+                found.update([slot.lane] if isinstance(slot, Span) else [])
+            case typed.Assign(place) if place.side == side:
+                found.update(_lanes_below(_slot_at(place, layout, root), layout))
+            case _:
+                pass
+    return frozenset(found)
+
+
+def places_left(rules: tuple[typed.Rule, ...]) -> list[typed.Place]:
+    """The places that are meant to be left alone."""
+    return [rule.place for rule in rules_within(rules) if isinstance(rule, typed.Default)]
+
+
+def _slot_at(place: typed.Place, layout: Layout, root: Slot) -> Slot:
+    slot = root
+    for step in place.steps:
+        match step, slot:
+            case typed.FieldStep(field), Span(_, lane):
+                slot = member_of(layout.lanes[lane].element, field.name).slot
+            case typed.FieldStep(field), _:
+                slot = member_of(slot, field.name).slot
+            case typed.IndexStep(), Span(_, lane):
+                slot = layout.lanes[lane].element
+            case _:
+                raise AssertionError(step)
+    return slot
+
+
+def _lanes_below(slot: Slot, layout: Layout, outer: frozenset[int] = frozenset()) -> set[int]:
+    match slot:
+        case Number():
+            return set()
+        case Span(_, lane):
+            return {lane} if lane in outer else {lane} | _lanes_below(layout.lanes[lane].element, layout, outer | {lane})
+        case Row(members=members) | Variant(members=members):
+            return set[int]().union(*(_lanes_below(member.slot, layout, outer) for member in members))
+        case _:
+            assert_never(slot)

@@ -1,0 +1,26 @@
+"""The integer that a relation packs a float as: the nearest one, if the relation unpacks it to the same float again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Convert, Expr, Unary
+from rosetta_jit.language.conversions import describe
+from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.model.layout import scalar_of
+
+if TYPE_CHECKING:
+    from rosetta_jit.language import typed
+    from rosetta_jit.lowering.rules.values import Values
+
+
+def nearest(value: typed.Nearest, values: Values) -> Expr:
+    """The integer, of the type of its field; what no integer of that type unpacks to is refused."""
+    writer, target = values.writer, scalar_name(scalar_of(value.type))
+    whole = writer.let("whole", Unary("rint", values.of(value.operand)))
+    values.in_range(whole, target)
+    made = writer.let("nearest", Convert(target, whole))
+    inner = replace(values, variables={**values.variables, value.variable.name: made}, decided={})
+    writer.expect(inner.of(value.check), "range", values.where, f"no {describe(value.type)} unpacks to the value", line=values.line)
+    return made

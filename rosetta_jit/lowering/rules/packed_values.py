@@ -1,0 +1,221 @@
+"""What a walk asks for while it lays out a message that a mapping packs: the rules answer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.language import typed
+from rosetta_jit.language.functions.texts import is_textual
+from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
+from rosetta_jit.lowering.rules.sides import HolderSide, wire_key
+from rosetta_jit.lowering.rules.values import constant, scalar_type
+from rosetta_jit.lowering.writer import Where, block
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Union
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.wire.codec import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Supplies:
+    """What an encoding walk asks for while it lays out a message: numbers, sizes, and bytes that are copied as they are."""
+
+    rules: tuple[typed.Rule, ...]
+    source: HolderSide
+    values: Values
+
+    def number(self, path: Path) -> Expr:
+        return self.decided(path, _zero(path, self.rules), _given)
+
+    def size(self, path: Path) -> Expr:
+        return self.decided(path, index(0), self.sized)
+
+    def decided(self, path: Path, zero: Const, value: Callable[[typed.Rule, Values], Expr]) -> Expr:
+        """What the rule for a field gives; one in a `when` sets a variable."""
+        writer, rule = self.values.writer, _rule_for(path, self.rules)
+        match rule:
+            case None:
+                raise NotInPlaceError(path)
+            case typed.When():
+                found = writer.var("_".join(path), zero)
+                self.decide(found, path, self.rules, value)
+                return found
+            case _:
+                found = value(rule, self.here(rule))
+                return found if isinstance(found, Const) else writer.let("_".join(path), found)
+
+    def decide(self, found: Local, path: Path, rules: tuple[typed.Rule, ...], value: Callable[[typed.Rule, Values], Expr]) -> None:
+        """Set a variable where the rules set the field; where they do not, they are going to reject the message."""
+        writer, rule = self.values.writer, _rule_for(path, rules)
+        match rule:
+            case None:
+                pass
+            case typed.When(condition, then, otherwise):
+                holds = self.here(rule).of(condition)
+                known = dict(self.source.arrays)
+                with writer.nested() as yes:
+                    self.decide(found, path, then, value)
+                self.source.arrays = dict(known)
+                with writer.nested() as no:
+                    self.decide(found, path, otherwise, value)
+                self.source.arrays = known
+                writer.emit(If(holds, block(yes), block(no)))
+            case _:
+                writer.assign(found, value(rule, self.here(rule)))
+
+    def sized(self, rule: typed.Rule, here: Values) -> Expr:
+        """The count that a rule gives its array or text."""
+        match rule:
+            case typed.SetLength(_, value):
+                size = here.writer.let("length", here.of(value))
+                here.writer.expect(Compare("ge", size, index(0)), "count", here.where, "a length must not be negative", line=here.line)
+                return size
+            case typed.Assign(_, typed.Const(str(text))):
+                return index(len(text.encode()))
+            case typed.Assign(_, typed.Access(origin)):
+                return self.source.count(origin, here)
+            case typed.Assign(_, typed.Listed(items) as listed):
+                return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
+            case typed.Default():
+                return index(0)
+            case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
+                raise NotInPlaceError
+            case _:
+                raise AssertionError(rule)
+
+    def bytes_at(self, path: Path) -> Place | None:
+        rule = _rule_for(path, self.rules)
+        match rule:
+            case typed.Assign(_, typed.Access(origin)):
+                address = self.source.address(origin, self.here(rule))
+                return address if isinstance(address, Place) else None
+            case _:
+                return None
+
+    def here(self, rule: typed.Rule) -> Values:
+        return replace(self.values, where=place_of(rule, self.values)).at_rule(rule.span)
+
+
+def _rule_for(path: Path, rules: tuple[typed.Rule, ...]) -> typed.Rule | None:
+    """The rule that sets a field of the wire, or its length, or a `when` that has it in one of its blocks."""
+    for rule in rules:
+        match rule:
+            case typed.Assign(place) | typed.SetLength(place) if wire_key(place) == (path, []):
+                return rule
+            case typed.Default(place) if wire_key(place) == (path[: len(place.steps)], []):
+                return rule
+            case typed.When(_, then, otherwise) if _rule_for(path, (*then, *otherwise)) is not None:
+                return rule
+            case _:
+                pass
+    return None
+
+
+def _size(text: typed.Expr) -> typed.Const:
+    """How many bytes a text of a list has."""
+    assert isinstance(text, typed.Const)
+    return typed.Const(len(str(text.value).encode()), typed.INT64)
+
+
+def _zero(path: Path, rules: tuple[typed.Rule, ...]) -> Const:
+    """A number of the type of a field that rules set."""
+    rule = _rule_for(path, rules)
+    match rule:
+        case typed.Assign(place) | typed.Default(place) if isinstance(place.type, Int | Float | Bool | Enum):
+            return constant(0, scalar_type(place.type))
+        case typed.When(_, then, otherwise):
+            blocks = [block for block in (then, otherwise) if _rule_for(path, block) is not None]
+            return next((zero for block in blocks if (zero := _zero(path, block)) != index(0)), index(0))
+        case _:
+            return index(0)
+
+
+def _given(rule: typed.Rule, here: Values) -> Expr:
+    """The number that a rule gives a field."""
+    match rule:
+        case typed.Assign(_, value):
+            return here.of(value)
+        case typed.Default(place):
+            known = isinstance(place.type, Int | Float | Bool | Enum)
+            return constant(0, scalar_type(place.type)) if known else index(0)
+        case _:
+            raise AssertionError(rule)
+
+
+def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Values) -> None:
+    """Read start and count of the holder's arrays once, before any loop."""
+    for place in _array_places(rules):
+        if place.side == "holder" and not any(isinstance(step, typed.IndexStep) for step in place.steps):
+            holder.array(place, values)
+
+
+def _array_places(node: object) -> list[typed.Place]:
+    """Every place below a rule whose length or elements are read."""
+    match node:
+        case tuple():
+            return [place for each in cast("tuple[object, ...]", node) for place in _array_places(each)]
+        case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
+            return [place]
+        case typed.Assign(_, value) | typed.SetLength(_, value):
+            return _array_places(value)
+        case typed.For(_, start, stop, body):
+            return _array_places((start, stop, *body))
+        case typed.When(condition, then, otherwise):
+            return _array_places((condition, *then, *otherwise))
+        case typed.IsText(place):
+            return [place, *_indexed(place)]
+        case typed.Choice(cases, otherwise):
+            return _array_places((*cases, otherwise))
+        case typed.Listed(items, at):
+            return _array_places((*items, at))
+        case typed.LenOf(place):
+            return [place]
+        case typed.Access(place) | typed.Has(place):
+            return _indexed(place)
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _) | typed.Search(_, _, operand):
+            return _array_places(operand)
+        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
+            return _array_places((left, right))
+        case typed.ImageCall(_, image, _, _, numbers):
+            looked_at = [image.place] if isinstance(image, typed.Access) else []
+            return looked_at + _array_places((image, *numbers))
+        case typed.Call(_, arguments, _) | typed.HostCall(_, arguments, _):
+            return _array_places(arguments)
+        case typed.TextCall(_, arguments):
+            texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
+            return texts + _array_places(arguments)
+        case _:
+            return []
+
+
+def _indexed(place: typed.Place) -> list[typed.Place]:
+    for number, step in enumerate(place.steps):
+        if isinstance(step, typed.IndexStep):
+            return [typed.Place(place.side, place.steps[:number], place.type), *_array_places(step.index)]
+    return []
+
+
+def place_of(rule: typed.Rule, values: Values) -> Where:
+    """The field that a rule sets, for its errors. Of the indices those are known that are loop variables, or written down."""
+    where = Where()
+    if isinstance(rule, typed.Assign | typed.SetLength):
+        for step in rule.place.steps:
+            match step:
+                case typed.FieldStep(each) if isinstance(each.type, Union) and step is not rule.place.steps[-1]:
+                    pass  # its cases are named as fields of what is around
+                case typed.FieldStep(each):
+                    where = where.member(each.name)
+                case typed.IndexStep(typed.Local(name)) if name in values.variables:
+                    where = where.element(values.variables[name])
+                case typed.IndexStep(typed.Const(int(number))):
+                    where = replace(where, path=f"{where.path}[{number}]")
+                case _:
+                    where = replace(where, path=f"{where.path}[]")
+    return where

@@ -1,0 +1,398 @@
+"""The two sides of a mapping while its rules run: the holder in its lanes, the wire where the walk found or laid out its fields.
+
+A side can be read (`values.Source`) and be written; which one is which depends on the direction alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Place, Select, SetField, Store, Wire
+from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.language import typed
+from rosetta_jit.language.check.discriminators import discriminator_of
+from rosetta_jit.language.places import field_names
+from rosetta_jit.language.typed import FieldStep, IndexStep
+from rosetta_jit.lowering.codec.fields import OTHER_CASE, converted, has_gaps, member_of, presence_bit, scalar_name
+from rosetta_jit.lowering.codec.wire_fields import EACH, NotInPlaceError
+from rosetta_jit.lowering.rules.discriminators import chosen_case
+from rosetta_jit.lowering.rules.initial_values import bear, bear_each
+from rosetta_jit.lowering.texts.views import between
+from rosetta_jit.lowering.writer import Where, block
+from rosetta_jit.model.layout import Number, Row, Span, Variant
+from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.language.check.discriminators import Told
+    from rosetta_jit.lowering.codec.fields import HolderElements, HolderFields
+    from rosetta_jit.lowering.codec.wire_fields import Region, WireFields
+    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.writer import Writer
+    from rosetta_jit.model.initial_values import Births
+    from rosetta_jit.model.layout import Member
+    from rosetta_jit.model.types import Constant
+    from rosetta_jit.wire.codec import Path
+
+Key = tuple[object, ...]
+"""A place by names and the expressions of its indices."""
+
+
+def has_product(number: typed.Expr) -> bool:
+    """Whether an index multiplies what is not known: one more factor, and the proof sees no bound of the product."""
+    match number:
+        case typed.Binary("*", left, right) if not isinstance(left, typed.Const) and not isinstance(right, typed.Const):
+            return True
+        case typed.Binary(_, left, right):
+            return has_product(left) or has_product(right)
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
+            return has_product(operand)
+        case _:
+            return False
+
+
+def inside(number: Expr, count: Expr) -> Expr:
+    """Whether an index is one of so many."""
+    return Binary("and", Compare("ge", number, index(0)), Compare("lt", number, count))
+
+
+@dataclass(slots=True)
+class HolderSide:
+    """A message in lanes: the holder, or a wire's message that is staged.
+
+    Arrays whose length was set, or that were looked at, are known by their place. Where rules fill it, elements are born with what
+    ``births`` says, but for what lies in ``opened`` lanes.
+    """
+
+    root: HolderFields
+    births: Births | None = None
+    opened: frozenset[int] = frozenset()
+    unions: Mapping[tuple[str, ...], Told] = field(default_factory=dict[tuple[str, ...], "Told"])
+    arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
+
+    @property
+    def writer(self) -> Writer:
+        return self.root.writer
+
+    def number(self, place: typed.Place, values: Values) -> Expr:
+        fields, path, last = self.descend(place, values)
+        value = self.writer.let(path[-1] if path else "element", _got(fields, path))
+        present = presence(fields, path)
+        if present is None or last is None:
+            return value
+        return self.present_or_default(present, member_of(fields.find(path[:-1]).slot, path[-1]), last, value, values)
+
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there, on the way from the innermost element."""
+        fields, path, _ = self.descend(place, values)
+        return presence(fields, path, outer=True) or Const("bool", value=True)
+
+    def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
+        """What reading gives: the value; where it is absent, its default, or an error if it is required."""
+        if last.required:
+            self.expect_required(present, last, values)
+            return value
+        scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
+        return Select(present, value, Const(scalar_name(scalar), _number(last.default)))
+
+    def expect_required(self, present: Expr, last: Field, values: Values) -> None:
+        self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
+
+    def count(self, place: typed.Place, values: Values) -> Expr:
+        """How many elements or bytes; a required text must be there."""
+        match place.type, place.steps:
+            case ((String() | Bytes()), (*_, FieldStep(Field(required=True) as last))) if self.births is None:
+                fields, path, _ = self.descend(place, values)
+                present = presence(fields, path)
+                if present is not None:
+                    self.expect_required(present, last, values)
+            case _:
+                pass
+        return self.array(place, values)[1]
+
+    def address(self, place: typed.Place, values: Values) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        elements, _ = self.array(place, values)
+        return Place(elements.lane, elements.start)
+
+    def array(self, place: typed.Place, values: Values) -> tuple[HolderElements, Expr]:
+        """The elements of an array, and how many there are."""
+        key = _key(place)
+        if key not in self.arrays:
+            fields, path, _ = self.descend(place, values)
+            stored = fields.stored(path)
+            self.arrays[key] = fields.elements(path, stored), self.count_in_case(fields, path, stored.size)
+        return self.arrays[key]
+
+    def count_in_case(self, fields: HolderFields, path: Path, size: Expr) -> Expr:
+        """A number of elements; none where they are of a case that is not set: a message may have had it before another."""
+        if not any(isinstance(fields.find(path[:number]).slot, Variant) for number in range(len(path))):
+            return size
+        present = presence(fields, path)
+        count = self.writer.let("count", size if present is None else Select(present, size, index(0)))
+        known = Binary("and", Compare("ge", count, index(0)), Compare("le", count, size))  # true anyway; said for the proof
+        self.writer.expect(known, "length", fields.shown(path), "the holder is damaged")
+        return count
+
+    def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
+        """The fields of the innermost element, the path from there, and the last field of it."""
+        fields, path, last = self.root, (), None
+        for done, step in enumerate(place.steps):
+            match step:
+                case FieldStep(each):
+                    if path and isinstance(fields.find(path).slot, Span):
+                        fields, path = self.single(fields, path, values), ()
+                    path, last = (*path, each.name), each
+                case IndexStep(at):
+                    elements, count = self.array(_prefix(place, done), values)
+                    number = self.writer.once(values.of(at))
+                    where = fields.shown(path).element(number)
+                    self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+                    fields, path, last = elements.at(number), (), None
+        return fields, path, last
+
+    def single(self, fields: HolderFields, path: Path, values: Values) -> HolderFields:
+        """A message that has a row of its own, since it can contain itself: it is there, or it comes now."""
+        where = fields.shown(path)
+        if self.births is not None:
+            with self.writer.nested() as new:
+                elements = fields.open(path, index(1))
+                fields.clear(elements.lane, elements.start, index(1))
+            self.writer.emit(If(Compare("eq", fields.stored(path).size, index(0)), block(new)))
+        stored = fields.stored(path)
+        self.writer.expect(Compare("ge", stored.size, index(1)), "missing", where, "it is not there", line=values.line)
+        return replace(fields.elements(path, stored).at(index(0)), where=where)
+
+    # --- writing -------------------------------------------------------------------------------------------------------
+
+    def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
+        fields, path, _ = self.descend(place, values)
+        told = self.unions.get(field_names(place))
+        if told is None:
+            fields.put(path, value)
+            return
+        value = self.writer.once(value)
+        fields.put(path, value)
+        path, case = (*path[:-1], told.name), chosen_case(told.union, value, self.writer)
+        self.writer.emit(SetField(_case_word(fields, path), case))
+        for number in range(1, len(told.union.cases) + 1):
+            self.bear_case(fields, path, told, number, Compare("eq", case, index(number)))
+
+    def choose(self, place: typed.Place, values: Values) -> None:
+        """The unions that a place is in a case of have that case: their discriminators say so, or are told so."""
+        for steps in range(1, len(place.steps)):
+            names, case = discriminator_of(place, steps), place.steps[steps]
+            if names is None or not isinstance(case, FieldStep):
+                continue
+            told = self.unions[names]
+            fields, path, _ = self.descend(_prefix(place, steps), values)
+            if told.by_rule:
+                self.expect_case(fields, path, index(told.number(case.field.name)), values)
+            else:
+                number = told.number(case.field.name)
+                fields.put((*path[:-1], names[-1]), index(told.label(case.field.name)))
+                word = _case_word(fields, path)
+                self.bear_case(fields, path, told, number, Compare("ne", Get("i64", word), index(number)))
+                self.writer.emit(SetField(word, index(number)))
+
+    def bear_case(self, fields: HolderFields, path: Path, told: Told, number: int, when: Expr) -> None:
+        """Give a case that comes what it is born with."""
+        cell = fields.find(path)
+        assert isinstance(cell.slot, Variant)
+        births = (
+            () if self.births is None else self.births.of(told.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
+        )
+        with self.writer.nested() as body:
+            bear(fields, births, cell.row, self.opened)
+        if body:
+            self.writer.emit(If(when, block(body)))
+
+    def case_of(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Expr] | None:
+        """The case that a discriminator has chosen for a union that is set as a whole, if one has."""
+        names = discriminator_of(place, len(place.steps))
+        if names is None or not self.unions[names].by_rule:
+            return None
+        fields, path, _ = self.descend(place, values)
+        return fields, path, self.writer.let("case", Get("i64", _case_word(fields, path)))
+
+    def expect_case(self, fields: HolderFields, path: Path, number: Expr, values: Values) -> None:
+        """That a discriminator has chosen a case."""
+        agrees = Compare("eq", Get("i64", _case_word(fields, path)), number)
+        self.writer.expect(agrees, "union", fields.shown(path[:-1]), OTHER_CASE, line=values.line)
+
+    def appear(self, place: typed.Place, values: Values) -> None:
+        """What can be absent is there, as it was born."""
+        fields, path, _ = self.descend(place, values)
+        if isinstance(place.type, Struct) and isinstance(fields.find(path).slot, Span):
+            self.single(fields, path, values)
+        else:
+            fields.appear(path)
+
+    def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """Take room for the elements; those that are structs begin empty."""
+        fields, path, _ = self.descend(place, values)
+        where = fields.shown(path)
+        self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
+        elements = fields.open(path, count)
+        self.arrays[_key(place)] = elements, count
+        lane = self.root.layout.lanes[elements.lane]
+        if not isinstance(lane.element, Number) and not has_gaps(lane.element):
+            self.writer.expect(Compare("le", count, index((1 << 56) // lane.stride)), "count", where, "too many elements")
+            self.root.clear(elements.lane, elements.start, count)
+        if isinstance(place.type, Array) and self.births is not None:
+            bear_each(fields, self.births.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
+
+    @property
+    def borrows(self) -> bool:
+        """Whether bytes stay in the message."""
+        return self.root.borrow
+
+    def borrow(self, place: typed.Place, at: Expr, size: Expr, values: Values) -> None:
+        """Say where in the message the bytes of a field are."""
+        fields, path, _ = self.descend(place, values)
+        fields.put_bytes(path, at, size)
+
+    def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
+        """One byte of a text whose length was set."""
+        elements, _ = self.array(place, values)
+        self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), Const("u8", value)))
+
+
+@dataclass(slots=True)
+class WireSide:
+    """The wire, as the walk has bound it."""
+
+    writer: Writer
+    root: WireFields
+
+    def number(self, place: typed.Place, values: Values) -> Expr:
+        key, indices = wire_key(place)
+        if not indices:
+            found = self.root.get(key)
+            if found is None:
+                raise NotInPlaceError(key)
+            return found
+        region, at = self.element(key, indices, values)
+        return Load(region.scalar, at, ">" if region.order == ">" else "<")
+
+    def count(self, place: typed.Place, values: Values) -> Expr:
+        del values
+        return self.root.size_of(wire_key(place)[0])
+
+    def address(self, place: typed.Place, values: Values) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        del values
+        key = (*wire_key(place)[0], EACH)
+        if key not in self.root.found.regions:
+            raise NotInPlaceError(key)
+        return Wire(self.root.found.regions[key].first)
+
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there; fields of which this can be said are not read in place."""
+        del values
+        raise NotInPlaceError(wire_key(place)[0])
+
+    def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
+        """How the elements of an array lie, and where one of them is; it is checked to be there."""
+        if len(indices) != 1 or key not in self.root.found.regions:
+            raise NotInPlaceError(key)
+        region, array = self.root.found.regions[key], key[: key.index(EACH)]
+        number = self.writer.once(values.of(indices[0]))
+        where = Where().members(array).element(number)
+        count = self.root.size_of(array)
+        self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+        if not isinstance(region.step, Const) and has_product(indices[0]):
+            number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
+        at = Binary("add", region.first, mul(number, region.step))
+        if not isinstance(region.step, Const):  # written down, for it follows from a product
+            self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
+        self.writer.require(WIDTH[region.scalar], where, at=at)
+        return region, at
+
+    # --- writing -------------------------------------------------------------------------------------------------------
+
+    def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
+        """Numbers outside arrays were written by the walk."""
+        key, indices = wire_key(place)
+        if indices:
+            region, at = self.element(key, indices, values)
+            self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
+
+    def is_open(self, place: typed.Place) -> bool:
+        """Whether the walk has left room for the bytes of a field, and not copied them."""
+        return (*wire_key(place)[0], EACH) in self.root.found.regions
+
+    def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
+        """The walk has asked for it."""
+
+    def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
+        """One byte of a text whose size the walk has asked for."""
+        del values
+        at = add(self.root.found.regions[(*wire_key(place)[0], EACH)].first, number)
+        self.writer.require(1, self.root.where, at=at)
+        self.writer.emit(Store(at, Const("u8", value)))
+
+
+Side = HolderSide | WireSide
+
+
+def wire_key(place: typed.Place) -> tuple[Path, list[typed.Expr]]:
+    """The path of a place with its indices taken out."""
+    key: list[str] = []
+    indices: list[typed.Expr] = []
+    for step in place.steps:
+        match step:
+            case FieldStep(each):
+                key.append(each.name)
+            case IndexStep(at):
+                key.append(EACH)
+                indices.append(at)
+    return tuple(key), indices
+
+
+def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr | None:
+    """Whether a field is there, if it can be absent: its own bit (``outer``: also those of all around it), and the cases of unions."""
+    found: Expr | None = None
+    for number, name in enumerate(path):
+        owner = fields.find(path[:number])
+        member = member_of(owner.slot, name)
+        match owner.slot:
+            case Variant(offset, members):
+                there = Compare("eq", Get("i64", owner.place(offset)), index(1 + members.index(member)))
+            case Row() if member.presence is not None and isinstance(member.slot, Span) and fields.is_own_row(member.slot):
+                there = Compare("ne", fields.stored(path[: number + 1]).size, index(0))
+            case Row() if member.presence is not None and (outer or number == len(path) - 1):
+                place, mask = presence_bit(owner, owner.slot, member.presence)
+                there = Compare("ne", Binary("and", Get("u64", place), mask), Const("u64", 0))
+            case _:
+                continue
+        found = there if found is None else Binary("and", found, there)
+    return found
+
+
+def _key(place: typed.Place) -> Key:
+    return tuple(step.field.name if isinstance(step, FieldStep) else step.index for step in place.steps)
+
+
+def _case_word(fields: HolderFields, path: Path) -> Place:
+    """Where a union says which case it has."""
+    cell = fields.find(path)
+    assert isinstance(cell.slot, Variant)
+    return cell.place(cell.slot.offset)
+
+
+def _prefix(place: typed.Place, steps: int) -> typed.Place:
+    return typed.Place(place.side, place.steps[:steps], place.type)
+
+
+def _got(fields: HolderFields, path: Path) -> Expr:
+    value = fields.get(path)
+    assert value is not None
+    return value
+
+
+def _number(default: Constant | None) -> int | float:
+    return default if isinstance(default, int | float) else 0

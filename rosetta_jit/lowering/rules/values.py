@@ -1,0 +1,396 @@
+"""Typed expressions of rules as kernel expressions: arithmetic, conversions with their rule, functions of the language."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import field, replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Protocol, assert_never
+
+from rosetta_jit.kernel.ir import (
+    Address,
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Const,
+    Convert,
+    Expect,
+    Expr,
+    HostCall,
+    If,
+    Local,
+    Require,
+    Scalar,
+    Switch,
+    Unary,
+)
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.language import typed
+from rosetta_jit.language.algebra.normal_form import rebuilt
+from rosetta_jit.language.conversions import describe
+from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, differ, divided, floored, others
+from rosetta_jit.lowering.codec.fields import converted, scalar_name
+from rosetta_jit.lowering.rules.host_calls import asked
+from rosetta_jit.lowering.rules.key_search import number_in
+from rosetta_jit.lowering.rules.nearest import nearest
+from rosetta_jit.lowering.rules.number_bytes import of_bytes
+from rosetta_jit.lowering.rules.rejections import reject_with
+from rosetta_jit.lowering.texts.comparison import is_text
+from rosetta_jit.lowering.texts.questions import number_of
+from rosetta_jit.lowering.texts.values import forgetting
+from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import Bool, Enum, Float, Int
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import TypeGuard
+
+    from rosetta_jit.kernel.ir import Block, Stmt
+    from rosetta_jit.model.expr import Operator
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
+
+
+class Source(Protocol):
+    """The side that rules read."""
+
+    def number(self, place: typed.Place, values: Values) -> Expr:
+        """The number at a place."""
+        ...
+
+    def count(self, place: typed.Place, values: Values) -> Expr:
+        """The number of elements at a place, int64."""
+        ...
+
+    def address(self, place: typed.Place, values: Values) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        ...
+
+    def present(self, place: typed.Place, values: Values) -> Expr:
+        """Whether what can be absent is there."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """Evaluates expressions: what they read, the loop variables around them, the rule that they belong to."""
+
+    writer: Writer
+    source: Source
+    variables: Mapping[str, Expr]
+    where: Where = MESSAGE
+    line: str = ""
+    decided: dict[typed.Expr, tuple[list[Stmt], Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[Stmt], Expr]"])
+
+    def of(self, value: typed.Expr) -> Expr:
+        """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
+        is_kept = isinstance(value, typed.Search) or (isinstance(value, typed.IsText | typed.Choice) and not asks_others(value))
+        if not is_kept:
+            return self.computed(value)
+        block, found = self.decided.get(value, (None, None))
+        if block is None or found is None or not self.writer.is_around(block):
+            block, found = self.writer.block, self.computed(value)
+            self.decided[value] = block, found
+        return found
+
+    def computed(self, value: typed.Expr) -> Expr:
+        match value:
+            case typed.Const(number, type_):
+                return constant(number, scalar_type(type_))
+            case typed.Local(name):
+                return self.variables[name]
+            case typed.Access(place, type_):
+                number = self.source.number(place, self)
+                return converted(number, scalar_type(type_)) if isinstance(type_, Bool | Enum) else number
+            case typed.LenOf(place):
+                return self.source.count(place, self)
+            case typed.Unary("not", operand):
+                return Unary("not", self.of(operand))
+            case typed.Unary(_, operand):
+                return self.negative(self.of(operand))
+            case typed.Binary(operator, left, right):
+                return self.operation(operator, left, right)
+            case typed.Convert(operand, type_, rule):
+                number = self.of(operand)
+                return (
+                    self.named(number, type_)
+                    if rule == "exact" and is_named(type_, number)
+                    else self.convert(number, scalar_type(type_), rule)
+                )
+            case typed.Nearest():
+                return nearest(value, self)
+            case typed.Call(function, arguments, _):
+                return self.call(function, [self.of(argument) for argument in arguments])
+            case typed.IsText(place, text):
+                return is_text(self, place, text.encode())
+            case typed.TextCall() | typed.BytesCall():
+                return number_of(value, self) if isinstance(value, typed.TextCall) else of_bytes(value, self)
+            case typed.Has() | typed.Search():
+                return self.source.present(value.place, self) if isinstance(value, typed.Has) else number_in(value, self)
+            case typed.Choice() | typed.Listed() | typed.Given():
+                return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
+            case typed.Told() | typed.HostCall() | typed.ImageCall():
+                return asked(value, self)
+            case _:
+                assert_never(value)
+
+    def operation(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+        if operator in ("and", "or"):
+            return self.joined(operator, left, right)
+        if operator == "differs":
+            return differ(self.writer, self.of(left), self.of(right))
+        if operator in COMPARISONS:
+            return Compare(COMPARISONS[operator], self.of(left), self.of(right))
+        return binary(self.writer, operator, self.of(left), self.of(right), self.where, self.line)
+
+    def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
+        """``left and right``, ``left or right``: where the left one decides, the right one may have no value."""
+        writer, first = self.writer, self.of(left)
+        with forgetting(self.source), writer.nested() as step:
+            second = self.of(right)
+        if not any(isinstance(stmt, FAILING) for stmt, _ in statements(block(step))):
+            writer.emit(*step)
+            return binary(writer, operator, first, second, self.where, self.line)
+        found = writer.var("joined", first)
+        step.append(Assign(found.name, second))
+        writer.emit(If(found, block(step)) if operator == "and" else If(found, (), block(step)))
+        return found
+
+    def choice(self, choice: typed.Choice) -> Expr:
+        """Only the value that is chosen is computed, and only the conditions before it: others may not have one."""
+        writer = self.writer
+        found = writer.var("chosen", constant(0, scalar_type(choice.type)))
+        undecided = writer.var("undecided", Const("bool", value=True))
+        for condition, chosen in choice.cases:
+            with forgetting(self.source), writer.nested() as step:
+                holds = self.of(condition)
+                with writer.nested() as then:
+                    writer.assign(found, self.of(chosen))
+                    writer.assign(undecided, Const("bool", value=False))
+                writer.emit(If(holds, block(then)))
+            writer.emit(If(undecided, block(step)))
+        if choice.otherwise is None:
+            self.reject(choice.reason, choice.pieces, when=undecided)
+            return found
+        with forgetting(self.source), writer.nested() as other:
+            writer.assign(found, self.of(choice.otherwise))
+        writer.emit(If(undecided, block(other)))
+        return found
+
+    def listed(self, listed: typed.Listed | typed.Given) -> Expr:
+        """Only the item that is chosen is computed."""
+        assert isinstance(listed, typed.Listed), "parameters are given before a mapping is lowered"
+        found = self.writer.var("item", constant(0, scalar_type(listed.type)))
+        self.switch(listed, lambda item: self.writer.assign(found, self.of(item)))
+        return found
+
+    def switch(self, listed: typed.Listed, use: Callable[[typed.Expr], None]) -> None:
+        """Do something with the item of a list that an index chooses."""
+        writer = self.writer
+        number = writer.let("number", self.of(listed.index))
+        there = Binary("and", Compare("ge", number, index(0)), Compare("lt", number, index(len(listed.items))))
+        writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
+        cases: list[tuple[int, Block]] = []
+        for case, item in enumerate(listed.items):
+            with forgetting(self.source), writer.nested() as body:
+                use(item)
+            cases.append((case, block(body)))
+        writer.emit(Switch(number, tuple(cases), ()))
+
+    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: Expr | None = None) -> None:
+        """Refuse the message, always or where something holds: with a reason, or with what its pieces say."""
+        if pieces:
+            reject_with(pieces, reason, when, self)
+            return
+        good = Const("bool", value=False) if when is None else Unary("not", when)
+        self.writer.expect(good, "rejected", self.where, reason, line=self.line)
+
+    def at_rule(self, span: Span | None) -> Values:
+        """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""
+        if span is None:
+            return self
+        line, column = span.source.line_column(span.start)
+        return replace(self, line=f"{PurePath(span.source.name).name}:{line}:{column}")
+
+    def negative(self, operand: Expr) -> Expr:
+        if type_of(operand) in ("f32", "f64"):
+            return Unary("neg", operand)
+        return binary(self.writer, "-", index(0), operand, self.where, self.line)
+
+    def call(self, function: typed.Function, arguments: list[Expr]) -> Expr:
+        match function:
+            case "radians" | "degrees":
+                factor = math.pi / 180 if function == "radians" else 180 / math.pi
+                return Binary("mul", arguments[0], Const(type_of(arguments[0]), factor))
+            case "round":
+                return Unary("rint", arguments[0])
+            case "sin" | "cos" | "tan" | "asin" | "acos" | "atan":
+                return Unary(function, arguments[0])
+            case "atan2":
+                return Binary("atan2", arguments[0], arguments[1])
+            case "sqrt" | "floor" | "ceil" | "abs":
+                if function == "abs" and type_of(arguments[0]) == "i64":
+                    return Binary("max", arguments[0], self.negative(arguments[0]))
+                return arguments[0] if type_of(arguments[0]) == "i64" else Unary(function, arguments[0])
+            case "min" | "max":
+                result = arguments[0]
+                for argument in arguments[1:]:
+                    result = Binary(function, result, argument)
+                return result
+            case "divide":
+                return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case "floor_divide" | "modulo":
+                return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
+            case "others":
+                return others(self.writer, arguments[0], arguments[1:], self.where, self.line)
+            case "align":
+                return align(self.writer, arguments[0], arguments[1], self.where, self.line)
+            case _:
+                assert_never(function)
+
+    # --- conversions ---------------------------------------------------------------------------------------------------
+
+    def convert(self, value: Expr, target: Scalar, rule: typed.ConversionRule) -> Expr:
+        """A number as another type, by the rule that the mapping states."""
+        source = type_of(value)
+        if isinstance(value, Const):
+            folded = _folded(value, target)
+            if folded is not None:
+                return folded
+        match rule:
+            case "widen" | "nearest" | "wrap":
+                return value if source == target else Convert(target, value)
+            case "saturate":
+                return self.saturated(value, target)
+            case "exact" | "round" | "truncate":
+                return self.exact(value, target, rule)
+            case _:
+                assert_never(rule)
+
+    def named(self, value: Expr, type_: Bool | Enum) -> Expr:
+        """A number as one of the few that a type has."""
+        known = (0, 1) if isinstance(type_, Bool) else sorted({number for _, number in type_.values})
+        number = self.writer.let("number", value)
+        self.in_range(number, scalar_type(type_))
+        with self.writer.nested() as other:
+            self.expect(Const("bool", value=False), describe(type_))
+        self.writer.emit(Switch(Convert("i64", number), tuple((each, ()) for each in known), block(other)))
+        return self.convert(number, scalar_type(type_), "wrap")
+
+    def exact(self, value: Expr, target: Scalar, rule: str) -> Expr:
+        source = type_of(value)
+        local = self.writer.let("number", value)
+        if target in ("f32", "f64"):
+            return self.exact_float(local, target)
+        if source in ("f32", "f64"):
+            whole = self.writer.let("whole", Unary("rint" if rule == "round" else "trunc", local))
+            if rule == "exact":
+                self.expect(Compare("eq", whole, local), target)
+            local = whole
+        self.in_range(local, target)
+        return Convert(target, local)
+
+    def exact_float(self, value: Local, target: Scalar) -> Expr:
+        """A float that is the same number; NaN stays one."""
+        source = type_of(value)
+        made = self.writer.let("float", Convert(target, value))
+        same: Expr = Compare("eq", Convert(source, made), value)
+        if source in ("f32", "f64"):
+            same = Binary("or", same, Compare("ne", value, value))
+        else:  # what is rounded up beyond the integers comes back as the last of them
+            same = Binary("and", same, Compare("lt", made, Const(target, float(RANGES[source][1]))))
+        self.expect(same, target)
+        return made
+
+    def in_range(self, value: Local, target: Scalar) -> None:
+        source = type_of(value)
+        if target in ("f32", "f64", "bool"):
+            return
+        low, high = RANGES[target]
+        if source in ("f32", "f64"):
+            self.expect(Compare("ge", value, Const(source, float(low))), target)
+            self.expect(Compare("lt", value, Const(source, float(high))), target)
+            return
+        least, most = RANGES.get(source, (0, 2))
+        if low > least:
+            self.expect(Compare("ge", value, Const(source, low)), target)
+        if high < most:
+            self.expect(Compare("lt", value, Const(source, high)), target)
+
+    def saturated(self, value: Expr, target: Scalar) -> Expr:
+        source = type_of(value)
+        if source in ("f32", "f64"):
+            number = self.writer.let("number", value)
+            self.expect(Compare("eq", number, number), target)  # NaN is none
+            return Convert(target, Unary("rint", number))
+        low, high = RANGES[target]
+        least, most = RANGES[source]
+        if low > least:
+            value = Binary("max", value, Const(source, low))
+        if high < most:
+            value = Binary("min", value, Const(source, high - 1))
+        return Convert(target, value)
+
+    def expect(self, condition: Expr, target: str) -> None:
+        self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES.get(target, target)}", line=self.line)
+
+
+FAILING = (Require, Expect, HostCall, Call)
+"""Statements that may refuse a message."""
+
+RANGES: dict[str, tuple[int, int]] = {
+    "i8": (-(1 << 7), 1 << 7),
+    "u8": (0, 1 << 8),
+    "i16": (-(1 << 15), 1 << 15),
+    "u16": (0, 1 << 16),
+    "i32": (-(1 << 31), 1 << 31),
+    "u32": (0, 1 << 32),
+    "i64": (-(1 << 63), 1 << 63),
+    "u64": (0, 1 << 64),
+}
+"""Least value and first one too large."""
+
+NAMES = {scalar: f"{'u' if scalar[0] == 'u' else ''}int{scalar[1:]}" for scalar in RANGES} | {"f32": "float32", "f64": "float64"}
+
+
+def scalar_type(type_: Type) -> Scalar:
+    """The kernel's type of a number."""
+    match type_:
+        case Bool() | Int() | Float() | Enum():
+            return scalar_name(scalar_of(type_))
+        case _:
+            raise AssertionError(type_)
+
+
+def is_named(type_: Type, number: Expr) -> TypeGuard[Bool | Enum]:
+    """Whether a type has some numbers alone, and it is not known which one comes."""
+    return isinstance(type_, Bool | Enum) and not isinstance(number, Const) and type_of(number) != "bool"
+
+
+def constant(number: float | str, scalar: Scalar) -> Const:
+    """A number that the mapping writes down."""
+    assert not isinstance(number, str)
+    return Const(scalar, float(number) if scalar in ("f32", "f64") else int(number))
+
+
+def _folded(value: Const, target: Scalar) -> Const | None:
+    """A constant of another type, where that is the same number."""
+    if target in ("f32", "f64"):
+        return Const(target, float(value.value)) if abs(value.value) <= 1 << 24 or target == "f64" else None
+    if target in RANGES and float(value.value).is_integer():
+        low, high = RANGES[target]
+        return Const(target, int(value.value)) if low <= value.value < high else None
+    return None
+
+
+def asks_others(value: typed.Expr) -> bool:
+    """Whether a value takes a call out of the kernel, or a text that is made: such are computed where they stand."""
+    if isinstance(value, typed.Told | typed.HostCall | typed.ImageCall | typed.TextCall | typed.Given):
+        return True
+    found: list[bool] = []
+    rebuilt(value, lambda part: found.append(asks_others(part)) or part)
+    return any(found)

@@ -1,0 +1,1 @@
+"""Texts while rules run: read, compared, searched, made."""

@@ -1,0 +1,1 @@
+"""From text to trees: what every front end shares."""

@@ -1,0 +1,393 @@
+"""The driver: from what a user asks for to a program, stage by stage. Whoever finds the answer in the cache never imports this.
+
+texts → schemas and mapping → checked rules → encoding, layout → kernels → passes → proof → code
+"""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+from dataclasses import field
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
+from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.proof.verify import VerificationError
+from rosetta_jit.kernel.shape import is_told, our_functions
+from rosetta_jit.language.check.mapping import Checked, check
+from rosetta_jit.language.imports.search import Reading, SearchPath
+from rosetta_jit.language.parse.mapping import parse as parse_mapping
+from rosetta_jit.language.parse.unit_file import SUFFIX
+from rosetta_jit.lowering.lower import Mapped, lower
+from rosetta_jit.lowering.writer import TooManyStatementsError
+from rosetta_jit.model.expansion import excess
+from rosetta_jit.model.layout import Layout, layout
+from rosetta_jit.model.relax import without_text
+from rosetta_jit.model.serial import from_plain, to_plain
+from rosetta_jit.model.types import Ref, Schema, Struct, same_name
+from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+from rosetta_jit.pipeline.request import Backend, ByteOrder
+from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
+from rosetta_jit.runtime import images
+from rosetta_jit.runtime.run import GRACE_BYTES
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterable, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.kernel.host import UserFunction
+    from rosetta_jit.kernel.ir import Kernel, Site
+    from rosetta_jit.language.functions.user_functions import Signature
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.pipeline.request import GivenFunction, Request
+    from rosetta_jit.source import Span
+    from rosetta_jit.wire.codec import Encoding
+
+Stage = Literal["model", "codec", "kernel", "python", "llvm", "asm"]
+STAGES: tuple[Stage, ...] = get_args(Stage)
+
+
+@dataclass(frozen=True, slots=True)
+class Types:
+    """The types of a program, and the rules between them, if they are two."""
+
+    holder: Struct
+    wire: Struct
+    schema: Schema
+    rules: tuple[Rule, ...] | None
+    functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
+
+
+class Build:
+    """A program in the making. Each stage is made when it is first asked for."""
+
+    def __init__(self, request: Request) -> None:
+        self.request = request
+        self.reading = Reading()
+        self.files_given = _named_files(self.request)
+        self.search = SearchPath.of(self.request.folders, files=self.files_given)
+
+    @cached_property
+    def checked(self) -> Checked:
+        """The mapping, with the parameters of the request."""
+        source = self.search.open(self.request.mapping or "")
+        self.reading.record(source.name, None, source)
+        return check(parse_mapping(source), _readers(self.request), self.search, self.reading, json.loads(self.request.parameters))
+
+    @cached_property
+    def types(self) -> Types:
+        types = _mapped_types(self) if self.request.mapping is not None else _of_a_size(self.request, _own_types(self))
+        check_given(self.request, types.functions)
+        return types
+
+    @cached_property
+    def encoding(self) -> Encoding:
+        framework = self.wire_framework
+        name = self.request.encoding or next(iter(framework.encodings))
+        if name not in framework.encodings:
+            raise _report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
+        encoding = framework.encoding(name)(self.types.wire, self.types.schema, name, self._choices(framework, name))
+        if self.request.direction == "encode" and encoding.written is None:
+            raise _report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
+        return encoding
+
+    @cached_property
+    def layout(self) -> Layout:
+        return self._layout(self.types.holder)
+
+    def _layout(self, struct: Struct) -> Layout:
+        try:
+            return layout(Ref(struct.name), self.types.schema)
+        except ValueError as error:
+            raise _report(self.request, words.too_large(struct.name, struct.span, str(error))) from error
+
+    @cached_property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """Proven kernels: the decoder, or the encoder and what measures for it."""
+        directions = ("decode",) if self.request.direction == "decode" else ("encode", "size")
+        return tuple(self._proven(self._lowered(direction)) for direction in directions)
+
+    def _proven(self, kernel: Kernel) -> Kernel:
+        try:
+            return passes.run(kernel)
+        except VerificationError as error:
+            raise _report(self.request, words.unproven(self._span, str(error))) from error
+
+    def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
+        types = self.types
+        mapped = None if types.rules is None else self._mapped(types.rules)
+        try:
+            return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
+        except TooManyStatementsError as error:
+            raise _report(self.request, words.too_many_statements(self._span, str(error))) from error
+
+    @property
+    def _span(self) -> Span | None:
+        """Where the program as a whole is to be blamed."""
+        return self.types.wire.span if self.types.rules is None else self.checked.mapping.wire_span
+
+    def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
+        types = self.types
+        return Mapped(rules, types.schema, Ref(types.holder.name), Ref(types.wire.name), self._layout(types.wire))
+
+    def _choices(self, framework: Framework, encoding: str) -> Choices:
+        """What the request says about the encoding, if the encoding leaves it to say."""
+        request = self.request
+        if request.byte_order not in (None, *get_args(ByteOrder)):
+            raise _report(request, words.unknown_byte_order(request.byte_order))
+        if request.byte_order is not None and encoding not in framework.byte_orders:
+            raise _report(request, words.fixed_byte_order(encoding))
+        known = tuple(framework.leniencies.get(encoding, ()))
+        for name in request.lenient:
+            if name not in known:
+                raise _report(request, words.unknown_leniency(name, encoding, known))
+        return Choices(request.byte_order, frozenset(request.lenient))
+
+    # --- frameworks --------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def wire_framework(self) -> Framework:
+        return self._framework(self.types.wire)
+
+    @cached_property
+    def manners(self) -> str:
+        """Where the manners of the holder's framework are found."""
+        return self._framework(self.types.holder).manners
+
+    def _framework(self, struct: Struct) -> Framework:
+        """The framework whose IDL declares a type."""
+        readers = _readers(self.request)
+        owner = readers.owner(struct.span.source.name) if struct.span is not None else None
+        return owner or readers.frameworks[self.request.framework or ""]
+
+    # --- results -----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def backend(self) -> Backend:
+        """The one that was asked for, or LLVM: what numba adds, a type for users' own functions, `Decoder.kernel` has in any case."""
+        asked = self.request.backend or "llvm"
+        if asked not in get_args(Backend):
+            raise _report(self.request, words.unknown_backend(asked, get_args(Backend)))
+        return asked
+
+    @cached_property
+    def functions(self) -> tuple[UserFunction, ...]:
+        """The functions of the user's that the kernels call."""
+        return called_functions(self.request, self.types.functions, self.kernels)
+
+    @cached_property
+    def called(self) -> tuple[GivenFunction, ...]:
+        """The same as they were given."""
+        names = {function.name for function in self.functions}
+        return tuple(given for given in self.request.functions if given.name in names)
+
+    @cached_property
+    def text(self) -> str:
+        """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
+        kernels = [to_text(kernel) for kernel in self.kernels]
+        digests = [f"{given.name} {given.identity.digest}" for given in self.called]
+        holder = json.dumps(self.header["type"], sort_keys=True)
+        return "\n".join([self.backend, self.entry, self.manners, str(self.limit), holder, *kernels, *digests])
+
+    @cached_property
+    def entry(self) -> Literal["decode", "borrow", "encode"]:
+        if self.request.direction == "encode":
+            return "encode"
+        return "borrow" if self.request.borrow else "decode"
+
+    @cached_property
+    def header(self) -> dict[str, Any]:
+        """What a process needs besides the code, as JSON holds it."""
+        return {
+            "type": to_plain(Ref(self.types.holder.name), self.types.schema),
+            "manners": self.manners,
+            "entry": self.entry,
+            "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
+            "told": is_told(self.kernels),
+            "host": our_functions(self.kernels),
+            "limit": self.limit,
+        }
+
+    @property
+    def limit(self) -> int:
+        """The bytes of a lane that a message may ask for, whatever its own size."""
+        said = None if self.types.rules is None else self.checked.mapping.limit
+        if said is not None:
+            return said
+        return images.MAX_BYTES if our_functions(self.kernels) else GRACE_BYTES
+
+    def check_functions(self) -> tuple[str, ...]:
+        """The names of the user's functions whose code has addresses of this process. MappingError where one is not what is declared."""
+        imported("rosetta_jit.backends.entry.link")
+        return check_compiled(self.functions, self.types.functions)
+
+    def image(self) -> bytes:
+        """The object code."""
+        imported("rosetta_jit.backends.entry.link")
+        from rosetta_jit.backends.entry.link import compile_program
+
+        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
+
+    def stage(self, stage: str) -> str:
+        """What the program became, as text."""
+        match stage:
+            case "model":
+                from rosetta_jit.model.printer import show_types
+
+                return show_types(self.types.schema, (self.types.holder, self.types.wire))
+            case "codec":
+                from rosetta_jit.wire.printer import show_encoding
+
+                return show_encoding(self.encoding)
+            case "kernel":
+                return "\n".join(to_text(kernel) for kernel in self.kernels)
+            case "python":
+                from rosetta_jit.backends.python.function import python_text
+
+                return "\n".join(python_text(kernel) for kernel in self.kernels)
+            case "llvm":
+                from rosetta_jit.backends.entry.link import llvm_text
+
+                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
+            case "asm":
+                from rosetta_jit.backends.entry.link import assembly
+
+                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
+            case _:
+                raise ValueError(f"no stage `{stage}`; there are {', '.join(STAGES)}")
+
+    def files(self) -> dict[str, str | None]:
+        """The files that were read, by digest, and those that would have been read instead if they existed."""
+        in_memory = self.files_given
+        found: dict[str, str | None] = {}
+        for lookup in self.reading.lookups:
+            if lookup.found not in in_memory:
+                found |= dict.fromkeys(self.search.preferred(lookup), None)
+        for lookup in self.reading.lookups:
+            if lookup.found not in in_memory:
+                found[lookup.found] = lookup.digest
+        return found
+
+
+@contextmanager
+def within_stack() -> Generator[None]:
+    """Around work on texts and types: what nests within the limits may still be too deep for a caller who has little stack left.
+
+    Raises
+    ------
+    SchemaError
+        It is.
+    """
+    try:
+        yield
+    except RecursionError as error:
+        raise SchemaError((words.too_deep(),)) from error
+
+
+@within_stack()
+def check_mapping(path: str, folders: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
+    """What is known of a mapping; raises MappingError with all that is wrong."""
+    search, reading = SearchPath.of(folders), Reading()
+    return CheckedMapping(check(parse_mapping(search.open(path)), Readers(installed()), search, reading, parameters))
+
+
+def _mapped_types(build: Build) -> Types:
+    request = build.request
+    checked = build.checked
+    rules = checked.unpack if request.direction == "decode" else checked.pack
+    if rules is None or not rules:
+        raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
+    return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions)
+
+
+def _both(checked: Checked) -> Schema:
+    holder, wire = checked.holder.schema, checked.wire.schema
+    return Schema({**holder.types, **wire.types}, constants={**holder.constants, **wire.constants})
+
+
+def _own_types(build: Build) -> Types:
+    request = build.request
+    for name in json.loads(request.parameters):
+        raise _report(request, needless(name))
+    if request.plain is not None:
+        type_, schema = from_plain(json.loads(request.plain))
+        struct = schema.resolve(type_)
+        assert isinstance(struct, Struct)
+        return Types(struct, struct, schema, None)
+    schema = _imported(build)
+    if "text" in request.lenient:
+        schema = without_text(schema)
+    found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
+    if not found:
+        why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
+        raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", tuple(schema.types)),))
+    return Types(found[0], found[0], schema, None)
+
+
+def _of_a_size(request: Request, types: Types) -> Types:
+    """Types that can be laid out and compiled; those of a mapping are checked with it."""
+    why = excess(types.holder, types.schema)
+    if why:
+        raise _report(request, words.too_large(types.holder.name, types.holder.span, why))
+    return types
+
+
+def _named_files(request: Request) -> dict[str, str]:
+    """The files that came as texts. One without a name declares the type, in the language of the framework that is asked for."""
+    files = dict(request.files)
+    if "" in files:
+        if request.encoding is None and request.framework is None:
+            raise _report(request, words.nameless_schema())
+        text = files.pop("")
+        files[_readers(request).likely[0].file_of(request.type or "schema", text)] = text
+    return files
+
+
+def _readers(request: Request) -> Readers:
+    readers = Readers(installed(), request.framework, request.encoding)
+    if request.framework is not None and request.framework not in readers.frameworks:
+        raise _report(request, words.unknown_framework(request.framework, tuple(readers.frameworks)))
+    return readers
+
+
+def _imported(build: Build) -> Schema:
+    """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
+    request, readers = build.request, _readers(build.request)
+    asked = request.type or ""
+    given = tuple(name for name in build.files_given if not name.endswith(SUFFIX))
+    names = request.imports or given or tuple(readers.guesses(asked))
+    types: dict[str, Any] = {}
+    constants: dict[str, Any] = {}
+    left_out: dict[str, Any] = {}
+    load = build.search.loader(build.reading)
+    for name in names:
+        source = load(name)
+        if source is not None:
+            end = readers.find(source.name)
+            if end is None:
+                raise SchemaError((words.unknown_suffix(name, readers.suffixes),))
+            found = end(source, build.search.loader(build.reading, source))
+            types |= found.types
+            constants |= found.constants
+            left_out |= found.left_out
+            if not request.imports and not request.files and any(same_name(each, asked) for each in types):
+                break
+        elif request.imports:
+            raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
+    return Schema(types, constants=constants, left_out=left_out)
+
+
+def _plain_site(site: Site) -> list[Any]:
+    parts = [[part.offset, part.size, part.path, part.step] for part in site.parts]
+    return [site.kind, site.path, site.detail, site.line, parts, site.detail_lane]
+
+
+def _report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:
+    return (MappingError if request.mapping is not None else SchemaError)((diagnostic,))

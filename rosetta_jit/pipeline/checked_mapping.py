@@ -1,0 +1,40 @@
+"""What is known of a mapping that has no errors: its warnings, and what it guarantees."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.startup.cached import cached_property
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.check.mapping import Checked
+    from rosetta_jit.language.laws.guarantees import Laws
+
+
+class CheckedMapping:
+    """A mapping without errors. Iterating over it gives its warnings."""
+
+    def __init__(self, checked: Checked) -> None:
+        self.checked = checked
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What is suspect, and not wrong."""
+        return self.checked.warnings
+
+    @cached_property
+    def laws(self) -> Laws | None:
+        """What comes back when a message is unpacked and packed, and a holder packed and unpacked; None of a one-way mapping."""
+        from rosetta_jit.language.laws.guarantees import laws_of  # who makes a program asks for none
+
+        unpack, pack = self.checked.unpack, self.checked.pack
+        return laws_of(unpack, pack, self.checked.holder, self.checked.wire) if unpack and pack else None
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self.warnings)
+
+    def __len__(self) -> int:
+        return len(self.warnings)

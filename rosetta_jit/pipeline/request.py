@@ -1,0 +1,118 @@
+"""What a user asks for when making a program, as data: all that the answer depends on besides the files that it names."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rosetta_jit.runtime.functions.identity import Identity
+
+Direction = Literal["decode", "encode"]
+ByteOrder = Literal["little", "big"]
+Backend = Literal["numba", "llvm", "python", "interpreter"]
+
+
+@dataclass(frozen=True, slots=True)
+class GivenFunction:
+    """A function of the user's own, and which one it is. Those without a digest cannot be told from others: see `uncertain`."""
+
+    name: str
+    function: Callable[..., Any]
+    identity: Identity
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """One program.
+
+    Attributes
+    ----------
+    mapping
+        Path or name of a mapping; None for a type into its own holder.
+    type
+        Qualified name of that type.
+    encoding
+        Name of the encoding; None for the framework's usual one.
+    imports
+        IDL files, by their names on the search path.
+    files
+        Names and texts, as if they lay on the search path.
+    plain
+        A type that came as descriptors: as `rosetta_jit.model.serial` writes it.
+    framework
+        The framework whose type it is, where its name, its file or the encoding do not tell.
+    folders
+        The user's search path.
+    borrow
+        Bytes fields of decoded holders are views into the message.
+    byte_order
+        None for the usual one, or for either, where messages say which it is.
+    lenient
+        What the encoding is asked to forgive, by name.
+    parameters
+        The values of the mapping's parameters, as JSON.
+    functions
+        Functions of the user's own that the mapping calls.
+    backend
+        What runs the kernels; None for LLVM.
+    """
+
+    direction: Direction
+    mapping: str | None = None
+    type: str | None = None
+    encoding: str | None = None
+    imports: tuple[str, ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
+    plain: str | None = None
+    framework: str | None = None
+    folders: tuple[str, ...] = ()
+    borrow: bool = False
+    byte_order: ByteOrder | None = None
+    lenient: tuple[str, ...] = ()
+    parameters: str = "{}"
+    functions: tuple[GivenFunction, ...] = ()
+    backend: Backend | None = None
+
+    def is_identified(self) -> bool:
+        """Whether the cache can know the answer: a function that is not identified may be another one each time."""
+        return all(each.identity.digest is not None for each in self.functions)
+
+    def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
+        """The request as plain data, with the surroundings that relative names depend on."""
+        functions = [[each.name, each.identity.digest] for each in self.functions]
+        plain: dict[str, Any] = {name: getattr(self, name) for name in self.__match_args__}
+        return {**plain, "functions": functions, "cwd": _here(), "path": environment.get("ROSETTA_JIT_PATH", "")}
+
+
+def _here() -> str:
+    """The folder that relative names start from; empty where it was removed."""
+    try:
+        return os.getcwd()  # noqa: PTH109 - Path.cwd() imports no less and says no more
+    except OSError:
+        return ""
+
+
+def plain_parameters(parameters: Mapping[str, object]) -> str:
+    """The values of parameters as JSON; arrays and scalars of numpy are lists and numbers.
+
+    Raises
+    ------
+    TypeError
+        A value is no bool, number, text or list of these.
+    """
+    return json.dumps({name: _plain(name, value) for name, value in parameters.items()}, sort_keys=True)
+
+
+def _plain(name: str, value: Any) -> Any:
+    """A list is looked into once: parameters are lists of scalars."""
+    plain: object = value.tolist() if hasattr(value, "tolist") else value
+    items: list[object] = list(cast("Iterable[object]", plain)) if isinstance(plain, list | tuple) else [plain]
+    if not all(isinstance(item, bool | int | float | str) for item in items):
+        raise TypeError(f"parameter {name!r}: a bool, a number, a text, or a list of these is needed, not {type(value).__name__}")
+    return items if isinstance(plain, list | tuple) else plain

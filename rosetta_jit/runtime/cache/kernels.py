@@ -1,0 +1,253 @@
+"""The kernel cache: what was compiled once is loaded by every later process, which then parses and compiles nothing.
+
+Three kinds of file. An *entry* holds the object code of a program; its name is what the code depends on (`cache_names.entry_name`). A
+*manifest* leads to it: its name is what was asked for (`cache_names.request_name`), its content the digests of all files that were read for
+the answer. A warm process digests those files again and never looks into them. A *note* names a program that cannot be kept, and why.
+
+Whatever is wrong with a file or a folder costs a recompile and one warning, never an error.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import warnings
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.errors import CacheWarning
+from rosetta_jit.runtime.cache.sealed import DamagedError, Entry, seal, unseal
+from rosetta_jit.runtime.cache.stores import FolderStore, MemoryStore, Store, Stored, UntrustedError
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.sha import sha256
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+
+DEFAULT_MAX_BYTES = 512 * 1024 * 1024
+ENTRY, MANIFEST, NOTE = ".kernel", ".manifest", ".note"
+OWN = (ENTRY, MANIFEST, NOTE)
+
+
+@dataclass(frozen=True, slots=True)
+class Unkept:
+    """A program that is compiled anew in each process, and why. It was so when it was made last."""
+
+    program: str
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CacheInfo:
+    """What `rosetta-jit cache info` shows. ``folder`` is None when the cache keeps nothing on disk, ``problem`` says why it cannot."""
+
+    folder: Path | None
+    problem: str
+    entries: int
+    manifests: int
+    size_bytes: int
+    max_bytes: int
+    compiled_anew: tuple[Unkept, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DamagedFile:
+    """One finding of `Cache.verify`."""
+
+    name: str
+    reason: str
+
+
+class Cache:
+    """Compiled programs by name, in a folder or, where that is not possible, in memory.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Created when first written to, with mode 0700. It must belong to the user, must not be a symbolic link, and nobody else may be
+        able to write to it. None keeps everything in memory.
+    max_bytes : int
+        When exceeded, the files that were not used for the longest time are removed, until an eighth is free. 0 keeps nothing.
+    """
+
+    def __init__(self, folder: Path | None, *, max_bytes: int = DEFAULT_MAX_BYTES) -> None:
+        self.folder = folder
+        self.max_bytes = max_bytes
+        self._memory = MemoryStore()
+        self._store: Store = self._memory if folder is None else FolderStore(folder)
+        self._warned: set[str] = set()
+
+    @staticmethod
+    def default() -> Cache:
+        """The user's cache, one object a process. ROSETTA_JIT_CACHE_DIR names another folder, ROSETTA_JIT_CACHE=off keeps nothing."""
+        return _default(os.environ.get("ROSETTA_JIT_CACHE_DIR", ""), os.environ.get("ROSETTA_JIT_CACHE", ""))
+
+    def get(self, name: str) -> Entry | None:
+        """The program of that name, or None."""
+        return self._read(name + ENTRY)
+
+    def put(self, name: str, header: Mapping[str, object], image: bytes) -> None:
+        """Keep a program; ``header`` holds what JSON holds."""
+        self._write(name + ENTRY, header, image)
+
+    def get_manifest(self, request: str) -> str | None:
+        """The name of the entry that answers a request, if each file is as it was when the answer was made."""
+        manifest = self._read(request + MANIFEST)
+        if manifest is None:
+            return None
+        files = cast("dict[str, str | None]", manifest.header["files"])
+        unchanged = all(digest_file(path) == digest for path, digest in files.items())
+        return cast("str", manifest.header["entry"]) if unchanged else None
+
+    def put_manifest(self, request: str, files: Mapping[str, str | None], entry: str) -> None:
+        """Keep the answer to a request.
+
+        ``files`` gives the SHA-256 of each file as it was read, and None for each path where a file would have been preferred but none was.
+        """
+        self._write(request + MANIFEST, {"entry": entry, "files": dict(files)}, b"")
+
+    def put_note(self, name: str, program: str, reasons: tuple[str, ...]) -> None:
+        """Note that a program is not kept, unless the same is noted already."""
+        header = {"program": program, "reasons": list(reasons)}
+        noted = self._read(name + NOTE)
+        if noted is None or noted.header != header:
+            self._write(name + NOTE, header, b"")
+
+    def drop_note(self, name: str) -> None:
+        """Forget a note: the program is kept."""
+        for store in (self._store, self._memory):
+            with suppress(OSError, UntrustedError):
+                store.remove(name + NOTE)
+
+    def info(self) -> CacheInfo:
+        problem = ""
+        try:
+            stored = self._store.stored()
+        except (OSError, UntrustedError) as error:
+            stored, problem = self._memory.stored(), str(error)
+        return CacheInfo(
+            folder=self.folder,
+            problem=problem,
+            entries=sum(file.name.endswith(ENTRY) for file in stored),
+            manifests=sum(file.name.endswith(MANIFEST) for file in stored),
+            size_bytes=sum(file.size_bytes for file in stored),
+            max_bytes=self.max_bytes,
+            compiled_anew=tuple(sorted(self._unkept(stored), key=lambda each: each.program)),
+        )
+
+    def verify(self) -> tuple[DamagedFile, ...]:
+        """Read everything; the files that would not be used, and why."""
+        found = [(file.name, _damage(self._store, file.name)) for file in self._own_files()]
+        return tuple(DamagedFile(name, reason) for name, reason in sorted(found) if reason)
+
+    def clear(self) -> int:
+        """Remove all entries, manifests and notes, and nothing else; how many there were."""
+        from rosetta_jit.runtime.cache.usage import USAGE
+
+        files = self._own_files()
+        for file in files:
+            self._store.remove(file.name)
+        self._store.remove(USAGE)
+        return len(files)
+
+    def _read(self, name: str) -> Entry | None:
+        try:
+            data = self._store.read(name)
+        except (OSError, UntrustedError) as error:
+            self._warn_of_folder(error)
+            data = None
+        if data is None:
+            data = self._memory.read(name)
+        try:
+            return None if data is None else unseal(name, data)
+        except DamagedError as error:
+            from rosetta_jit.catalogue.cache import damaged_file
+
+            self._warn(name, damaged_file(name, str(error)))
+            return None
+
+    def _write(self, name: str, header: Mapping[str, object], image: bytes) -> None:
+        data = seal(name, header, image)
+        try:
+            self._store.write(name, data)
+            self._keep_small(self._store, len(data))
+        except (OSError, UntrustedError) as error:
+            self._warn_of_folder(error)
+            self._memory.write(name, data)
+            self._keep_small(self._memory, len(data))
+
+    def _own_files(self) -> list[Stored]:
+        return [file for file in self._store.stored() if file.name.endswith(OWN)]
+
+    def _unkept(self, stored: Iterable[Stored]) -> Iterator[Unkept]:
+        for noted in [self._read(file.name) for file in stored if file.name.endswith(NOTE)]:
+            if noted is not None:
+                yield Unkept(str(noted.header["program"]), tuple(map(str, cast("list[object]", noted.header["reasons"]))))
+
+    def _keep_small(self, store: Store, written_bytes: int) -> None:
+        from rosetta_jit.runtime.cache.usage import begin_look, end_look, note
+
+        if note(store, written_bytes, max_bytes=self.max_bytes):
+            begin_look(store)
+            end_look(store, self._evict(store))
+
+    def _evict(self, store: Store) -> int:
+        """Make room where it lacks, and then for more than the next file, which would need another look at all; the bytes that stay."""
+        files = sorted(store.stored(), key=lambda file: file.used_ns)
+        total = sum(file.size_bytes for file in files)
+        if total <= self.max_bytes:
+            return total
+        for file in files:
+            if total <= self.max_bytes * 7 // 8:
+                break
+            if file.name.endswith(OWN):
+                store.remove(file.name)
+                total -= file.size_bytes
+        return total
+
+    def _warn_of_folder(self, error: Exception) -> None:
+        from rosetta_jit.catalogue.cache import full_folder, unusable_folder
+
+        is_full = isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}
+        self._warn("folder", (full_folder if is_full else unusable_folder)(str(self.folder), str(error)))
+
+    def _warn(self, subject: str, diagnostic: Diagnostic) -> None:
+        if subject in self._warned:
+            return
+        from rosetta_jit.diagnostics import render
+
+        self._warned.add(subject)
+        warnings.warn(render(diagnostic), CacheWarning, stacklevel=5)
+
+
+@lru_cache(maxsize=4)
+def _default(folder: str, switch: str) -> Cache:
+    if switch.lower() in {"off", "0", "no", "false"}:
+        return Cache(None, max_bytes=0)
+    if folder:
+        return Cache(Path(folder))
+    from platformdirs import user_cache_path
+
+    return Cache(user_cache_path("rosetta_jit", appauthor=False))
+
+
+def digest_file(path: str) -> str | None:
+    """SHA-256 of a file's content, or None where there is no file to read."""
+    try:
+        return sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
+def _damage(store: Store, name: str) -> str:
+    try:
+        data = store.read(name)
+        if data is not None:
+            unseal(name, data)
+    except (DamagedError, UntrustedError, OSError) as error:
+        return str(error)
+    return ""

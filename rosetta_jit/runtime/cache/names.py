@@ -1,0 +1,79 @@
+"""The names of cache files: SHA-256 of all that their content depends on.
+
+Compiled code depends on the kernel's text and on the `surroundings`: the versions of what compiled it, the instruction set of the CPU, and
+the layout of CPython's objects, which the entry reads directly. A file of other surroundings is simply never found.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosetta_jit.runtime.code.processor import processor
+from rosetta_jit.startup.sha import sha256
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+ABI = 2
+"""Raise it when a kernel, the holder's state or the entry changes its meaning without a change of text."""
+
+
+def entry_name(kernel_text: str) -> str:
+    """The name of what this kernel compiles to, here."""
+    return _name("entry", kernel_text)
+
+
+def request_name(request: Mapping[str, object]) -> str:
+    """The name of the answer to a request: a mapping's path, the search path, options; whatever JSON holds."""
+    return _name("request", json.dumps(dict(request), sort_keys=True))
+
+
+@cache
+def surroundings() -> str:
+    """What compiled code depends on besides its kernel, as text; the same for the life of a process."""
+    import llvmlite
+
+    facts: dict[str, object] = {
+        "abi": ABI,
+        "package": _package_digest(),
+        "llvmlite": llvmlite.__version__,
+        "numba": numba_version(),
+        "processor": processor(),
+        "python": [sys.implementation.cache_tag, getattr(sys, "abiflags", ""), hasattr(sys, "gettotalrefcount")],
+    }
+    return json.dumps(facts, sort_keys=True)
+
+
+def _name(kind: str, text: str) -> str:
+    return sha256(f"{kind}\0{surroundings()}\0{text}".encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def _package_digest() -> str:
+    """Stands for our version: changes with each installation and, for us who work on the compiler, with each edit of a source file."""
+    folders, files = [str(Path(__file__).resolve().parents[2])], list[str]()
+    for folder in folders:  # grows while it is gone through
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                if entry.is_dir(follow_symlinks=False):
+                    folders += [entry.path] if entry.name not in ("__pycache__", "recordings", "share") else []
+                else:
+                    status = entry.stat()
+                    files.append(f"{entry.path} {status.st_size} {status.st_mtime_ns}\n")
+    files.sort()
+    return sha256("".join(files).encode("utf-8", "surrogatepass")).hexdigest()
+
+
+@cache
+def numba_version() -> str:
+    """The name of numba's metadata folder, because neither numba nor importlib.metadata may be imported at a warm start: both are slow."""
+    spec = find_spec("numba")
+    if spec is None or spec.origin is None:
+        return ""
+    beside = os.listdir(Path(spec.origin).parent.parent)  # noqa: PTH208 - a pattern of pathlib's is a regular expression to compile
+    return ", ".join(sorted(name for name in beside if name.startswith("numba-") and name.endswith(".dist-info")))

@@ -1,0 +1,1 @@
+"""Object code: from the compiler, into files, into the process."""

@@ -1,0 +1,68 @@
+"""LLVM's compiler, for text and modules of ours: it needs llvmlite alone, and is imported where something must be compiled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from llvmlite import binding
+from llvmlite.binding.newpassmanagers import NewPassManager
+
+from rosetta_jit.runtime.code.prelink import prelinked
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+
+def target_machine(*, hurried: bool = False) -> binding.TargetMachine:
+    """The machine that we run on, with all that its CPU can do.
+
+    ``hurried`` is for vast kernels: code of twice the size, in a tenth of the time.
+    """
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    features = binding.get_host_cpu_features().flatten()
+    target = binding.Target.from_default_triple()
+    opt = 0 if hurried else 3
+    return target.create_target_machine(cpu=binding.get_host_cpu_name(), features=features, opt=opt, reloc="pic", codemodel="small")
+
+
+def linked(parts: Iterable[str]) -> binding.ModuleRef:
+    """One module in a context of its own: what LLVM makes for a module, types and constants above all, it keeps as long as the context."""
+    context = binding.create_context()
+    first, *others = (binding.parse_assembly(part, context) for part in parts)
+    for module in others:
+        first.link_in(module)
+    return first
+
+
+def make_private(module: binding.ModuleRef, exported: Sequence[str]) -> None:
+    """Let a module define nothing for others but some symbols."""
+    for defined in (*module.functions, *module.global_variables):
+        if not defined.is_declaration and defined.name not in exported:
+            defined.linkage = "internal"
+
+
+def run_passes(passes: binding.ModulePassManager, module: binding.ModuleRef, builder: binding.PassBuilder) -> None:
+    """Run passes, and free them: llvmlite 0.50 does not, because its class inherits from another one first that frees nothing."""
+    passes.run(module, builder)
+    NewPassManager._dispose(passes)  # noqa: SLF001 - see above
+    passes.detach()
+
+
+def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine) -> None:
+    """Run the passes without which code is poor, all of which take time in proportion to it."""
+    few = binding.create_new_module_pass_manager()
+    few.add_always_inliner_pass()
+    few.add_sroa_pass()
+    few.add_instruction_combine_pass()
+    few.add_simplify_cfg_pass()
+    run_passes(few, module, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=0)))
+
+
+def assembled(text: str, exported: Sequence[str]) -> bytes:
+    """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes."""
+    machine, module = target_machine(), linked([text])
+    make_private(module, exported)
+    run_few_passes(module, machine)
+    image = machine.emit_object(module)
+    return prelinked(image) or image

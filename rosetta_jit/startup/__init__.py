@@ -1,0 +1,1 @@
+"""What exists to start quickly, and for no other reason."""
