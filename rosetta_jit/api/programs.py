@@ -311,6 +311,11 @@ class OwnPrograms:
         return self.decode.new()
 
 
+def program_of(request: Request) -> Any:
+    """The decoder or encoder that answers a request."""
+    return _of_request(Decoder if request.direction == "decode" else Encoder, request)
+
+
 def _of_request(program: Any, request: Request) -> Any:
     made = program.__new__(program)
     made.make(request)

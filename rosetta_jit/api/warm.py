@@ -1,0 +1,108 @@
+"""Compile programs ahead, several at a time, so that later processes load them from the cache."""
+
+from __future__ import annotations
+
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosetta_jit.api.programs import program_of
+from rosetta_jit.errors import ReportError
+from rosetta_jit.pipeline.request import Request, plain_parameters
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosetta_jit.pipeline.request import Direction
+
+SUFFIX = ".mapping"
+DIRECTIONS: tuple[Direction, ...] = ("decode", "encode")
+
+
+@dataclass(frozen=True, slots=True)
+class Warmed:
+    """A program that was compiled or loaded, or what is wrong with it.
+
+    Attributes
+    ----------
+    request
+        Which program: ``mapping`` or ``type``, ``direction``, ``encoding``.
+    seconds
+        How long it took to compile it, or to load it where the cache had it.
+    error
+        What is wrong with the mapping or the type; None if nothing is.
+    """
+
+    request: Request
+    seconds: float
+    error: ReportError | None = None
+
+
+def programs_of(
+    names: Iterable[str],
+    directions: Sequence[Direction] = DIRECTIONS,
+    encoding: str | None = None,
+    parameters: Mapping[str, object] | None = None,
+) -> tuple[Request, ...]:
+    """The programs of some mappings, types, and folders of mappings, each once.
+
+    A name that ends in ``.mapping``, or is a file's, is that of a mapping; any other one that is no folder's is that of a type.
+    """
+    given = plain_parameters(parameters or {})
+    found = [
+        Request(direction, mapping=name, encoding=encoding, parameters=given)
+        if _is_mapping(name)
+        else Request(direction, type=name, encoding=encoding)
+        for each in names
+        for name in _members(each)
+        for direction in directions
+    ]
+    return tuple(dict.fromkeys(found))
+
+
+def warm(programs: Iterable[Request], jobs: int | None = None) -> Iterator[tuple[Warmed, ...]]:
+    """Compile programs, ``jobs`` at a time (by default as many as there are processors); yields what became of each when it is done.
+
+    That is nothing where the mapping has no rules for the direction, and several programs where the encoding stands for several dialects,
+    of which a writer must choose one.
+    """
+    with ThreadPoolExecutor(jobs or os.cpu_count() or 1) as pool:
+        for done in as_completed([pool.submit(_made, each) for each in programs]):
+            yield done.result()
+
+
+def _members(name: str) -> Iterable[str]:
+    """The mappings in a folder; what is no folder stands for itself."""
+    folder = Path(name)
+    return sorted(map(str, folder.rglob(f"*{SUFFIX}"))) if folder.is_dir() else (name,)
+
+
+def _is_mapping(name: str) -> bool:
+    return name.endswith(SUFFIX) or Path(name).is_file()
+
+
+def _made(request: Request) -> tuple[Warmed, ...]:
+    started = time.perf_counter()
+    try:
+        program_of(request)
+    except ReportError as error:
+        match error.diagnostics[0].code:
+            case "no-rules":
+                return ()
+            case "ambiguous-encoding":
+                return tuple(made for each in _dialects(request) for made in _made(each))
+            case _:
+                return (Warmed(request, time.perf_counter() - started, error),)
+    return (Warmed(request, time.perf_counter() - started),)
+
+
+def _dialects(request: Request) -> list[Request]:
+    """The same program in each encoding of its framework but the one that cannot be written."""
+    from rosetta_jit.pipeline.build import Build
+
+    encodings = tuple(Build(request).wire_framework.encodings)
+    return [replace(request, encoding=each) for each in encodings if each != (request.encoding or encodings[0])]

@@ -1,0 +1,60 @@
+"""`rosetta-jit cache warm`: programs compiled ahead are in the cache for the processes that come after."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from rosetta_jit.api.programs import Decoder, Encoder
+from rosetta_jit.api.warm import programs_of, warm
+from rosetta_jit.cli import main
+
+KEY_VALUE = "ros1/key_value.mapping"
+BOOL = "std_msgs/msg/Bool"
+
+
+def test_names_become_programs(tmp_path):
+    for name in ("b", "a"):
+        (tmp_path / f"{name}.mapping").write_text("")
+    (tmp_path / "other.txt").write_text("")
+    found = programs_of([str(tmp_path), BOOL, BOOL])
+    assert [(each.mapping or each.type, each.direction) for each in found] == [
+        (name, direction) for name in (str(tmp_path / "a.mapping"), str(tmp_path / "b.mapping"), BOOL) for direction in ("decode", "encode")
+    ]
+
+
+def test_later_processes_find_them(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
+    assert main(["cache", "warm", KEY_VALUE, BOOL, "--jobs", "2", "--json"]) == 0
+    made = {(each["name"], each["direction"]) for each in map(json.loads, capsys.readouterr().out.splitlines())}
+    assert made == {(name, direction) for name in (KEY_VALUE, BOOL) for direction in ("decode", "encode")}
+    kept = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    Decoder(KEY_VALUE), Encoder(KEY_VALUE), Decoder.of(BOOL), Encoder.of(BOOL)
+    assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == kept
+
+
+def test_what_is_wrong_is_told_and_the_others_are_made(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
+    assert main(["cache", "warm", "std_msgs/msg/Bol", BOOL]) == 1
+    out, err = capsys.readouterr()
+    assert "2 programs ready, 2 wrong" in out
+    assert "no file declares" in err
+
+
+def test_a_writer_of_several_dialects_is_made_for_each():
+    (programs,) = warm(programs_of(["yarp/icub/torso_command.mapping"], directions=["encode"]), jobs=1)
+    assert sorted(each.request.encoding or "" for each in programs) == ["yarp2012", "yarp3", "yarp4"]
+
+
+def test_a_direction_without_rules_is_left_out(tmp_path):
+    text = 'import "ros1/std_msgs/Bool.msg"\ndata-holder: std_msgs/Bool\nwire-schema: std_msgs/Bool\nunpack-rules:\n  .data = .data\n'
+    (tmp_path / "one_way.mapping").write_text(text)
+    made = [each for several in warm(programs_of([str(tmp_path)]), jobs=1) for each in several]
+    assert [(each.request.direction, each.error) for each in made] == [("decode", None)]
+
+
+@pytest.mark.parametrize("arguments", [["cache", "warm"], ["cache", "info", BOOL]])
+def test_names_belong_to_warm(arguments, capsys):
+    assert main(arguments) == 2
+    assert "error: " in capsys.readouterr().err
