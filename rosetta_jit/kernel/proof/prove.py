@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import field
-from heapq import heapify, heappop, heappush
 from typing import Literal, NamedTuple, assert_never
 
 from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said
@@ -348,23 +347,18 @@ class Facts:
     def _nearby(self, goal: Linear, most: int) -> list[Linear]:
         """Facts that share atoms with a goal, and facts that share atoms with those.
 
-        The atom with the fewest facts comes first, of equals the youngest: what is known of the message's length or of a lane's capacity
-        grows with the kernel, and little of it has to do with the goal.
+        The youngest atom comes first: of an old one, such as a lane's capacity, very many facts may be known.
         """
         sums: dict[Terms, None] = {}
-        about = self._about
-        atoms = {atom for atom, _ in goal.terms}
-        waiting = [(len(about.get(atom, ())), -atom) for atom in atoms]
-        heapify(waiting)
-        while waiting and len(sums) < most:
-            for terms in reversed(about.get(-heappop(waiting)[1], ())):
+        atoms = dict.fromkeys(atom for atom, _ in reversed(goal.terms))
+        queue = list(atoms)
+        while queue and len(sums) < most:
+            for terms in reversed(self._about.get(queue.pop(0), ())):
                 if terms in sums:
                     continue
                 sums[terms] = None
-                for atom, _ in terms:
-                    if atom not in atoms:
-                        atoms.add(atom)
-                        heappush(waiting, (len(about[atom]), -atom))
+                queue.extend(a for a, _ in terms if a not in atoms)
+                atoms.update(dict.fromkeys(a for a, _ in terms))
                 if len(sums) >= most:
                     break
         if not sums:
