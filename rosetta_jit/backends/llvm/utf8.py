@@ -1,4 +1,7 @@
-"""The UTF-8 check as a private LLVM function: eight ASCII bytes at a time, else one character at a time by Unicode 15, table 3-7."""
+"""The UTF-8 check as a private LLVM function: many ASCII bytes at a time, else one character at a time by Unicode 15, table 3-7.
+
+The bytes behind the last whole word are looked at together with those before them, as the last word of the text.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 NAME = "rosetta_is_text"
-HIGH_BITS = 0x8080808080808080
+WORD = 8
+"""Bytes."""
 
 
 def is_text_function(module: ir.Module) -> ir.Function:
@@ -36,31 +40,71 @@ class _Check:
         self.builder.store(constant(0), self.position)
 
     def define(self) -> None:
-        builder, append = self.builder, self.function.append_basic_block
-        ascii_, eight, one, lead, good, bad = (append(name) for name in ("ascii", "eight", "one", "lead", "good", "bad"))
-        builder.branch(ascii_)
-        self._ascii(ascii_, eight, one)
-        builder.position_at_end(one)
-        builder.cbranch(builder.icmp_signed("<", self._at(), self.size), lead, good)
-        self._character(lead, ascii_, bad)
+        builder = self.builder
+        long, short, lead, good, bad = map(self._block, ("long", "short", "lead", "good", "bad"))
+        has_word = builder.icmp_signed(">=", self.size, constant(WORD))
+        builder.cbranch(has_word, long, short)
+        self._short(short, lead, good)
+        self._steps(long, has_word, lead, good)
+        self._character(lead, long, bad)
         for block, answer in ((good, 1), (bad, 0)):
             builder.position_at_end(block)
             builder.ret(ir.Constant(I1, answer))
 
-    def _ascii(self, ascii_: ir.Block, eight: ir.Block, one: ir.Block) -> None:
-        """Step over eight bytes while there are eight and none has its high bit set."""
+    def _short(self, short: ir.Block, lead: ir.Block, good: ir.Block) -> None:
+        """A text shorter than a word is ASCII if its first and its last bytes are, half a word of them or fewer, which may overlap."""
+        builder, width = self.builder, WORD // 2
+        builder.position_at_end(short)
+        while width:
+            some, fewer = self._block(f"some{width}"), self._block("fewer")
+            builder.cbranch(builder.icmp_signed(">=", self.size, constant(width)), some, fewer)
+            builder.position_at_end(some)
+            ends = [self._high_bits(at, ir.IntType(8 * width)) for at in (constant(0), builder.sub(self.size, constant(width)))]
+            builder.cbranch(self._is_zero(builder.or_(*ends)), good, lead)
+            builder.position_at_end(fewer)
+            width //= 2
+        builder.branch(good)
+
+    def _steps(self, long: ir.Block, has_word: ir.Value, lead: ir.Block, good: ir.Block) -> None:
+        """Step over vectors, then words, while they are ASCII; where fewer bytes are left, look at the text's last word."""
         builder = self.builder
-        builder.position_at_end(ascii_)
-        behind = builder.add(self._at(), constant(8), flags=("nsw",))
-        builder.cbranch(builder.icmp_signed("<=", behind, self.size), eight, one)
-        builder.position_at_end(eight)
-        word = builder.load(self._byte(0), typ=I64, align=1)
-        plain = builder.icmp_unsigned("==", builder.and_(word, constant(HIGH_BITS)), constant(0))
-        step = self.function.append_basic_block("step")
-        builder.cbranch(plain, step, one)
+        rest = self._step(long, 4 * WORD, None)
+        rest = self._step(rest, WORD, lead)
+        builder.position_at_end(rest)
+        some, last = self._block("some"), self._block("last")
+        builder.cbranch(builder.icmp_signed("<", self._at(), self.size), some, good)
+        builder.position_at_end(some)
+        builder.cbranch(has_word, last, lead)
+        builder.position_at_end(last)
+        builder.cbranch(self._is_zero(self._high_bits(builder.sub(self.size, constant(WORD)), I64)), good, lead)
+
+    def _step(self, start: ir.Block, width: int, other: ir.Block | None) -> ir.Block:
+        """Step over so many bytes, again and again from ``start`` on; returns where fewer are left.
+
+        Where some of them are not ASCII, go to ``other``, or by default to the same block.
+        """
+        builder = self.builder
+        there, step, rest = self._block(f"there{width}"), self._block("step"), self._block("rest")
+        builder.position_at_end(start)
+        behind = builder.add(self._at(), constant(width), flags=("nsw",))
+        builder.cbranch(builder.icmp_signed("<=", behind, self.size), there, rest)
+        builder.position_at_end(there)
+        builder.cbranch(self._is_zero(self._high_bits(self._at(), ir.IntType(8 * width))), step, other or rest)
         builder.position_at_end(step)
         builder.store(behind, self.position)
-        builder.branch(ascii_)
+        builder.branch(start)
+        return rest
+
+    def _high_bits(self, at: ir.Value, type_: ir.IntType) -> ir.Value:
+        """The high bits of the bytes from an offset on, as one integer: none is set if all are ASCII."""
+        bytes_ = self.builder.load(self.builder.gep(self.bytes, [at], source_etype=I8), typ=type_, align=1)
+        return self.builder.and_(bytes_, ir.Constant(type_, int.from_bytes(b"\x80" * (type_.width // 8), "little")))
+
+    def _is_zero(self, number: ir.Value) -> ir.Value:
+        return self.builder.icmp_unsigned("==", number, ir.Constant(number.type, 0))
+
+    def _block(self, name: str) -> ir.Block:
+        return self.function.append_basic_block(name)
 
     def _character(self, lead: ir.Block, again: ir.Block, bad: ir.Block) -> None:
         """Table 3-7: the first byte says how many follow, and narrows the range of the second.
