@@ -11,7 +11,7 @@ import rosetta_jit as rj
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
-from tests.lowering.texts import BACKENDS
+from tests.language.texts import BACKENDS
 
 BOTTLE = {"w.bottle-schema": '"w" (("line" :string) ("unit" :string))'}
 TOO_STEEP = 2.2
