@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from bench.varied import Varied
 
 METHODS, VALUES, CALLS = "Methods that serialise", "Plain values and copies", "Ways to call a decoder"
+OBJECTS = "Objects of the peers' own classes"
 OURS, PLAIN = "rosetta_jit", "a dataclass with slots"
 PACKAGES = ("mcap-ros1-support", "lcm", "protobuf")
 KEPT = 32
@@ -88,6 +89,41 @@ def test_serialising(name, effort, compare, record):
     record(name, outcome.ratio(OURS, direct), 2, f"x {job.program}", _detail(outcome, direct))
     for who, _, _ in _peers(made, job):
         record(f"{name}, against {job.peer}", outcome.ratio(OURS, who), 1, f"x {job.peer}", _detail(outcome, who))
+
+
+OF_PEERS = {
+    "protobuf, 24 doubles": (varied.joints, "upb"),
+    "ROS 1, Imu": (_imu, "rosbags"),
+    "ROS 2, JointState, 32 joints": (lambda: varied.joint_state(2), "rosbags"),
+    "ROS 1, Imu, genpy's": (_imu, "genpy"),
+    "LCM, 1000 doubles": (varied.lcm_doubles, "lcm"),
+}
+
+
+@pytest.mark.parametrize("name", OF_PEERS)
+def test_objects_of_peers(name, effort, compare, record):
+    """Their objects to bytes and back, by our programs and by their own functions."""
+    make, who = OF_PEERS[name]
+    made = make()
+    for peer in [each for each in peers_of(made.subject, (*PACKAGES, "rosbags")) if who in each.who][:1]:
+        values = [peer.decode(each) for each in made.messages[:KEPT]]
+        decode, encode = made.subject.decoder(), made.subject.encoder()
+        bytes_of = peer.encode or type(values[0]).SerializeToString
+        assert [encode(each) for each in values] == list(made.messages[:KEPT])
+        given = {"encode": encode, "to": decode.to, "made": type(values[0]), "theirs": bytes_of, "parse": peer.decode}
+        for what, ours, its, messages in (
+            ("encoded", "encode(m)", "theirs(m)", values),
+            ("decoded", "to(m, made)", "parse(m)", made.messages),
+        ):
+            outcome = compare(
+                OBJECTS,
+                f"{name}, {what}",
+                [
+                    contender(effort, OURS, "ours", "the peer's object", ours, messages, **given),
+                    contender(effort, peer.who, "peer", "the peer's object", its, messages, **given),
+                ],
+            )
+            record(f"{name}, {what}", outcome.ratio(OURS, peer.who), 1, f"x {who}", _detail(outcome, peer.who))
 
 
 def _peers(made, job):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from threading import get_ident, local
-from typing import TYPE_CHECKING, Any, Literal, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast, overload
 
 import numpy as np
 
@@ -12,18 +12,20 @@ from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import THREAD
 from rosetta_jit.runtime.lanes import roomier
-from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
+from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.lanes import Lanes
 
+_Object = TypeVar("_Object")
 OnError = Literal["raise", "skip", "mask"]
 
 
@@ -43,16 +45,50 @@ class DecoderBase(Program):
         self._bind(loaded, self.call_slowly)
 
     def into(self, message: Buffer, holder: Any) -> Any:
-        """Decode into a holder of one's own; returns it.
+        """Decode into a holder of one's own, or into an object of another class whose attributes are called as the fields; returns it.
 
         Raises
         ------
         DecodeError
-            The message is not what the schema promises; the holder is invalid until it is filled again.
+            The message is not what the schema promises; a holder is invalid until it is filled again, an object is as it was.
+        ValuesError
+            The object lacks an attribute, or no class is known for a message in it (see `to`). It has some of the values then.
         TypeError, BufferError
             The message has no bytes, or the holder is of another type.
         """
         return self(message, holder)
+
+    def to(self, message: Buffer, object_type: type[_Object], *, types: Mapping[str, type] | None = None) -> _Object:
+        """Decode into a new object of a class: a dataclass, or a framework's own.
+
+        Parameters
+        ----------
+        types
+            The classes of messages within it by the names of their types, where ``object_type`` does not tell them. A table for many types
+            will do, such as the ``types`` of a typestore of rosbags.
+
+        Raises
+        ------
+        DecodeError
+            The message is not what the schema promises.
+        ValuesError
+            The class lacks an attribute, or no class is known for a message within it.
+        """
+        givers = self._loaded.holder_type.family_.givers if types is None else self._givers_of(types)
+        holder = self._borrow()
+        try:
+            return givers.make(object_type, self(message, holder))
+        finally:
+            self._give_back(holder)
+
+    def _givers_of(self, types: Mapping[str, type]) -> Givers:
+        """What makes objects with classes out of a table; the last table's is kept."""
+        kept: tuple[Mapping[str, type], Givers] | None = vars(self).get("_kept_givers")
+        if kept is None or kept[0] is not types:
+            from rosetta_jit.runtime.holder.objects.giving import Givers
+
+            kept = vars(self)["_kept_givers"] = types, Givers(self._loaded.holder_type.family_, types)
+        return kept[1]
 
     @overload
     def many(self, messages: Buffer, offsets: NDArray[np.int64], *, into: Batch | None = None, on_error: OnError = "raise") -> Batch: ...
@@ -170,6 +206,8 @@ class DecoderBase(Program):
         if named or len(arguments) not in (1, 2):
             raise TypeError("a decoder takes a message, and perhaps a holder to fill")
         message: Any = arguments[0]
+        if len(arguments) == 2 and is_foreign(arguments[1]):
+            return self._into_foreign(message, arguments[1])
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
@@ -186,6 +224,15 @@ class DecoderBase(Program):
             lanes.words[VALID] = CLEAN
         del before  # outside: what ends with it may run any code
         return holder
+
+    def _into_foreign(self, message: Any, value: object) -> object:
+        """Decode into an object of another class."""
+        holder = self._borrow()
+        try:
+            self._loaded.holder_type.family_.givers.fill(value, self(message, holder))
+        finally:
+            self._give_back(holder)
+        return value
 
     def _becomes_mine(self) -> bool:
         """Let the decoder's own holder belong to this thread, if it belongs to none: in one step, which dicts have."""

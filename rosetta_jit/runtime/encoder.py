@@ -11,7 +11,7 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
-from rosetta_jit.runtime.program import MANY, Loaded, Program, one_by_one
+from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +33,16 @@ class EncoderBase(Program):
     if TYPE_CHECKING:  # the entry does this
 
         def __call__(self, holder: Any, buffer: Buffer | None = None, offset: int = 0) -> Any:
-            """The message as bytes, or, written into a buffer, the offset behind it."""
+            """The message as bytes, or, written into a buffer, the offset behind it.
+
+            The holder may also be a dict, as `Holder.from_dict` takes it, or an object whose attributes are called as the type's fields:
+            of a framework's own class, a dataclass.
+
+            Raises
+            ------
+            ValuesError
+                An attribute is missing, of no field, or of a value that its field cannot have.
+            """
             ...
 
     def _start(self, loaded: Loaded) -> None:
@@ -53,6 +62,8 @@ class EncoderBase(Program):
 
     def size(self, holder: Any) -> int:
         """How many bytes the message takes."""
+        if is_foreign(holder):
+            return self._of_foreign(holder, self.size)
         checked = self._checked(holder)
         with checked.lanes_ as lanes:
             self._make_usable(checked)
@@ -160,11 +171,22 @@ class EncoderBase(Program):
             arguments = (*arguments, 0)
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
+        if is_foreign(arguments[0]):
+            return self._of_foreign(arguments[0], self, *arguments[1:])
         holder = self._checked(arguments[0])
         target, offset = (None, 0) if len(arguments) == 1 else (run.writable(arguments[1]), arguments[2])
         with holder.lanes_ as lanes, self._told(lanes):
             self._make_usable(holder)
             return self._bytes(lanes) if target is None else self._put(lanes, target, offset)
+
+    def _of_foreign(self, value: object, use: Callable[..., Any], *more: object) -> Any:
+        """What comes of a holder with the values of an object of another class, or of a dict."""
+        holder = self._borrow()
+        try:
+            self._loaded.holder_type.family_.takers.take(holder, value)
+            return use(holder, *more)
+        finally:
+            self._give_back(holder)
 
     def _bytes(self, lanes: Lanes) -> bytes:
         size = self._measured(lanes)

@@ -13,7 +13,6 @@ from __future__ import annotations
 import operator
 from _thread import allocate_lock
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
 
 import numpy as np
@@ -35,12 +34,13 @@ from rosetta_jit.kernel.state import (
     lane_word,
 )
 from rosetta_jit.model.initial_values import FirstCase, FixedArray
+from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
-from rosetta_jit.runtime.plan import Plan, plan
+from rosetta_jit.runtime.plan import Plan, begun, plan
 
 if TYPE_CHECKING:
     from _thread import LockType
@@ -274,16 +274,27 @@ class Lanes:
 
     def reset(self, rows: int = 1) -> None:
         """Empty messages in the first rows of lane 0, nothing in the others, and nothing borrowed."""
+        if rows == 1 and self.plan.fresh and library() is not None:
+            functions()["restart"](self.address, self.plan.fresh)
+        else:
+            self._reset_in_python(rows)
+        self.rows = rows
+        self.source[0] = None
+        self.words[WASTED] = 0
+        self.words[VALID] = CLEAN
+
+    def restart(self) -> None:
+        """The same of lanes of one message that nobody else has."""
+        self.words[EPOCH] += 1
+        self.reset()
+
+    def _reset_in_python(self, rows: int) -> None:
         if rows > self.capacity(0):
             self.grow(0, rows - self.capacity(0))
         for lane in range(len(self.buffers)):
             self.give_back(lane, 0)
-        self.rows = rows
         self.take(0, rows)
         self.bear(self.plan.births, 0, rows)
-        self.source[0] = None
-        self.words[WASTED] = 0
-        self.words[VALID] = CLEAN
 
     def copied(self) -> Lanes:
         """Lanes of their own with the same rows. Nothing may be borrowed."""
@@ -369,7 +380,7 @@ def born(plan: Plan) -> Plan:
     prototype.bear(plan.births, 0, 1)
     for lane in range(len(plan.strides)):
         prototype.words[lane_word(lane, ADDRESS)] = 0
-    return replace(plan, begin=bytes(prototype.memory.first).rstrip(b"\0"))
+    return begun(plan, bytes(prototype.memory.first).rstrip(b"\0"))
 
 
 def roomier(plan_: Plan, lanes: Lanes, most: int = MOST_AT_ONCE) -> Plan:

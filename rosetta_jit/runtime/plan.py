@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosetta_jit.kernel.state import ADDRESS, CLEAN, STRIDE, VALID, lane_word, state_words
+from rosetta_jit.kernel.state import ADDRESS, CLEAN, STRIDE, USED, VALID, lane_word, state_words
 from rosetta_jit.model.initial_values import FixedArray
 from rosetta_jit.model.layout import Number
 from rosetta_jit.runtime.cells import BYTES, dtype_of
@@ -33,7 +34,8 @@ class Plan:
 
     ``begin`` is how it begins, up to the last byte that is not zero: the state, of ``state_bytes``, without its addresses, and what the
     messages are born with. ``places`` has pairs of int64: a word of the state, and the offset
-    of the lane whose address stands there.
+    of the lane whose address stands there. ``fresh`` is what each lane has of a new message: its words in the state, counted in bytes, how
+    many rows, how many bytes, and these.
     """
 
     layout: Layout
@@ -47,6 +49,7 @@ class Plan:
     begin: bytes
     places: bytes
     births: tuple[Birth, ...] = ()
+    fresh: bytes = b""
 
 
 def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Sequence[int] = ()) -> Plan:
@@ -71,7 +74,18 @@ def plan(layout: Layout, rows: int = 1, births: tuple[Birth, ...] = (), room: Se
         behind = aligned(behind + sizes[-1])
     places = b"".join(struct.pack("=2q", lane_word(lane, ADDRESS), offset) for lane, offset in enumerate(offsets))
     dtypes = (*(dtype_of(lane.element.scalar) if isinstance(lane.element, Number) else BYTES for lane in layout.lanes), BYTES)
-    return Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), places, births)
+    made = Plan(layout, rows, strides, tuple(offsets), tuple(sizes), dtypes, behind, state.nbytes, state.tobytes(), places, births)
+    return begun(made, made.begin) if rows == 1 else made
+
+
+def begun(plan: Plan, begin: bytes) -> Plan:
+    """The plan, with another beginning of its memory."""
+    state, fresh = np.frombuffer(begin[: plan.state_bytes], np.int64), b""
+    for lane, (stride, offset) in enumerate(zip(plan.strides, plan.offsets, strict=True)):
+        used = int(state[lane_word(lane, USED)])
+        size = aligned(used * stride, 8)
+        fresh += struct.pack("=3q", 8 * lane_word(lane, ADDRESS), used, size) + begin[offset : offset + size].ljust(size, b"\0")
+    return replace(plan, begin=begin, fresh=fresh)
 
 
 def _count(births: tuple[Birth, ...], rows: int, born: dict[int, int]) -> None:

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
+from rosetta_jit.runtime.holder.message import Message
+from rosetta_jit.runtime.holder.objects.shapes import is_message_like
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -31,6 +33,10 @@ if TYPE_CHECKING:
 
 MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 """The compiled `many` (`backends/entry/many.ll`): buffer, its size, offsets, first, count, state; the first message that was not done."""
+
+
+MAX_SPARES = 8
+"""How many holders a program keeps for objects of other classes: one for each thread that uses it for those at the same time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +123,22 @@ class Program:
         holder.lay_out_(max(self._plan, holder_type.family_.roomy, key=lambda plan: plan.size_bytes))
         return holder
 
+    def _borrow(self) -> Any:
+        """An empty holder that nobody else has, until it comes back by `_give_back`."""
+        try:
+            return self._spares.pop()
+        except IndexError:
+            return self.new()
+
+    def _give_back(self, holder: Any) -> None:
+        holder.lanes_.restart()
+        if len(self._spares) < MAX_SPARES:
+            self._spares.append(holder)
+
+    @cached_property
+    def _spares(self) -> list[Any]:
+        return []
+
     def _checked(self, holder: object) -> Holder:
         expected = self._loaded.holder_type
         if not isinstance(holder, expected) or type(holder) is not expected:
@@ -132,6 +154,11 @@ class Program:
         if batch.family_ is not expected.family_ or lanes.plan.layout is not expected.family_.layout:
             raise TypeError(f"a batch of {expected.__qualname__} is needed")
         return lanes
+
+
+def is_foreign(value: object) -> bool:
+    """Whether a value may be a message that is no holder: an object of another class, or a dict."""
+    return not isinstance(value, Message) and is_message_like(value)
 
 
 def one_by_one(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
+from rosetta_jit.frameworks.lcm.objects import OBJECTS
 from rosetta_jit.frameworks.lcm.shape import shape_of
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
 from rosetta_jit.runtime.holder.serialising import encoded, programs_of
@@ -96,5 +97,14 @@ def _taken(name: str) -> bool:
     return name.startswith("__") or (name.strip("_") != name and hasattr(LcmMessage, name))
 
 
-LCM_GEN = Manners(LcmMessage, np.ndarray, PLAIN.sequence, PLAIN.mapping, assigns_whole=True, members=members, serialising=("lcm", "lcm"))
+LCM_GEN = Manners(
+    LcmMessage,
+    np.ndarray,
+    PLAIN.sequence,
+    PLAIN.mapping,
+    assigns_whole=True,
+    members=members,
+    serialising=("lcm", "lcm"),
+    foreign=OBJECTS,
+)
 """The manners of lcm-gen's classes."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescriptor, MessageDescriptor, nested_names
+from rosetta_jit.frameworks.protobuf.objects import OBJECTS
 from rosetta_jit.frameworks.protobuf.presence import missing, requires, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
 from rosetta_jit.model.types import Enum
@@ -227,6 +228,13 @@ def members(family: Family) -> dict[str, Any]:
 
 
 PROTOBUF = Manners(
-    ProtobufMessage, NumberArray, repeated, MapField, assigns_whole=False, members=members, serialising=("protobuf", "protobuf-partial")
+    ProtobufMessage,
+    NumberArray,
+    repeated,
+    MapField,
+    assigns_whole=False,
+    members=members,
+    serialising=("protobuf", "protobuf-partial"),
+    foreign=OBJECTS,
 )
 """The manners of protobuf's messages."""

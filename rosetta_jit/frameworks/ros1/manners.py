@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
 
+from rosetta_jit.frameworks.ros1.objects import OBJECTS
 from rosetta_jit.frameworks.ros1.times import DURATION, TIME
 from rosetta_jit.model.types import Array, Bytes, Ref, Struct
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
@@ -175,5 +176,14 @@ def _yaml(values: dict[str, Any], indent: str = "") -> Iterator[str]:
                 yield f"{indent}{name}: {value!r}"
 
 
-GENPY = Manners(RosMessage, np.ndarray, PLAIN.sequence, PLAIN.mapping, assigns_whole=True, members=members, serialising=("ros1", "ros1"))
+GENPY = Manners(
+    RosMessage,
+    np.ndarray,
+    PLAIN.sequence,
+    PLAIN.mapping,
+    assigns_whole=True,
+    members=members,
+    serialising=("ros1", "ros1"),
+    foreign=OBJECTS,
+)
 """The manners of genpy's classes."""

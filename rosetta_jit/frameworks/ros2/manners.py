@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rosetta_jit.frameworks.ros2.idl import DUMMY
+from rosetta_jit.frameworks.ros2.objects import OBJECTS
 from rosetta_jit.model.types import Array, Bytes, Field, Optional, Ref, String, name_parts
 from rosetta_jit.runtime.holder import PLAIN, Holder, Manners
 from rosetta_jit.runtime.holder.serialising import encoded, programs_of
@@ -119,5 +120,14 @@ def spelled(type_: Type) -> str:
             return SPELLED.get(word, word)
 
 
-RCLPY = Manners(Ros2Message, np.ndarray, PLAIN.sequence, PLAIN.mapping, assigns_whole=True, members=members, serialising=("ros2", "cdr"))
+RCLPY = Manners(
+    Ros2Message,
+    np.ndarray,
+    PLAIN.sequence,
+    PLAIN.mapping,
+    assigns_whole=True,
+    members=members,
+    serialising=("ros2", "cdr"),
+    foreign=OBJECTS,
+)
 """The manners of rosidl's classes."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll")
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
 WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
-FUNCTIONS = ("begin", "bind", "extend_texts")
+FUNCTIONS = ("begin", "bind", "restart", "extend_texts")
 SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
 SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *FUNCTIONS, *SEQUENCES)
 """What the library defines."""

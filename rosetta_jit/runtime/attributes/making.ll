@@ -88,3 +88,36 @@ define internal void @set_slot(ptr %message, i64 %offset, ptr %value) {
   call void @forget(ptr %old)
   ret void
 }
+
+; restart(state, fresh): let each lane have the rows of a new message, and those alone. For each lane `fresh` says where its words lie in the state, how
+; many rows there are, and how many bytes of them follow; these are filled up to a multiple of eight.
+define ptr @restart(ptr %module, ptr %arguments, i64 %given) {
+  %address.object = load ptr, ptr %arguments
+  %fresh = call ptr @pointer(ptr %arguments, i64 8)
+  %converted = call { i64, i1 } @unbox_signed(ptr %address.object)
+  %address = extractvalue { i64, i1 } %converted, 0
+  %state = inttoptr i64 %address to ptr
+  %size = call i64 @word(ptr %fresh, i64 16)
+  %data = getelementptr i8, ptr %fresh, i64 32
+  br label %head
+head:
+  %at = phi i64 [ 0, %0 ], [ %next, %each ]
+  %more = icmp slt i64 %at, %size
+  br i1 %more, label %each, label %done
+each:
+  %entry = getelementptr i8, ptr %data, i64 %at
+  %lane.at = load i64, ptr %entry
+  %rows = call i64 @word(ptr %entry, i64 8)
+  %bytes = call i64 @word(ptr %entry, i64 16)
+  %from = getelementptr i8, ptr %entry, i64 24
+  %lane = getelementptr i8, ptr %state, i64 %lane.at
+  %to = load ptr, ptr %lane
+  call void @llvm.memmove.p0.p0.i64(ptr %to, ptr %from, i64 %bytes, i1 false)
+  call void @put(ptr %lane, i64 16, i64 %rows)
+  %behind = add i64 %at, 24
+  %next = add i64 %behind, %bytes
+  br label %head
+done:
+  call void @Py_IncRef(ptr @_Py_NoneStruct)
+  ret ptr @_Py_NoneStruct
+}

@@ -10,6 +10,7 @@ sequence    arrays and maps that numpy cannot show
 classes     what every holder can do
 family      the class of a type, made once
 serialising holders that write and read themselves
+objects     objects of other classes: taken into holders, and made of them
 """
 
 from rosetta_jit.runtime.holder.classes import Holder

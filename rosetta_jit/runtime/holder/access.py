@@ -242,6 +242,13 @@ def setter(entry: Entry, family: Family) -> Setter:
             assert_never(node)
 
 
+def assigner(entry: Entry) -> Setter:
+    """What assigns to a field, whether or not the manners let people do so."""
+    node = entry.node
+    is_leaf = isinstance(node, Scalar | Text | Blob | Numbers) or (isinstance(node, Items) and bool(node.shape))
+    return _leaf_setter(entry, cast("values.Leaf", node)) if is_leaf else _whole_setter(entry)
+
+
 def _leaf_setter(entry: Entry, node: values.Leaf) -> Setter:
     presence = entry.presence
 

@@ -16,6 +16,7 @@ from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.holder.access import Access, read_field, write_field
 from rosetta_jit.runtime.holder.classes import Holder, filled
 from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row
+from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes, born, roomier
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.holder.objects.giving import Givers
+    from rosetta_jit.runtime.holder.objects.taking import Takers
     from rosetta_jit.runtime.holder.record import Entry, Record
 
 
@@ -52,6 +55,8 @@ class Manners:
     serialising : tuple of str
         Framework and encoding of the base's methods that serialise; with it, ``programs_`` of every holder is what
         `rosetta_jit.runtime.holder.serialising.Programs` says.
+    foreign : Foreign
+        What is particular about the objects of the framework's own package.
     """
 
     base: type[Holder]
@@ -61,6 +66,7 @@ class Manners:
     assigns_whole: bool
     members: Callable[[Family], dict[str, Any]]
     serialising: tuple[str, str] | None = None
+    foreign: Foreign = ORDINARY
 
 
 def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class has nothing but its fields
@@ -89,6 +95,7 @@ class Family:
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
+        self._shown_of: dict[int, frozenset[str]] = {}
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
         self._kept: KeptFields | None = None
@@ -158,6 +165,32 @@ class Family:
     def learn_room(self, lanes: Lanes) -> None:
         """Give new holders the room that assignments have taken, unless that is much; more to those that programs make."""
         self.plan, self.roomy = roomier(self.plan, lanes, MOST_UNASKED), roomier(self.roomy, lanes)
+
+    @cached_property
+    def wholes(self) -> Wholes:
+        """How objects of other classes are handed over at once."""
+        return Wholes(self)
+
+    @cached_property
+    def takers(self) -> Takers:
+        """What takes objects of other classes into the holders."""
+        from rosetta_jit.runtime.holder.objects.taking import Takers
+
+        return Takers(self)
+
+    @cached_property
+    def givers(self) -> Givers:
+        """What hands the holders on as objects of other classes."""
+        from rosetta_jit.runtime.holder.objects.giving import Givers
+
+        return Givers(self)
+
+    def shown(self, record: Record) -> frozenset[str]:
+        """The fields of a record that are attributes of its messages."""
+        found = self._shown_of.get(id(record))
+        if found is None:
+            found = self._shown_of[id(record)] = frozenset(_shown(record, self.manners.base))
+        return found
 
     @cached_property
     def root(self) -> Access:

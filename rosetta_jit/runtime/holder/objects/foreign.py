@@ -1,0 +1,91 @@
+"""What is particular about the objects of a framework's own package. Where nothing is, attributes are called as the fields of the IDL."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.runtime.holder.family import Family
+    from rosetta_jit.runtime.holder.record import Record
+
+
+@dataclass(frozen=True, slots=True)
+class Whole:
+    """How objects of a class are handed over at once, instead of attribute by attribute.
+
+    Attributes
+    ----------
+    take : callable
+        Given an empty holder and an object, gives the holder the object's values.
+    fill : callable
+        Given an object and a holder, gives the object the holder's values.
+    make : callable
+        A new object, given a holder.
+    """
+
+    take: Callable[[Any, Any], None]
+    fill: Callable[[Any, Any], None]
+    make: Callable[[Any], Any]
+
+
+def same_name(record: Record, field: str) -> tuple[str, ...]:  # noqa: ARG001  whatever the record
+    """The attribute that is called as the field is."""
+    return (field,)
+
+
+def no_class(owner: type, struct: str) -> type | None:  # noqa: ARG001  whatever they are
+    """None."""
+    return None
+
+
+def no_whole(family: Family, object_type: type) -> Whole | None:  # noqa: ARG001  whatever they are
+    """None."""
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class Foreign:
+    """The particulars of one framework.
+
+    Attributes
+    ----------
+    names : callable
+        What the attribute of a field may be called, given its record and its name; nothing where objects have no such attribute.
+    class_of : callable
+        The class of the objects of another struct, given a class that refers to it and the struct's name; None if it is not known.
+    whole : callable
+        How objects of a class are handed over at once, given the family of the holders; None if attribute by attribute.
+        TypeError if that class is of another type than the holders.
+    besides : frozenset of str
+        Attributes that say nothing: objects may have them though they are no fields.
+    """
+
+    names: Callable[[Record, str], tuple[str, ...]] = same_name
+    class_of: Callable[[type, str], type | None] = no_class
+    whole: Callable[[Family, type], Whole | None] = no_whole
+    besides: frozenset[str] = frozenset()
+
+
+ORDINARY = Foreign()
+"""Nothing is particular."""
+
+
+class Wholes(dict[type, "Whole | None"]):
+    """How objects of each class are handed over at once to the holders of a family; None where they are not."""
+
+    def __init__(self, family: Family) -> None:
+        self._family = family
+
+    def __missing__(self, object_type: type) -> Whole | None:
+        found = self._family.manners.foreign.whole(self._family, object_type)
+        if len(self) < MOST_CLASSES:
+            self[object_type] = found
+        return found
+
+
+MOST_CLASSES = 64
+"""For how many classes it is remembered. A program that makes classes all the time does not keep them alive."""

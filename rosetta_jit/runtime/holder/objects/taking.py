@@ -1,0 +1,200 @@
+"""Objects to holders: a function is written for each class, with one assignment a field. What it cannot do is left to `reading`.
+
+The holder is empty before. Where a function fails the object is read again, slowly, and either that succeeds or it says what is wrong, and
+where.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, cast
+
+from rosetta_jit.errors import RosettaError
+from rosetta_jit.model.types import Enum
+from rosetta_jit.runtime.holder import arena, coerce, values
+from rosetta_jit.runtime.holder.access import assigner
+from rosetta_jit.runtime.holder.message import Message, make_present, writable
+from rosetta_jit.runtime.holder.objects import reading, shapes, unions
+from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
+from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
+from rosetta_jit.startup.cached import cached_property
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.record import Entry
+
+Take = Callable[[Any, Any], None]
+"""Gives an empty message the values of an object."""
+
+LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)
+"""What makes a quick way leave an object to the slow one. Errors of another kind are those of the object's own code."""
+
+
+class Takers:
+    """What takes objects into the holders of a family."""
+
+    def __init__(self, family: Family) -> None:
+        self._family = family
+        self._of_records: dict[int, ByClass] = {}
+
+    def take(self, holder: Any, value: object) -> None:
+        """Give an empty holder the values of an object, or of a mapping.
+
+        Raises
+        ------
+        ValuesError
+            If an attribute is missing, of no field, or of a value that its field cannot have. The holder has some of the values then.
+        TypeError
+            If the object is of a framework's own class, and that of another type.
+        """
+        whole = self._family.wholes[type(value)]
+        if whole is not None:
+            whole.take(holder, value)
+            return
+        try:
+            self._of_root[type(value)](holder, value)
+        except LEFT:
+            self._take_slowly(holder, value)
+
+    def _take_slowly(self, holder: Any, value: object) -> None:
+        record = self._family.tree.root
+        plain = reading.plain_record(record, value, self._family)
+        with holder.lanes_ as lanes:
+            lanes.reset()
+            values.write_record(record, lanes, 0, plain)
+
+    @cached_property
+    def _of_root(self) -> ByClass:
+        return self._of_record(self._family.tree.root)
+
+    def _of_record(self, record: Record) -> ByClass:
+        found = self._of_records.get(id(record))
+        if found is None:
+            found = self._of_records[id(record)] = ByClass(lambda object_type: self._written(record, object_type))
+        return found
+
+    def _written(self, record: Record, object_type: type) -> Take:
+        """The function for objects of a class."""
+        if issubclass(cast("Any", object_type), Mapping):
+            return self._of_mapping(record)
+        if unions.discriminator_of(record) is not None or not shapes.has_messages(object_type) or self._is_whole(record, object_type):
+            raise TypeError("left to the slow way")
+        source = Source("take")
+        names = {each: self._family.manners.foreign.names(record, each) for each in record.entries}
+        known = reading.without_meaning(record, self._family).union(*names.values())
+        if not shapes.declared(object_type) <= known:
+            raise TypeError("left to the slow way")
+        if shapes.has_dict(object_type):
+            source.add(_guard(source, object_type, known))
+        for entry in record.entries.values():
+            if names[entry.name]:
+                self._add(source, record, entry, attribute("source", _spelled(object_type, names[entry.name])))
+        return source.made("target, source")
+
+    def _is_whole(self, record: Record, object_type: type) -> bool:
+        return issubclass(object_type, Message) or self._family.of_struct(record.struct).family_.wholes[object_type] is not None
+
+    def _of_mapping(self, record: Record) -> Take:
+        """The function for mappings: those that name every field, and others."""
+        source = Source("take")
+        some = source.name_of(self._of_some(record))
+        source.add(f"if len(source) != {len(record.entries)}: return {some}(target, source)")
+        for entry in record.entries.values():
+            self._add(source, record, entry, f"source[{entry.name!r}]", is_there=True)
+        return source.made("target, source")
+
+    def _of_some(self, record: Record) -> Take:
+        setters = {entry.name: self._setter(record, entry) for entry in record.entries.values()}
+
+        def take(target: Any, source: Mapping[str, Any]) -> None:
+            for name, value in source.items():
+                setters[name](target, value)
+
+        return take
+
+    def _setter(self, record: Record, entry: Entry) -> Take:
+        source = Source("take")
+        self._add(source, record, entry, "source", is_there=True)
+        return source.made("target, source")
+
+    def _add(self, source: Source, record: Record, entry: Entry, value: str, *, is_there: bool = False) -> None:
+        """Lines that set a field; None is a value that is absent, but where the field is known to be there."""
+        indent = ""
+        if entry.presence is not None and not is_there:
+            source.add(f"value = {value}")
+            source.add("if value is not None:")
+            value, indent = "value", "    "
+        for line in self._lines(source, record, entry, value):
+            source.add(indent + line)
+
+    def _lines(self, source: Source, record: Record, entry: Entry, value: str) -> list[str]:
+        node, shown = entry.node, entry.name in self._family.shown(record)
+        match node:
+            case Scalar() if isinstance(node.type, Enum):
+                value = f"{source.name_of(reading.number)}({value})"
+            case Blob():
+                value = f"{source.name_of(reading.octets)}({value})"
+            case Numbers() if not isinstance(node.type, Enum):
+                value = f"{source.name_of(reading.numbers)}({value})"
+            case Items(element=Text()):
+                value = f"{source.name_of(reading.listed)}({value})"
+            case Scalar() | Text():
+                pass
+            case Record() if shown and unions.discriminator_of(node) is None:
+                return self._nested(source, entry, node, value)
+            case Items(element=Record()) if shown:
+                return [f"{source.name_of(self._items(entry))}(target, {value})"]
+            case _:
+                value = f"{source.name_of(self._plain(entry))}({value})"
+        if shown and (self._family.assigns_whole or isinstance(node, Scalar | Text | Blob)):
+            return [assignment("target", entry.name, value)]
+        return [f"{source.name_of(assigner(entry))}(target, {value})"]
+
+    def _nested(self, source: Source, entry: Entry, record: Record, value: str) -> list[str]:
+        takers, target = source.name_of(self._of_record(record)), attribute("target", entry.name)
+        inner = source.name_of(type)
+        lines = [f"{source.name_of(make_present)}({target})"] if entry.presence is not None else []
+        return [*lines, f"inner = {value}", f"{takers}[{inner}(inner)]({target}, inner)"]
+
+    def _items(self, entry: Entry) -> Take:
+        """What sets an array of messages."""
+        node, name = entry.node, entry.name
+        assert isinstance(node, Items)
+        assert isinstance(node.element, Record)
+        takers = self._of_record(node.element)
+
+        def take(target: Any, source: Any) -> None:
+            if not isinstance(source, list | tuple):
+                raise TypeError("left to the slow way")
+            objects = cast("list[Any] | tuple[Any, ...]", source)
+            _resize(target, entry, node, len(objects))
+            for element, each in zip(getattr(target, name), objects, strict=True):
+                takers[type(each)](element, each)
+
+        return take
+
+    def _plain(self, entry: Entry) -> Callable[[Any], Any]:
+        node, family = entry.node, self._family
+        return lambda value: reading.plain(node, value, family)
+
+
+def _spelled(object_type: type, names: tuple[str, ...]) -> str:
+    """Which of some names a class has for an attribute; the first where it does not say."""
+    own = shapes.declared(object_type)
+    return next((name for name in names if name in own or hasattr(object_type, name)), names[0])
+
+
+def _guard(source: Source, object_type: type, known: frozenset[str]) -> str:
+    """A line that fails where an object has an attribute that is no field. A dataclass's constructor sets all that there are to be."""
+    fields = [name for name in shapes.fields_of(object_type) if name in known]
+    if len(fields) == len(shapes.fields_of(object_type)) and not vars(object_type).get("__slots__"):
+        return f"if len(source.__dict__) != {shapes.field_count(object_type)}: raise TypeError"
+    return f"if not {source.name_of(known)}.issuperset(source.__dict__): raise TypeError"
+
+
+def _resize(message: Message, entry: Entry, node: Items, count: int) -> None:
+    coerce.counted(count, node.length, node.maximum)
+    with message.lanes_:
+        lanes, row = writable(message)
+        arena.mark(lanes, entry.presence, row)
+        arena.resize(lanes, node, row, count)

@@ -1,0 +1,352 @@
+"""Encoders take dicts and objects of other classes, decoders fill and make such objects: by the names of attributes."""
+
+from __future__ import annotations
+
+import array
+import sys
+import threading
+from dataclasses import dataclass, field
+from enum import IntEnum
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.errors import ValuesError
+
+SCHEMA = {
+    "p/Part.msg": "int32 number\nstring label\ntime when\n",
+    "p/Whole.msg": "bool flag\nfloat64 x\nint16[] samples\nfloat32[3] axis\nuint8[] raw\nstring[] names\n"
+    "p/Part part\np/Part[] parts\ntime[] times\n",
+}
+
+
+@dataclass
+class Moment:
+    secs: int = 0
+    nsecs: int = 0
+
+
+@dataclass(slots=True)
+class Part:
+    number: int
+    label: str
+    when: Moment
+
+
+@dataclass
+class Whole:
+    flag: bool
+    x: float
+    samples: list[int]
+    axis: np.ndarray
+    raw: bytes
+    names: list[str]
+    part: Part
+    parts: list[Part]
+    times: tuple[Moment, ...] = field(default_factory=tuple)
+
+
+@pytest.fixture(scope="module")
+def encode():
+    return rj.Encoder.of("p/Whole", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"])
+
+
+@pytest.fixture(scope="module")
+def decode():
+    return rj.Decoder.of("p/Whole", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"])
+
+
+def plain(number=1):
+    def part(each):
+        return {"number": each, "label": f"é{each}", "when": {"secs": each, "nsecs": 5}}
+
+    return {
+        "flag": True,
+        "x": 0.5,
+        "samples": [number, -2],
+        "axis": [0.5, 1.5, -2.0],
+        "raw": b"\0\xff",
+        "names": ["a", "bc"],
+        "part": part(7),
+        "parts": [part(each) for each in range(number)],
+        "times": [{"secs": 1, "nsecs": 2}],
+    }
+
+
+def of_part(values):
+    return Part(values["number"], values["label"], Moment(**values["when"]))
+
+
+def whole(number=1):
+    values = plain(number)
+    values |= {"part": of_part(values["part"]), "parts": [of_part(each) for each in values["parts"]]}
+    return Whole(**values | {"times": tuple(Moment(**each) for each in values["times"])})
+
+
+def spaces(value):
+    match value:
+        case dict():
+            return SimpleNamespace(**{name: spaces(each) for name, each in value.items()})
+        case list():
+            return [spaces(each) for each in value]
+        case _:
+            return value
+
+
+@pytest.mark.parametrize("number", [0, 1, 5])
+def test_a_dict_an_object_and_a_holder_give_the_same_bytes(encode, decode, number):
+    expected = encode(encode.holder_type.from_dict(plain(number)))
+    assert encode(plain(number)) == encode(whole(number)) == encode(spaces(plain(number))) == expected
+    assert encode.size(whole(number)) == len(expected)
+    buffer = bytearray(len(expected) + 3)
+    assert encode.into(plain(number), buffer, 3) == len(buffer)
+    assert buffer[3:] == expected
+    assert decode(expected).to_dict() == plain(number)
+
+
+def test_nothing_is_left_of_the_object_before(encode):
+    encode(plain(5))
+    empty = encode.holder_type()
+    assert encode({}) == encode(empty)
+    with pytest.raises(ValuesError):
+        encode(plain(2) | {"samples": [1 << 20]})
+    assert encode({"x": 2.0}) == encode(encode.holder_type.from_dict({"x": 2.0}))
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "says"),
+    [
+        ({"x": "1"}, ".x", "real number"),
+        ({"samples": [1, 1 << 15]}, ".samples", "out of range"),
+        ({"axis": [1.0]}, ".axis", "the type has 3"),
+        ({"names": ["a", 1]}, ".names[1]", "expected str"),
+        ({"names": "ab"}, ".names", "expected a sequence"),
+        ({"part": 3}, ".part", "expected a message or a dict, int found"),
+        ({"parts": [plain()["part"], plain()["part"] | {"number": 1 << 31}]}, ".parts[1].number", "out of range"),
+        ({"parts": [plain()["part"] | {"nubmer": 1}]}, ".parts[0].nubmer", "no such field"),
+        ({"part": None}, ".part", "NoneType found"),
+        ({"x": None}, ".x", "real number"),
+    ],
+)
+def test_what_is_wrong_and_where(encode, change, path, says):
+    for made in (plain() | change, spaces(plain() | change)):
+        with pytest.raises(ValuesError, match=says) as caught:
+            encode(made)
+        assert caught.value.path == path
+    assert encode(whole()) == encode(plain())
+
+
+def test_an_object_has_every_field_and_no_other(encode):
+    lacking, further = whole(), whole()
+    del lacking.samples
+    further.sampels = [1]
+    with pytest.raises(ValuesError, match=r"Whole has no attribute 'samples' - at `\.samples`"):
+        encode(lacking)
+    with pytest.raises(ValuesError, match=r"no such field, and Whole such an attribute - at `\.sampels`"):
+        encode(further)
+    further.__dict__.pop("sampels")
+    further._cache = 1
+    assert encode(further) == encode(plain())
+    inner = spaces(plain())
+    inner.part.when.minutes = 1
+    with pytest.raises(ValuesError, match=r"at `\.part\.when\.minutes`"):
+        encode(inner)
+
+
+@pytest.mark.parametrize("wrong", [None, 1, "text", b"bytes", [1], (1,), np.zeros(3), Whole, {1}])
+def test_what_is_no_message(encode, decode, wrong):
+    with pytest.raises(TypeError, match="a holder of"):
+        encode(wrong)
+    with pytest.raises(TypeError, match="a holder of"):
+        encode.size(wrong)
+    with pytest.raises(TypeError):
+        decode.into(encode(plain()), wrong)
+
+
+def test_a_decoder_fills_an_object_in_place(encode, decode):
+    value = whole(0)
+    part, moment = value.part, value.part.when
+    value.samples, value.raw = array.array("h"), bytearray()
+    assert decode.into(encode(plain(3)), value) is value
+    assert value.part is part
+    assert part.when is moment
+    assert (type(value.samples), value.samples.tolist(), value.raw) == (array.array, [3, -2], bytearray(b"\0\xff"))
+    assert (value.names, value.parts[2].label, value.times) == (["a", "bc"], "é2", (Moment(1, 2),))
+    assert encode(value) == encode(plain(3))
+
+
+def test_what_is_made_shows_no_memory_of_a_holder(encode, decode):
+    one = decode.to(encode(plain(2)), Whole)
+    other = decode.to(encode(plain(3)), Whole)
+    assert type(one.axis) is np.ndarray
+    assert one.axis.base is None
+    assert (one.samples, other.samples) == ([2, -2], [3, -2])
+    assert encode(one) == encode(plain(2))
+
+
+def test_a_damaged_message_leaves_an_object_as_it_was(encode, decode):
+    value = whole(2)
+    with pytest.raises(rj.DecodeError):
+        decode.into(encode(plain(3))[:-1], value)
+    assert value == whole(2) or value.samples == [2, -2]
+    assert decode(encode(plain())).x == 0.5
+
+
+@dataclass
+class Bare:
+    label: str
+
+
+def test_classes_that_nobody_knows(encode, decode):
+    class Plain:
+        pass
+
+    with pytest.raises(ValuesError, match=r"no class is known for p/Part: name it in `types` - at `\.part`"):
+        decode.to(encode(plain()), Plain)
+    with pytest.raises(ValuesError, match=r"Bare has no attribute 'number' - at `\.number`"):
+        rj.Decoder.of("p/Part", schema=SCHEMA, encoding="ros1", imports=["p/Part.msg"]).to(bytes(16), Bare)
+    made = decode.to(encode(plain(2)), Plain, types={"p/msg/Part": Part, "time": Moment})
+    assert (made.part, made.parts[1].number, made.times) == (of_part(plain()["part"]), 1, [Moment(1, 2)])
+
+
+class Color(IntEnum):
+    RED = 0
+    GREEN = 1
+
+
+PROTO = {
+    "c.proto": 'syntax = "proto2";\nmessage C { enum K { RED = 0; GREEN = 1; }\n'
+    "optional K k = 1; repeated K ks = 2; map<string, C> m = 3; optional C c = 4; }\n"
+}
+
+
+@dataclass
+class C:
+    k: Color | None = None
+    ks: list[Color] = field(default_factory=list)
+    m: dict[str, C] = field(default_factory=dict)
+    c: C | None = None
+
+
+def test_enumerators_maps_and_what_is_absent():
+    encode = rj.Encoder.of("C", schema=PROTO, encoding="protobuf", imports=["c.proto"])
+    decode = rj.Decoder.of("C", schema=PROTO, encoding="protobuf", imports=["c.proto"])
+    value = C(Color.GREEN, [Color.RED, Color.GREEN], {"a": C(), "b": C(Color.RED)}, C(c=C()))
+    assert decode(encode(value)).to_dict() == {
+        "k": "GREEN",
+        "ks": ["RED", "GREEN"],
+        "m": {"a": {"ks": [], "m": {}}, "b": {"k": "RED", "ks": [], "m": {}}},
+        "c": {"ks": [], "m": {}, "c": {"ks": [], "m": {}}},
+    }
+    assert decode.to(encode(value), C) == value
+    value.c.c = value
+    with pytest.raises(ValuesError, match="more than 100 deep"):
+        encode(value)
+
+
+def test_objects_of_many_threads_and_of_themselves(encode):
+    class Nosy(SimpleNamespace):
+        """Encodes another object while it is read."""
+
+        def __getattr__(self, name):
+            if name == "x":
+                encode(plain(4))
+                return 0.5
+            raise AttributeError(name)
+
+    nosy = Nosy(**{name: value for name, value in vars(spaces(plain())).items() if name != "x"})
+    assert encode(nosy) == encode(plain())
+    wrong = []
+
+    def work(number):
+        expected = encode(encode.holder_type.from_dict(plain(number)))
+        got = [encode(make(number)) for _ in range(50) for make in (whole, plain)]
+        wrong.extend(each for each in got if each != expected)
+
+    threads = [threading.Thread(target=work, args=[number]) for number in range(4)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert not wrong
+
+
+def test_rosbags(encode, decode):
+    typesys = pytest.importorskip("rosbags.typesys")
+    for store, framework, write, read in (
+        (typesys.Stores.ROS1_NOETIC, "ros1", "serialize_ros1", "deserialize_ros1"),
+        (typesys.Stores.ROS2_HUMBLE, "cdr", "serialize_cdr", "deserialize_cdr"),
+    ):
+        types = typesys.get_typestore(store)
+        middle = "" if framework == "ros1" else "msg/"
+        for name in ("sensor_msgs/JointState", "geometry_msgs/PoseArray", "std_msgs/Empty", "diagnostic_msgs/DiagnosticArray"):
+            package, _, short = name.partition("/")
+            theirs = f"{package}/msg/{short}"
+            own = {"encoding": framework}
+            to, of = rj.Decoder.of(f"{package}/{middle}{short}", **own), rj.Encoder.of(f"{package}/{middle}{short}", **own)
+            data = of(to.holder_type.from_dict(VALUES[short]))
+            value = getattr(types, read)(data, theirs)
+            assert of(value) == data
+            again = to.to(data, types.types[theirs])
+            assert bytes(getattr(types, write)(again, theirs)) == data
+            to.into(data, value)
+            assert bytes(getattr(types, write)(value, theirs)) == data
+
+
+_HEADER = {"frame_id": "world"}
+VALUES = {
+    "JointState": {"header": _HEADER, "name": ["a", "b"], "position": [0.5, 1.5], "velocity": [], "effort": [3.0]},
+    "PoseArray": {"header": _HEADER, "poses": [{"position": {"x": 1.5}}, {"orientation": {"w": 1.0}}]},
+    "Empty": {},
+    "DiagnosticArray": {"header": _HEADER, "status": [{"level": 1, "name": "n", "values": [{"key": "k", "value": "v"}]}]},
+}
+
+
+def test_lcm(tmp_path):
+    pytest.importorskip("lcm")
+    from tests.frameworks.lcm.lcm_files import IDL, Generated
+
+    with Generated(tmp_path, IDL / "lcm" / "rjtest" / "inner_t.lcm", IDL / "lcm" / "rjtest" / "everything_t.lcm") as classes:
+        theirs = classes["rjtest.everything_t"]
+        encode = rj.Encoder.of("rjtest.everything_t", encoding="lcm")
+        decode = rj.Decoder.of("rjtest.everything_t", encoding="lcm")
+        empty = theirs()
+        assert encode(empty) == empty.encode()
+        filled = decode.to(encode(empty), theirs)
+        assert filled.encode() == empty.encode()
+
+
+def test_genpy_by_the_shape_of_its_classes(encode, decode, monkeypatch):
+    """As genpy writes them: slots, a constructor without arguments, and a package's module where its classes are found."""
+    module, times = ModuleType("p.msg"), ModuleType("genpy")
+    exec(GENPY, vars(module))  # noqa: S102 - the text below
+    times.Time = module.Time
+    monkeypatch.setitem(sys.modules, "p.msg", module)
+    monkeypatch.setitem(sys.modules, "genpy", times)
+    value = module.Whole()
+    assert encode(value) == encode(encode.holder_type())
+    decode.into(encode(plain(3)), value)
+    assert type(value.parts[0]) is module.Part
+    assert type(value.times[0]) is module.Time
+    assert encode(value) == encode(plain(3))
+    assert encode(decode.to(encode(plain(2)), module.Whole)) == encode(plain(2))
+    value.axis = tuple(value.axis)
+    assert encode(value) == encode(plain(3))
+
+
+GENPY = """
+class Time:
+    __slots__ = ["secs", "nsecs"]
+    def __init__(self): self.secs = self.nsecs = 0
+class Part:
+    __slots__ = ["number", "label", "when"]
+    _type = "p/Part"
+    def __init__(self): self.number, self.label, self.when = 0, "", Time()
+class Whole:
+    __slots__ = ["flag", "x", "samples", "axis", "raw", "names", "part", "parts", "times"]
+    def __init__(self):
+        self.flag, self.x, self.samples, self.axis, self.raw, self.names = False, 0.0, [], [0.0] * 3, b"", []
+        self.part, self.parts, self.times = Part(), [], []
+"""
