@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.model.layout import map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, String, Struct, Type, Union
 from rosetta_jit.startup.cached import cached_property
@@ -38,6 +39,24 @@ TYPES = {
 }
 """Numbers of the types in a `FieldDescriptorProto`, by their words."""
 OPTIONAL, REQUIRED, REPEATED = 1, 2, 3
+CPP_TYPES = {
+    **dict.fromkeys(("int32", "sint32", "sfixed32"), 1),
+    **dict.fromkeys(("int64", "sint64", "sfixed64"), 2),
+    **dict.fromkeys(("uint32", "fixed32"), 3),
+    **dict.fromkeys(("uint64", "fixed64"), 4),
+    "double": 5,
+    "float": 6,
+    "bool": 7,
+    "enum": 8,
+    "string": 9,
+    "bytes": 9,
+    "message": 10,
+    "group": 10,
+}
+"""Numbers of the types that C++ has for them."""
+_WORDS = {number: word for word, number in TYPES.items()}
+WRAPPED = ("Double", "Float", "Int64", "UInt64", "Int32", "UInt32", "Bool", "String", "Bytes")
+"""What messages of `google/protobuf/wrappers.proto` hold."""
 
 
 class EnumDescriptor:
@@ -130,10 +149,23 @@ class FieldDescriptor:
             case _:
                 return 0
 
+    @property
+    def cpp_type(self) -> int:
+        """The number of the type that C++ has for it."""
+        return CPP_TYPES.get(_WORDS.get(self.type, ""), 0)
+
+    @property
+    def json_name(self) -> str:
+        """The name of the field in JSON, chosen or in camel case."""
+        chosen = self.field.option("json_name")
+        return chosen if isinstance(chosen, str) else camel_case(self.name)
+
     @cached_property
     def message_type(self) -> MessageDescriptor | None:
         """The type of a message or group, else None; of a map, its entry."""
-        return MessageDescriptor(self._element, self.containing_type.schema) if isinstance(self._element, Struct) else None
+        if not isinstance(self._element, Struct):
+            return None
+        return MessageDescriptor(self._element, self.containing_type.schema, is_entry=isinstance(self.field.type, Map))
 
     @cached_property
     def enum_type(self) -> EnumDescriptor | None:
@@ -162,17 +194,45 @@ class FieldDescriptor:
                 return self.field.default or 0
 
 
+@dataclass(frozen=True, slots=True)
+class FileDescriptor:
+    """The file of a message, as far as it is known: those of the wrappers are."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class MessageOptions:
+    """Whether a message stands for the pairs of a map."""
+
+    map_entry: bool
+
+
 class MessageDescriptor:
     """A message: its fields, and the types declared in it."""
 
-    def __init__(self, struct: Struct, schema: Schema) -> None:
+    is_extendable: ClassVar[bool] = False
+    """Extensions that are known are fields."""
+
+    def __init__(self, struct: Struct, schema: Schema, *, is_entry: bool = False) -> None:
         self.struct = struct
         self.schema = schema
+        self.has_options = is_entry
         self.full_name = struct.name
         self.name = struct.name.rpartition(".")[2]
 
     def __repr__(self) -> str:
         return f"<message {self.full_name}>"
+
+    @property
+    def file(self) -> FileDescriptor:
+        """The file that it is declared in."""
+        is_wrapper = self.full_name in {f"google.protobuf.{each}Value" for each in WRAPPED}
+        return FileDescriptor("google/protobuf/wrappers.proto" if is_wrapper else "")
+
+    def GetOptions(self) -> MessageOptions:  # noqa: N802  as protobuf names it
+        """What the file says of the message besides."""
+        return MessageOptions(self.has_options)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, MessageDescriptor) and other.struct == self.struct

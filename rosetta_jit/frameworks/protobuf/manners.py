@@ -15,6 +15,7 @@ from rosetta_jit.frameworks.protobuf.introspection import EnumClass, FieldDescri
 from rosetta_jit.frameworks.protobuf.objects import OBJECTS
 from rosetta_jit.frameworks.protobuf.presence import missing, requires, set_entries
 from rosetta_jit.frameworks.protobuf.repeated import MapField, NumberArray, repeated
+from rosetta_jit.frameworks.protobuf.well_known import methods_of
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import Holder, Manners, arena
 from rosetta_jit.runtime.holder.access import raw
@@ -69,7 +70,9 @@ class ProtobufMessage(Holder):
         return arena.present(lanes, entry.presence, row)
 
     def ClearField(self, name: str) -> None:  # noqa: N802
-        """Make a field absent, or whichever field of a oneof is set."""
+        """Make a field absent, or whichever field of a oneof is set. The message itself is present in the one around it from then on."""
+        if isinstance(self, View):
+            make_present(self)
         if name in self.access_.record.unions:
             case = ProtobufMessage.WhichOneof(self, name)
             if case is not None:
@@ -78,7 +81,9 @@ class ProtobufMessage(Holder):
         clear(self, self._entry(name).name)
 
     def Clear(self) -> None:  # noqa: N802
-        """Make all fields absent."""
+        """Make all fields absent. The message itself is present in the one around it from then on."""
+        if isinstance(self, View):
+            make_present(self)
         clear(self, None)
 
     def WhichOneof(self, name: str) -> str | None:  # noqa: N802
@@ -221,10 +226,14 @@ def members(family: Family) -> dict[str, Any]:
             found[own] = EnumClass(declared)
         else:
             found[own] = _Nested(family, name)
-    return {name: value for name, value in found.items() if not name.startswith("__")} | {
-        "DESCRIPTOR": descriptor,
-        "requires_": requires(family.tree.root),
-    }
+    return (
+        {name: value for name, value in found.items() if not name.startswith("__")}
+        | methods_of(family.struct.name)
+        | {
+            "DESCRIPTOR": descriptor,
+            "requires_": requires(family.tree.root),
+        }
+    )
 
 
 PROTOBUF = Manners(

@@ -430,3 +430,11 @@ def test_pickles(ours):
     message = filled(ours("second.All"))
     assert pickle.loads(pickle.dumps(message)) == message  # noqa: S301
     assert pickle.loads(pickle.dumps(message.inner)) == message.inner  # noqa: S301
+
+
+def test_clearing_a_message_makes_it_present(everything):
+    message = everything()
+    message.child.ClearField("i32")
+    message.inner.Clear()
+    assert message.HasField("child")
+    assert message.HasField("inner")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
 
@@ -32,8 +33,7 @@ def check_json(declared: Declarations) -> Iterator[Diagnostic]:
 
 def default_name(field: Field) -> str:
     """The name of a field in JSON where it chooses none: `frame_shift` is `frameShift`."""
-    first, *rest = field.name.text.split("_")
-    return first + "".join(part[:1].upper() + part[1:] for part in rest)
+    return camel_case(field.name.text)
 
 
 def chosen_names(field: Field) -> Iterator[str]:

@@ -9,6 +9,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
     features,
     has_unknown_features,
@@ -179,6 +180,9 @@ class _Reader:
     def field(self, field: FieldDescriptorProto, entries: Mapping[str, DescriptorProto]) -> Field:
         entry = entries.get(self.text(field.type_name).rpartition(".")[2]) if field.label == LABEL_REPEATED else None
         default = (Option(("default",), self.default(field)),) if field.HasField("default_value") else ()
+        in_json = self.text(field.json_name)
+        chosen = in_json and in_json != camel_case(self.text(field.name)) and not field.extendee
+        named = (Option(("json_name",), in_json.encode()),) if chosen else ()
         return Field(
             name=self.name(field.name),
             type=self.type(field) if entry is None else MapType(self.type(entry.field[0]), self.type(entry.field[1])),
@@ -187,6 +191,7 @@ class _Reader:
             group=field.type == TYPE_GROUP,
             options=(
                 *default,
+                *named,
                 *self.options("FieldOptions", field.options),
                 *custom_options(field.options, self.extensions),
             ),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.frameworks.protobuf.proto.check_json import chosen_names, default_name
 from rosetta_jit.frameworks.protobuf.proto.constants import constant, enum_number
 from rosetta_jit.frameworks.protobuf.proto.declarations import cases_in, field_in
 from rosetta_jit.frameworks.protobuf.proto.options import field_options
@@ -89,7 +90,7 @@ class _Builder:
             number=field.number,
             default=self.default(field),
             required=isinstance(type_, model.Optional) and entry.features.field_presence == "LEGACY_REQUIRED",
-            options=tuple(sorted((*marks, *self.encoding(entry), *options))),
+            options=tuple(sorted((*marks, *self.encoding(entry), *json_name(field), *options))),
             doc=field.doc,
             span=field.name.span,
         )
@@ -142,6 +143,12 @@ class _Builder:
         if word in SCALARS and not is_packable(word):
             return []
         return [("packed", features.repeated_field_encoding == "PACKED")]
+
+
+def json_name(field: Field) -> list[tuple[str, Constant]]:
+    """The name in JSON, where the field chooses another than it would have."""
+    found: list[tuple[str, Constant]] = [("json_name", name) for name in chosen_names(field) if name != default_name(field)]
+    return found[-1:]
 
 
 def _by_extendee(declared: Declarations) -> dict[str, tuple[DeclaredExtension, ...]]:
