@@ -25,6 +25,7 @@ ORDER = (
     "building",
     "manners",
     "columns",
+    "numba",
     "start",
     "memory",
     "limits",

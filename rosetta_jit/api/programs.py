@@ -48,18 +48,6 @@ class _Made:
     _request: Request
 
     @property
-    def kernel(self) -> Any:
-        """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
-
-        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.function.data_pointer`, and a holder's ``lanes_.state``.
-        What `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping calls functions, or compresses
-        images.
-        """
-        from rosetta_jit.backends.numba.function import typed
-
-        return typed(_build(self._request).kernels[0])
-
-    @property
     def mapping(self) -> CheckedMapping | None:
         """The mapping with its ``warnings`` and ``laws``; None of a type into its own holder. It is read anew: keep what is found."""
         from rosetta_jit.pipeline.checked_mapping import CheckedMapping
@@ -107,6 +95,29 @@ class Decoder(_Made, DecoderBase):
         """
         return _of_request(cls, type_request("decode", type_, options))
 
+    @cached_property
+    def kernel(self) -> Any:
+        """The decoder as a function for compiled code, ``kernel(message, holder, begin=0, end=None)``, to be called in ``@njit`` functions.
+
+        It fills a holder, one of `new()` that the function was given, from bytes ``begin`` to ``end`` of a bytes object or an array of
+        uint8. Fields are read by name there: numbers and arrays as in Python, texts and bytes as arrays of uint8, arrays of messages with
+        ``len``, index and iteration, ``holder.has("name")`` where a field may be absent. Lanes grow as they must. A broken message raises
+        `DecodeError`. Bytes fields are copied, whatever ``borrow`` says.
+
+        Raises
+        ------
+        ValueError
+            The mapping calls functions, or compresses images.
+        """
+        imported("rosetta_jit.in_numba.calling")
+        from rosetta_jit.in_numba.calling import callable_kernel
+        from rosetta_jit.in_numba.taking import Program
+
+        build = _build(replace(self._request, borrow=False))
+        tell = self._tell if build.header["told"] else None
+        program = Program(_sites(build.header, 0), build.header["limit"], tell, self._untell)
+        return callable_kernel(build.kernels[0], self.holder_type.family_, program)
+
     def make(self, request: Request) -> None:
         """Become the program that answers a request."""
         self._request = request
@@ -126,6 +137,17 @@ class Encoder(_Made, EncoderBase):
     def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
         """An encoder of a type from its own holder; parameters as of `Decoder.of`."""
         return _of_request(cls, type_request("encode", type_, options))
+
+    @property
+    def kernel(self) -> Any:
+        """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
+
+        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.function.data_pointer`, and a holder's ``lanes_.state``. What
+        `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping calls functions, or compresses images.
+        """
+        from rosetta_jit.backends.numba.function import typed
+
+        return typed(_build(self._request).kernels[0])
 
     def make(self, request: Request) -> None:
         """Become the program that answers a request."""

@@ -101,10 +101,14 @@ class Program:
         try:
             yield
         except BaseException:
-            words, number = self._context[1], lanes.words[NUMBER]
-            if self._loaded.told and words[MADE] == number + 1:
-                words[MADE] = number
+            self._untell(lanes)
             raise
+
+    def _untell(self, lanes: Lanes) -> None:
+        """Behind a message that could not be made."""
+        words, number = self._context[1], lanes.words[NUMBER]
+        if self._loaded.told and words[MADE] == number + 1:
+            words[MADE] = number
 
     @cached_property
     def builtin(self) -> Callable[..., Any]:

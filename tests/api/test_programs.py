@@ -291,26 +291,6 @@ def test_two_threads_decode_many():
         assert np.allclose(np.degrees(batch.angles.to_numpy()), DEGREES, atol=1e-4)
 
 
-def test_the_typed_kernel_serves_users_own_loops():
-    from numba import njit
-
-    from rosetta_jit.backends.numba.function import data_pointer
-
-    decoder = rj.Decoder(TORSO, encoding="yarp3")
-    kernel, holder = decoder.kernel, decoder.new()
-    decoder.into(MESSAGE, holder)
-    messages = np.frombuffer(MESSAGE * 100, np.uint8).reshape(100, 32).copy()
-
-    @njit
-    def count(messages, state):
-        good = 0
-        for index in range(messages.shape[0]):
-            good += kernel(data_pointer(messages[index]), 0, messages.shape[1], data_pointer(state), 0) == 32
-        return good
-
-    assert count(messages, holder.lanes_.state) == 100
-
-
 def test_infer_and_decode_what_was_drafted():
     text = rj.infer([MESSAGE], name="x", encoding="yarp3")
     decoder = rj.Decoder.of("x", encoding="yarp3", schema={"x.bottle-schema": text})

@@ -56,12 +56,10 @@ def typed(kernel: Kernel) -> Dispatcher:
     ValueError
         The kernel calls functions of its host, with which only a program links it.
     """
-    if calls_to_host([kernel]):
-        raise ValueError("a kernel that calls functions, or compresses images, cannot be called from one's own compiled code")
-    body = _body(kernel)
+    run = body(kernel)
 
     def kernel_function(buffer: int, begin: int, end: int, state: int, row: int) -> int:
-        return body(buffer, begin, end, state, row)
+        return run(buffer, begin, end, state, row)
 
     decorate = njit(SIGNATURE, error_model="numpy", nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
     return decorate(kernel_function)
@@ -84,11 +82,19 @@ def data_pointer(typing: object, array: types.Array) -> Implementation:  # noqa:
     return (WORDS if array.dtype == types.int64 else BYTES)(array), codegen
 
 
-def _body(kernel: Kernel) -> Callable[..., int]:
-    """An intrinsic that emits the kernel into the module of whoever calls it."""
+def body(kernel: Kernel) -> Callable[..., int]:
+    """An intrinsic that emits the kernel into the module of whoever calls it, in one place.
+
+    Raises
+    ------
+    ValueError
+        The kernel calls functions of its host, with which only a program links it.
+    """
+    if calls_to_host([kernel]):
+        raise ValueError("a kernel that calls functions, or compresses images, cannot be called from one's own compiled code")
 
     @intrinsic
-    def body(typing: object, buffer: object, begin: object, end: object, state: object, row: object) -> Implementation:  # noqa: ARG001 - numba passes the types
+    def emitted(typing: object, buffer: object, begin: object, end: object, state: object, row: object) -> Implementation:  # noqa: ARG001 - numba passes the types
         def codegen(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: list[ir.Value]) -> ir.Value:  # noqa: ARG001 - as above
             function = llvm.emit(builder.module, kernel, "rosetta_kernel")
             function.linkage = "internal"
@@ -97,4 +103,4 @@ def _body(kernel: Kernel) -> Callable[..., int]:
 
         return SIGNATURE, codegen
 
-    return body
+    return emitted

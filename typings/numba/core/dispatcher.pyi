@@ -1,4 +1,5 @@
 from collections.abc import Mapping
+from typing import Any
 
 class Library:
     def get_llvm_str(self) -> str: ...
@@ -15,4 +16,5 @@ class CompileResult:
     fndesc: FunctionDescriptor
 
 class Dispatcher:
+    def __call__(self, *args: object) -> Any: ...
     overloads: Mapping[object, CompileResult]

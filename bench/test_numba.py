@@ -1,0 +1,55 @@
+"""A user's own loop in numba over a recording: it decodes each message and reads fields by name; `many` decodes as many messages."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numba import njit
+
+from bench import varied
+from bench.contest import Contender
+
+CHAPTER, LOOP, MANY, COUNT = "Numba", "rosetta_jit, a loop of one's own", "its decode, `many(into=)`", 10_000
+READS = {
+    "Imu": (lambda: varied.imu(1), "holder.angular_velocity.z + holder.orientation_covariance[8]"),
+    "JointState, 32 joints": (lambda: varied.joint_state(1), "holder.position[0] + len(holder.name)"),
+}
+
+
+@pytest.mark.parametrize("what", READS)
+def test_loop(what, effort, compare, record):
+    make, expression = READS[what]
+    made = make()
+    decode = made.subject.decoder()
+    messages = (made.messages * (COUNT // len(made.messages) + 1))[:COUNT]
+    recording, offsets = b"".join(messages), np.cumsum([0, *map(len, messages)])
+    batch, holder, run = decode.many(recording, offsets), decode.new(), loop(decode.kernel, expression)
+    assert run(recording, offsets, holder) == pytest.approx(sum(eval(expression, {"holder": each}) for each in batch))  # noqa: S307 - our own text
+    outcome = compare(
+        CHAPTER,
+        f"{COUNT:,} messages of {made.subject.type}",
+        [
+            Contender(LOOP, "ours", "a sum of two values of each message", effort.call(run, recording, offsets, holder, messages=COUNT)),
+            Contender(
+                MANY, "limit", "a batch, used again", effort.call(lambda: decode.many(recording, offsets, into=batch), messages=COUNT)
+            ),
+        ],
+    )
+    record(
+        f"{what}, a loop in numba that reads two fields", outcome.ratio(LOOP, MANY), 1.2, "x many", f"{outcome.took(LOOP).median:.0f} ns"
+    )
+
+
+def loop(kernel, expression):
+    """A compiled function that decodes messages into one holder and adds up what an expression reads of them."""
+    scope = {"kernel": kernel}
+    exec(  # noqa: S102 - the bench's own text
+        "def run(recording, offsets, holder):\n"
+        "    total = 0.0\n"
+        "    for index in range(len(offsets) - 1):\n"
+        "        kernel(recording, holder, offsets[index], offsets[index + 1])\n"
+        f"        total += {expression}\n"
+        "    return total\n",
+        scope,
+    )
+    return njit(nogil=True)(scope["run"])

@@ -1,0 +1,141 @@
+"""Numba's types of messages and of sequences in them, and how their values lie in registers.
+
+    Message  = meminfo, taken, state, guard, row             a row of a lane, or a part of one
+    Sequence = meminfo, taken, state, guard, start, count    elements of a lane
+
+``state`` is where the holder's state lies, ``taken`` the object that compiled code asks for help with it (`taking.Taken`), ``meminfo`` what
+numba counts references with, to keep that object alive. ``guard`` are two words of that object: the thread that may fill the holder, and
+whether another one has tried to. Nothing else is remembered: lanes are looked up in the state whenever a field is
+read, so that a value stays safe to use when lanes grow.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from numba import types
+from numba.extending import models, register_model
+
+from rosetta_jit.runtime.cells import SCALARS, dtype_of
+from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+
+if TYPE_CHECKING:
+    from numba.core.datamodel import DataModelManager
+
+    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.record import Node
+
+COMMON = (
+    ("meminfo", types.MemInfoPointer(types.voidptr)),
+    ("taken", types.voidptr),
+    ("state", types.CPointer(types.int64)),
+    ("guard", types.CPointer(types.int64)),
+)
+NUMBERS: dict[str, types.Type] = dict(
+    zip(
+        SCALARS,
+        (
+            types.boolean,
+            types.int8,
+            types.uint8,
+            types.int16,
+            types.uint16,
+            types.int32,
+            types.uint32,
+            types.int64,
+            types.uint64,
+            types.float32,
+            types.float64,
+        ),
+        strict=True,
+    )
+)
+
+
+class MessageType(types.Type):
+    """A message of a holder: itself, or one that is nested in it. Each place in a holder class has a type of its own."""
+
+    def __init__(self, family: Family, record: Record) -> None:
+        self.family, self.record = family, record
+        super().__init__(name=f"message {record.struct} of {family.struct.name}, lane {record.lane}, byte {record.start} ({id(record):x})")
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        return self.family, self.record
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is the holder's own message."""
+        return self.record is self.family.tree.root
+
+
+class SequenceType(types.IterableType):
+    """An array of messages, texts or arrays in a holder."""
+
+    def __init__(self, family: Family, node: Items) -> None:
+        self.family, self.node = family, node
+        super().__init__(name=f"elements of lane {node.lane} of {family.struct.name} ({id(node):x})")
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        return self.family, self.node
+
+    @property
+    def element(self) -> types.Type | None:
+        """The type of its elements."""
+        return type_of(self.family, self.node.element)
+
+    @property
+    def iterator_type(self) -> IteratorType:
+        return IteratorType(self)
+
+
+class IteratorType(types.SimpleIteratorType):
+    """An iteration over a sequence."""
+
+    def __init__(self, sequence: SequenceType) -> None:
+        self.sequence = sequence
+        super().__init__(f"iterator over {sequence.name}", sequence.element)
+
+
+def type_of(family: Family, node: Node) -> types.Type | None:
+    """The type that a field is read as; None of maps, which are read in Python alone."""
+    match node:
+        case Scalar(cell):
+            return NUMBERS[SCALARS[cell.key & 15]]
+        case Text(_, lane) | Blob(_, lane):
+            return types.Array(_element(family, lane), 1, "C", readonly=True)
+        case Numbers(_, lane):
+            return types.Array(_element(family, lane), 1, "C")
+        case Items():
+            return SequenceType(family, node)
+        case Record():
+            return MessageType(family, node)
+        case Child(record=record):
+            return MessageType(family, record)
+        case Pairs():
+            return None
+
+
+def _element(family: Family, lane: int) -> types.Type:
+    """The type of the numbers of a lane."""
+    dtype = family.plan.dtypes[lane]
+    return next(type_ for scalar, type_ in NUMBERS.items() if dtype_of(scalar) == dtype)
+
+
+@register_model(MessageType)
+class _MessageModel(models.StructModel):
+    def __init__(self, manager: DataModelManager, type_: MessageType) -> None:
+        super().__init__(manager, type_, [*COMMON, ("row", types.int64)])
+
+
+@register_model(SequenceType)
+class _SequenceModel(models.StructModel):
+    def __init__(self, manager: DataModelManager, type_: SequenceType) -> None:
+        super().__init__(manager, type_, [*COMMON, ("start", types.int64), ("count", types.int64)])
+
+
+@register_model(IteratorType)
+class _IteratorModel(models.StructModel):
+    def __init__(self, manager: DataModelManager, type_: IteratorType) -> None:
+        super().__init__(manager, type_, [("index", types.EphemeralPointer(types.int64)), ("sequence", type_.sequence)])

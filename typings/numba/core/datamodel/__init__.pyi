@@ -1,0 +1,3 @@
+from numba.core.datamodel import models as models
+
+class DataModelManager: ...

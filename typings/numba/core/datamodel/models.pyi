@@ -1,0 +1,7 @@
+from collections.abc import Sequence
+
+from numba.core.datamodel import DataModelManager
+from numba.types import Type
+
+class StructModel:
+    def __init__(self, manager: DataModelManager, type_: Type, members: Sequence[tuple[str, Type]]) -> None: ...
