@@ -24,7 +24,7 @@ BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "b
 RUNTIME = {"runtime", "runtime.code", "runtime.cache", "runtime.functions"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
-ANYTHING = COMPILER | API | {"in_numba", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
+ANYTHING = COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
 
 MAY_IMPORT = {
     "startup": set(),
@@ -55,11 +55,12 @@ MAY_IMPORT = {
     "runtime.cache": REPORTS | {"runtime.code"},
     "runtime.functions": REPORTS | {"runtime.cache"},
     "in_numba": REPORTS | {"runtime", "model", "kernel", "backends", "backends.numba", "backends.llvm", "runtime.code"},
+    "stubs": REPORTS | {"model", "frameworks", "runtime"},
     "pipeline.request": {"runtime.functions"},
     "pipeline": COMPILER | {"pipeline.request"},
     "api.options": REPORTS | {"model", "frameworks", "runtime.functions", "pipeline.request"},
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
-    "api": COMPILER | API | {"in_numba", "pipeline", "pipeline.request"},
+    "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,

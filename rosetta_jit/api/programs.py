@@ -12,6 +12,8 @@ from rosetta_jit.api import cacheable as certainty
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.kernel.entries import SYMBOLS
+from rosetta_jit.model.serial import to_plain
+from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.cache.kernels import Cache
@@ -292,6 +294,12 @@ def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
     if manners.serialising is not None and vars(base)["programs_"] is None:
         base.programs_ = Serialising(*manners.serialising)
     return holder_class_of(header["type"], manners)
+
+
+def holder_type_of(request: Request) -> type[Holder]:
+    """The holder class of the program that would answer a request; nothing is compiled."""
+    build = _build(request)
+    return _holder_type({"type": to_plain(Ref(build.types.holder.name), build.types.schema), "manners": build.manners})
 
 
 class Serialising:

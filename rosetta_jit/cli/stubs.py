@@ -1,0 +1,44 @@
+"""`rosetta-jit stubs`: what type checkers and editors must know of a mapping's holders and programs."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.cli.arguments import Commands, add_command, add_parameters, parameters_of
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "stubs", "Write a .pyi file of the classes of a mapping's or a type's holders.", run)
+    command.add_argument(
+        "what", metavar="MAPPING|TYPE", help="a mapping's path or name, which ends in .mapping, or a type (sensor_msgs/Imu)"
+    )
+    command.add_argument("-o", "--output", metavar="FILE", type=Path, help="the file to write (default: stdout)")
+    command.add_argument("--encoding", help="how messages are encoded, where a type is one of several frameworks")
+    command.add_argument("--framework", help="whose type it is, where nothing else tells")
+    command.add_argument("--import", dest="imports", metavar="FILE", action="append", default=[], help="a file that declares the type")
+    add_parameters(command)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the stub."""
+    from rosetta_jit.api.options import request_of, type_request
+    from rosetta_jit.api.programs import holder_type_of
+    from rosetta_jit.stubs.module import stub
+
+    is_mapping = str(arguments.what).endswith(".mapping")
+    options: Any = {"encoding": arguments.encoding, "framework": arguments.framework, "parameters": parameters_of(arguments)}
+    options["imports"] = arguments.imports
+    what = str(arguments.what)
+    request = request_of("decode", options, mapping=what) if is_mapping else type_request("decode", what, options)
+    text = stub(holder_type_of(request).family_, what, options, is_mapping=is_mapping)
+    if arguments.output is None:
+        sys.stdout.write(text)
+    else:
+        arguments.output.write_text(text, encoding="ascii")
+    return 0

@@ -1,0 +1,128 @@
+"""The whole text of a stub: the classes of a type and of all in it, and the decoder and the encoder that a module of that name makes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.model.words import escaped
+from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
+from rosetta_jit.stubs.classes import class_text
+from rosetta_jit.stubs.fields import Shapes, path
+from rosetta_jit.stubs.names import class_names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.holder.record import Node
+
+HEAD = """\
+# Types of `{what}` for type checkers and editors, written by `rosetta-jit stubs`; write it again when the schema changes.
+# The module beside it, of the same name, makes the programs:
+#
+#     import rosetta_jit
+#
+#     decoder, encoder = {made}
+
+import builtins
+import collections.abc
+import typing
+
+import numpy
+import rosetta_jit
+import typing_extensions
+"""
+
+PROGRAMS = """\
+class Decoder(rosetta_jit.Decoder):
+    def __call__(self, message: typing_extensions.Buffer, holder: {name} | None = None) -> {name}: ...
+    def into(self, message: typing_extensions.Buffer, holder: {name}) -> {name}: ...
+    def new(self) -> {name}: ...
+    @builtins.property
+    def holder_type(self) -> type[{name}]: ...
+
+class Encoder(rosetta_jit.Encoder):
+    @typing.overload
+    def __call__(self, holder: {name}) -> bytes: ...
+    @typing.overload
+    def __call__(self, holder: {name}, buffer: typing_extensions.Buffer, offset: int = 0) -> int: ...
+    @typing.overload
+    def __call__(self, holder: {name}, buffer: typing_extensions.Buffer | None = None, offset: int = 0) -> bytes | int: ...
+    def into(self, holder: {name}, buffer: typing_extensions.Buffer, offset: int = 0) -> int: ...
+    def new(self) -> {name}: ...
+    @builtins.property
+    def holder_type(self) -> type[{name}]: ...
+
+decoder: Decoder
+encoder: Encoder
+"""
+
+SEQUENCE = """\
+class {name}({base}):
+    @typing.overload
+    def __getitem__(self, index: int) -> {element}: ...
+    @typing.overload
+    def __getitem__(self, index: slice) -> list[{element}]: ...
+    def __iter__(self) -> collections.abc.Iterator[{element}]: ...
+"""
+ADD = "    def add(self, **fields: typing.Any) -> {element}: ...\n"
+
+MAPPING = """\
+class {name}({base}):
+    def __getitem__(self, key: {key}) -> {value}: ...
+    def __iter__(self) -> collections.abc.Iterator[{key}]: ...
+    def keys(self) -> collections.abc.KeysView[{key}]: ...
+    def values(self) -> collections.abc.ValuesView[{value}]: ...
+    def items(self) -> collections.abc.ItemsView[{key}, {value}]: ...
+"""
+
+
+def stub(family: Family, what: str, options: Mapping[str, object], *, is_mapping: bool) -> str:
+    """The text of a stub of a holder class; ``what`` is the mapping or the type that was asked for, with these options."""
+    structs = list(dict.fromkeys([family.struct.name, *_structs(family.tree.root, set())]))
+    shapes = Shapes(class_names(structs))
+    families = [family.of_struct(struct).family_ for struct in structs]
+    classes = "\n".join(line for each in families for line in class_text(each, shapes))
+    parts = [_head(what, options, is_mapping=is_mapping, modules=_modules(families, shapes)), *_containers(shapes), classes]
+    programs = PROGRAMS.format(name=shapes.classes[family.struct.name])
+    aliases = [f"{alias}: typing.TypeAlias = {name}" for name, alias in sorted(shapes.aliases.items())]
+    return "\n".join((*parts, programs, *aliases)).rstrip("\n") + "\n"
+
+
+def _head(what: str, options: Mapping[str, object], *, is_mapping: bool, modules: Iterable[str]) -> str:
+    make = "rosetta_jit.{0}({1})" if is_mapping else "rosetta_jit.{0}.of({1})"
+    given = escaped(", ".join((repr(what), *(f"{name}={value!r}" for name, value in options.items() if value))))
+    head = HEAD.format(what=escaped(what), made=", ".join(make.format(program, given) for program in ("Decoder", "Encoder")))
+    return head + "".join(f"import {module}\n" for module in sorted(modules))
+
+
+def _modules(families: Iterable[Family], shapes: Shapes) -> set[str]:
+    """The modules of the classes that the text names."""
+    bases = [*(each.manners.base for each in families), *(key[0] for key in (*shapes.sequences, *shapes.mappings))]
+    return {each.__module__ for each in (*bases, *(each.array_type for each in families)) if each.__module__ != "numpy"}
+
+
+def _containers(shapes: Shapes) -> Iterator[str]:
+    for (class_, element), name in shapes.sequences.items():
+        text = SEQUENCE.format(name=name, base=path(class_), element=element)
+        yield text + (ADD.format(element=element) if hasattr(class_, "add") else "")
+    for (class_, key, value), name in shapes.mappings.items():
+        yield MAPPING.format(name=name, base=path(class_), key=key, value=value)
+
+
+def _structs(node: Node, seen: set[int]) -> Iterator[str]:
+    """The names of the structs in a node."""
+    if id(node) in seen:
+        return
+    seen.add(id(node))
+    match node:
+        case Record(struct):
+            yield from [struct] if struct else []
+            for entry in node.entries.values():
+                yield from _structs(entry.node, seen)
+        case Items(element=inner) | Child(record=inner):
+            yield from _structs(inner, seen)
+        case Pairs(value=value):
+            yield from _structs(value.node, seen)
+        case _:
+            pass
