@@ -18,6 +18,8 @@ from rosetta_jit.errors import (
     EncodeError,
     InUse,
     InvalidHolder,
+    LogError,
+    LogWarning,
     MappingError,
     MessageError,
     ReportError,
@@ -26,9 +28,14 @@ from rosetta_jit.errors import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    import os
+    from collections.abc import Callable, Iterable, Mapping
+    from typing import Unpack
 
+    from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder, Encoder
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.log import Log
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
@@ -45,6 +52,9 @@ __all__ = [
     "Holder",
     "InUse",
     "InvalidHolder",
+    "Log",
+    "LogError",
+    "LogWarning",
     "MappingError",
     "MessageError",
     "ReportError",
@@ -52,6 +62,7 @@ __all__ = [
     "SchemaError",
     "check",
     "infer",
+    "open",
 ]
 
 _LAZY = {
@@ -59,6 +70,7 @@ _LAZY = {
     "Encoder": "rosetta_jit.api.programs",
     "Batch": "rosetta_jit.runtime.batch",
     "Holder": "rosetta_jit.runtime.holder",
+    "Log": "rosetta_jit.logs.log",
 }
 """What needs numpy is imported when it is first used, so that `rosetta-jit --help` answers at once."""
 
@@ -99,3 +111,36 @@ def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> st
     from rosetta_jit.frameworks.yarp.infer import infer as draft
 
     return draft(messages, name=name, encoding=encoding)
+
+
+def open(  # noqa: A001 - a log is opened as a file is
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,  # noqa: A002 - it is what the format is called
+    check: bool = True,
+    on_problem: Callable[[Diagnostic], None] | None = None,
+    **options: Unpack[Options],
+) -> Log:
+    """Open a log, whatever its format. Its index is read, and nothing more; where it has none, it is gone through.
+
+    Parameters
+    ----------
+    path
+        A file or folder, ``-`` for standard input, or a URL that `fsspec` knows.
+    format
+        The name of its format, where neither its beginning nor its name tells.
+    check
+        Whether checksums are compared. What has another one is left out.
+    on_problem
+        Is told what is wrong with the file, as soon as it is noticed; by default that is a `LogWarning`. What can be read is read.
+    **options
+        Of all decoders: see `rosetta_jit.api.options.Options`.
+
+    Raises
+    ------
+    LogError
+        It cannot be read, or is no log that is known.
+    """
+    from rosetta_jit.logs.log import open_log
+
+    return open_log(path, format=format, check=check, on_problem=on_problem, **options)

@@ -4,6 +4,7 @@ RosettaError
     ReportError         what is wrong in a text that somebody wrote: diagnostics with places
         SchemaError         in an IDL file or a wire schema
         MappingError        in a mapping
+        LogError            in a log that cannot be read at all
     MessageError        what is wrong with one message: kind and field path
         DecodeError         bytes that are not what the schema promises; with byte offset
         EncodeError         a holder whose values the wire cannot carry
@@ -61,6 +62,10 @@ class MappingError(ReportError):
     """A mapping that cannot be used."""
 
 
+class LogError(ReportError):
+    """A log that cannot be read, or asks for what is not there."""
+
+
 class MessageError(RosettaError, ValueError):
     """One message that cannot be decoded or encoded.
 
@@ -109,6 +114,10 @@ class DecodeError(MessageError):
 
 class EncodeError(MessageError):
     """A holder whose values the wire cannot carry."""
+
+
+class LogWarning(UserWarning):
+    """Something is wrong with a log; what can be read of it is read."""
 
 
 class CacheWarning(UserWarning):

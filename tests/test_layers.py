@@ -24,7 +24,7 @@ BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "b
 RUNTIME = {"runtime", "runtime.code", "runtime.cache", "runtime.functions"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
-ANYTHING = COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
+ANYTHING = COMPILER | API | {"in_numba", "stubs", "logs", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
 
 MAY_IMPORT = {
     "startup": set(),
@@ -61,6 +61,7 @@ MAY_IMPORT = {
     "api.options": REPORTS | {"model", "frameworks", "runtime.functions", "pipeline.request"},
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
+    "logs": REPORTS | {"api", "api.options", "file_errors", "frameworks", "runtime", "runtime.cache", "runtime.code"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,
@@ -138,6 +139,19 @@ def test_imports_point_one_way(layer):
     assert not wrong, "\n".join(wrong)
 
 
+def test_readers_of_logs_know_no_compiler():
+    """A reader gives bytes. What they mean is the business of `Channel` and `Log`."""
+    above = {"api", "frameworks", "logs.log", "logs.channel", "logs.tables", "logs.staging"}
+    wrong = [
+        f"{module} imports {target}"
+        for module, path in modules().items()
+        if module.startswith("logs.") and module.count(".") > 1
+        for target, _ in imported(path)
+        if within(target, above)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
 def test_no_framework_knows_another():
     """What several share has a folder of its own, which is no framework."""
     shared = {"ros": {"ros1", "ros2"}, "omg": {"ros2", "corba"}}
@@ -148,6 +162,19 @@ def test_no_framework_knows_another():
         for target, _ in imported(path)
         if target.startswith("frameworks.") and target.count(".") > 1 and target.split(".")[1] != module.split(".")[1]
         if module.split(".")[1] not in shared.get(target.split(".")[1], set())
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_readers_of_logs_know_no_compiler():
+    """A reader gives bytes. What they mean is the business of `Channel` and `Log`."""
+    above = {"programs", "frameworks", "options", "logs.log", "logs.channel", "logs.tables", "logs.staging"}
+    wrong = [
+        f"{module} imports {target}"
+        for module, path in modules().items()
+        if module.startswith("logs.") and module.count(".") > 1
+        for target, _ in imported(path)
+        if within(target, above)
     ]
     assert not wrong, "\n".join(wrong)
 

@@ -1,0 +1,164 @@
+"""What can be wrong with a log."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.spelling import closest
+from rosetta_jit.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_READ = "what is whole is read"
+
+
+def unreadable(name: str, why: str) -> Diagnostic:
+    """A file that the system does not let us read."""
+    return Diagnostic("error", "log-unreadable", f"{name} cannot be read: {why}")
+
+
+def unknown_format(name: str, known: Iterable[str]) -> Diagnostic:
+    """A file that no reader knows."""
+    return Diagnostic("error", "log-format", f"{name} is no log that is known", help=f"there are readers of {', '.join(known)}")
+
+
+def not_a(name: str, what: str) -> Diagnostic:
+    """A file that begins otherwise."""
+    return Diagnostic("error", "log-format", f"{name} is no {what}: it does not begin as one")
+
+
+def old_version(name: str, version: str) -> Diagnostic:
+    """A bag of another version."""
+    return Diagnostic(
+        "error",
+        "log-version",
+        f"{name} says that it is `{version}`",
+        help="version 2.0 is read; `rosbag fix` and `rosbag migrate` make it of older ones",
+    )
+
+
+def needs(name: str, package: str, extra: str) -> Diagnostic:
+    """A package that is not installed."""
+    return Diagnostic("error", "log-needs-package", f"{name} needs the package {package}", help=f"pip install 'rosetta-jit[{extra}]'")
+
+
+def unfinished(name: str) -> Diagnostic:
+    """No index, because whoever wrote the log was stopped."""
+    return Diagnostic("warning", "log-unfinished", f"{name} has no index at its end: its writer was stopped", help=_READ)
+
+
+def bad_index(name: str, why: str) -> Diagnostic:
+    """An index that cannot be used."""
+    return Diagnostic("warning", "log-index", f"{name}: its index cannot be used: {why}", help="it is read record by record instead")
+
+
+def index_lies(name: str, at: int) -> Diagnostic:
+    """An index that says where a chunk is, and there is none."""
+    return Diagnostic(
+        "warning",
+        "log-index",
+        f"{name}: the index says that a chunk is at byte {at}, and there is none",
+        help="it is read record by record from there",
+    )
+
+
+def miscounted(name: str, topic: str, promised: int, found: int) -> Diagnostic:
+    """An index that counts otherwise."""
+    return Diagnostic("warning", "log-index", f"{name}: its index counts {promised} messages of {topic}, and {found} were found")
+
+
+def log_cut(name: str, at: int) -> Diagnostic:
+    """A file that ends within a record."""
+    return Diagnostic("warning", "log-cut", f"{name} is cut short within the record at byte {at}", help=_READ)
+
+
+def damaged(name: str, at: int) -> Diagnostic:
+    """Bytes that are no record."""
+    return Diagnostic("warning", "log-damaged", f"{name}: there is no whole record at byte {at}", help="what lies before it is read")
+
+
+def skipped(name: str, at: int, size: int) -> Diagnostic:
+    """Bytes that are no record, and a record behind them."""
+    return Diagnostic("warning", "log-damaged", f"{name}: {size} bytes from byte {at} on are no event and are left out", help=_READ)
+
+
+def chunk_damaged(name: str, at: int, why: str) -> Diagnostic:
+    """A chunk that cannot be decompressed to its end."""
+    return Diagnostic(
+        "warning", "log-chunk", f"{name}: the chunk at byte {at} is damaged: {why}", help="its messages before the damage are read"
+    )
+
+
+def checksum(name: str, at: int) -> Diagnostic:
+    """A chunk whose bytes are not those that were written."""
+    return Diagnostic(
+        "warning",
+        "log-checksum",
+        f"{name}: the chunk at byte {at} has another checksum than when it was written; its messages are left out",
+        help="`check=False` reads them as they are",
+    )
+
+
+def bad_definition(name: str, at: int, why: str) -> Diagnostic:
+    """A schema or channel that cannot be read."""
+    return Diagnostic("warning", "log-definition", f"{name}: a definition at byte {at} is damaged: {why}")
+
+
+def redefined(name: str, what: str, topic: str) -> Diagnostic:
+    """A definition that is there twice, in two forms."""
+    return Diagnostic("warning", "log-definition", f"{name}: {what} (`{topic}`) is defined twice, differently; the first counts")
+
+
+def no_schema(name: str, topic: str, schema: int) -> Diagnostic:
+    """A channel with the number of a schema that is not there."""
+    return Diagnostic("warning", "log-definition", f"{name}: `{topic}` is of schema {schema}, which the log does not have")
+
+
+def unknown_channel(name: str, channel: int, count: int) -> Diagnostic:
+    """Messages of a channel that is not defined."""
+    return Diagnostic("warning", "log-channel", f"{name}: {count} messages are of channel {channel}, which the log does not define")
+
+
+def out_of_order(name: str, topic: str, count: int) -> Diagnostic:
+    """Messages that were logged before the one in front of them."""
+    return Diagnostic("warning", "log-order", f"{name}: {count} messages of `{topic}` have an earlier time than the one before")
+
+
+def undecodable(name: str, topic: str, index: int, why: str, count: int) -> Diagnostic:
+    """Messages that are not of their type."""
+    more = f"; so have {count - 1} more" if count > 1 else ""
+    return Diagnostic("warning", "log-message", f"{name}: message {index} of `{topic}` has bytes that its type does not have: {why}{more}")
+
+
+def unknown_topic(name: str, topic: str, known: Iterable[str]) -> Diagnostic:
+    """A topic that the log does not have."""
+    topics = tuple(known)
+    near = closest(topic, topics)
+    listed = ", ".join(topics[:20]) or "none"
+    return Diagnostic(
+        "error", "log-topic", f"{name} has no topic `{topic}`", help=f"did you mean `{near}`?" if near else f"it has {listed}"
+    )
+
+
+def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
+    """A topic with messages of several types."""
+    found = ", ".join(f"`{each}`" for each in types)
+    return Diagnostic(
+        "error", "log-types", f"{name}: `{topic}` has messages of several types: {found}", help=f'name one: log["{topic}", type], or --type'
+    )
+
+
+def no_type(name: str, topic: str, details: str) -> Diagnostic:
+    """A log that does not tell what its messages are."""
+    return Diagnostic(
+        "error",
+        "log-no-type",
+        f"{name} does not say of which type the messages of `{topic}` are{details}",
+        help=f'name it: log["{topic}", "package.type"], or --type; its definition is looked for on the search path',
+    )
+
+
+def unknown_encoding(name: str, topic: str, encoding: str) -> Diagnostic:
+    """Messages in an encoding that no framework has."""
+    return Diagnostic("error", "log-encoding", f"{name}: the messages of `{topic}` are encoded as `{encoding}`, which no framework reads")

@@ -1,0 +1,1 @@
+"""Logs: recordings of any kind, opened by one function, read as messages, columns and tables."""

@@ -1,0 +1,172 @@
+"""What a log is to the rest: channels, blocks of messages, and a reader that gives both. No reader knows what the messages mean.
+
+log   = channel*, block*
+block = bytes, and a row a message: its channel, its times, where it lies
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from functools import cache
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.walking import Rows
+
+GROUP = "rosetta_jit.logs"
+"""The entry-point group in which packages offer formats of their own: a `Format` each."""
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """A stream of messages of one type within a log.
+
+    Attributes
+    ----------
+    number
+        What the log's records call it.
+    topic
+        Its name: a topic, a scope, a channel of LCM.
+    type
+        The name of its type; empty where the log does not tell.
+    encoding
+        Of its messages, as `Decoder.of` calls it: ``ros1``, ``cdr``, ``protobuf``, ``lcm``, ``yarp``; else what the log says.
+    schema_encoding
+        The language of ``schema``, as MCAP names it: ``ros1msg``, ``ros2msg``, ``ros2idl``, ``omgidl``, ``protobuf``; may be empty.
+    schema
+        The definition of the type.
+    count
+        How many messages there are, None where the log must be read to know.
+    details
+        What else the log says of it.
+    """
+
+    number: int
+    topic: str
+    type: str
+    encoding: str
+    schema_encoding: str = ""
+    schema: bytes = b""
+    count: int | None = None
+    details: Mapping[str, str] = field(default_factory=dict[str, str])
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """When the first and the last message of a log came, in nanoseconds since 1970; None of a log without messages."""
+
+    start_ns: int
+    end_ns: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Block:
+    """Some messages, in the order in which the log has them.
+
+    Attributes
+    ----------
+    data : ndarray of uint8
+        Bytes in which they lie.
+    """
+
+    data: NDArray[np.uint8]
+    rows: Rows
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which messages are asked for. A reader may give more; it leaves out what costs it to read.
+
+    Attributes
+    ----------
+    connections
+        Their numbers; None for all.
+    start_ns, end_ns
+        From when on, and until before when; by the time at which they were logged.
+    """
+
+    connections: frozenset[int] | None = None
+    start_ns: int | None = None
+    end_ns: int | None = None
+
+    def overlaps(self, first_ns: int, last_ns: int) -> bool:
+        """Whether a stretch of time has some that are wanted."""
+        return (self.start_ns is None or last_ns >= self.start_ns) and (self.end_ns is None or first_ns < self.end_ns)
+
+
+class Reader(Protocol):
+    """An open log. What is wrong with it is told to ``tell`` when it is noticed, once each; what can be read is given nevertheless."""
+
+    @property
+    def connections(self) -> Mapping[int, Connection]:
+        """Those that are known: those of the index, and more while blocks are read."""
+        ...
+
+    @property
+    def extent(self) -> Extent | None: ...
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        """What is to be known of the file: version, chunks, compression."""
+        ...
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        """The messages. The bytes of a block are good until the next one is asked for."""
+        ...
+
+
+class Open(Protocol):
+    """A function that opens a log."""
+
+    def __call__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> Reader:
+        """LogError where it is no such log at all; ``check`` asks to compare checksums."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A format of logs.
+
+    Attributes
+    ----------
+    suffixes
+        Of its files.
+    magic
+        How such files begin; empty where nothing tells.
+    open
+        An `Open`, as ``module:name``.
+    folder
+        For formats that are folders: a file that such a folder has.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    open: str
+    magic: bytes = b""
+    folder: str = ""
+
+    def opener(self) -> Open:
+        """What opens it, imported when it is needed."""
+        module, _, name = self.open.partition(":")
+        return cast("Open", getattr(imported(module), name))
+
+
+@cache
+def formats() -> Mapping[str, Format]:
+    """Every format by name: ours, and those of installed packages."""
+    from importlib.metadata import entry_points
+
+    from rosetta_jit.logs.table import FORMATS
+
+    offered: list[Any] = [each.load() for each in entry_points(group=GROUP)]
+    return {each.name: each for each in (*FORMATS, *offered)}

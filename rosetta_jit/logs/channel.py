@@ -1,0 +1,256 @@
+"""The messages of one topic: columns and tables of them, read when they are asked for, a few megabytes at a time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import DecodeError, LogError
+from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.moments import nanoseconds
+from rosetta_jit.logs.staging import Staging
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    import pyarrow as pa
+    from numpy.typing import NDArray
+
+    from rosetta_jit.api.options import Options
+    from rosetta_jit.api.programs import Decoder
+    from rosetta_jit.logs.base import Block, Connection
+    from rosetta_jit.logs.log import Log
+    from rosetta_jit.logs.moments import Moment
+    from rosetta_jit.runtime.arrow.arrays import Octets
+    from rosetta_jit.runtime.arrow.times import Unit
+    from rosetta_jit.runtime.batch import Batch
+
+OnError: TypeAlias = Literal["raise", "skip", "mask"]
+CLOCKS = ("log_time", "publish_time")
+"""The columns of times that a table has beside the fields of messages."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """Some decoded messages of a channel, and their times in nanoseconds since 1970.
+
+    Attributes
+    ----------
+    batch
+        Filled again for the next part.
+    first
+        The number of the first among all messages that are read.
+    """
+
+    batch: Batch
+    log_ns: NDArray[np.int64]
+    publish_ns: NDArray[np.int64]
+    first: int
+
+
+class Channel:
+    """The messages of a topic, lazy: nothing is read before a column, a table or a message is asked for.
+
+    Attributes
+    ----------
+    topic, type, encoding : str
+    schema : str or bytes
+        The definition that the log has: a text, or a serialised ``FileDescriptorSet``; empty without one.
+    """
+
+    def __init__(self, log: Log, connections: tuple[Connection, ...], target: str | None, options: Options) -> None:
+        self._log, self._target, self._options = log, target, options
+        self.connections = connections
+
+    @property
+    def topic(self) -> str:
+        return self.connections[0].topic
+
+    @property
+    def type(self) -> str:
+        return self.connections[0].type
+
+    @property
+    def encoding(self) -> str:
+        return self.connections[0].encoding
+
+    @property
+    def schema_encoding(self) -> str:
+        """Which language ``schema`` is in: ``ros1msg``, ``ros2msg``, ``ros2idl``, ``protobuf``."""
+        return self.connections[0].schema_encoding
+
+    @property
+    def schema(self) -> str | bytes:
+        schema = self.connections[0].schema
+        return schema if self.schema_encoding == "protobuf" else schema.decode("utf-8", "replace")
+
+    @property
+    def count(self) -> int | None:
+        """How many messages there are, by the index of the log; None where only reading all would tell."""
+        counts = [each.count for each in self.connections]
+        return None if None in counts else sum(cast("list[int]", counts))
+
+    @cached_property
+    def decoder(self) -> Decoder:
+        """What decodes the messages.
+
+        Raises
+        ------
+        LogError
+            The log does not tell the type, and nobody has named it; or no framework has the encoding.
+        SchemaError, MappingError
+            The definition, or the mapping, is wrong.
+        """
+        return _decoder(self._log, self.connections[0], self._target, self._options)
+
+    def parts(self, *, start: Moment | None = None, end: Moment | None = None, on_error: OnError = "raise") -> Iterator[Part]:
+        """The messages, decoded some megabytes at a time into one batch that is filled again and again."""
+        decoder, staging, batch, first = self.decoder, Staging(), None, 0
+        for staged in staging.filled(self._blocks(start, end)):
+            batch = _many(decoder, staged, batch, on_error, first)
+            kept = batch.kept
+            yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first)
+            first += len(staged.log_ns)
+
+    def _blocks(self, start: Moment | None, end: Moment | None) -> Iterator[Block]:
+        numbers = frozenset(each.number for each in self.connections)
+        return self._log.blocks(Wanted(numbers, nanoseconds(start), nanoseconds(end)))
+
+    def __iter__(self) -> Iterator[Any]:
+        """The messages, each a holder of its own."""
+        return (each.message for each in self._log.messages([self.topic])) if self._target is None else self._rows()
+
+    def _rows(self) -> Iterator[Any]:
+        for part in self.parts():
+            yield from part.batch[:]
+
+    def __len__(self) -> int:
+        return self.count if self.count is not None else sum(len(each.rows) for each in self._blocks(None, None))
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A field of all messages as an array, ``imu["angular_velocity.x"]``; the times as ``["log_time"]``, ``["publish_time"]``.
+
+        Raises
+        ------
+        KeyError
+            There is no such field.
+        TypeError
+            The field is not a number: take `to_arrow`.
+        """
+        if name in CLOCKS:
+            stamps = [each.rows.log_ns if name == "log_time" else each.rows.publish_ns for each in self._blocks(None, None)]
+            return (np.concatenate(stamps) if stamps else np.empty(0, np.int64)).view("datetime64[ns]")
+        found: list[Any] = []
+        for part in self.parts():
+            column = part.batch.column(name)
+            found.append(column.to_numpy() if hasattr(column, "to_numpy") else column)
+            if not isinstance(found[-1], np.ndarray):
+                raise TypeError(f"{name!r} has no single array: name a field in it, or take to_arrow(columns=[{name!r}])")
+            found[-1] = found[-1].copy()
+        return np.concatenate(found) if found else np.empty(0)
+
+    def tables(
+        self,
+        columns: Iterable[str] | None = None,
+        *,
+        flatten: bool = False,
+        octets: Octets = "string",
+        times: Iterable[str] | Mapping[str, Unit] = (),
+        errors: str | None = None,
+        clocks: Iterable[str] = CLOCKS,
+        start: Moment | None = None,
+        end: Moment | None = None,
+        on_error: OnError = "raise",
+    ) -> Iterator[pa.Table]:
+        """The tables of `to_arrow` one by one, for logs that are larger than the memory; at least one, if only for its schema."""
+        from rosetta_jit.logs.tables import with_clocks
+
+        names, chosen, given = None if columns is None else list(columns), tuple(clocks), False
+        for part in self.parts(start=start, end=end, on_error=on_error):
+            table = part.batch.to_arrow(names, flatten=flatten, octets=octets, times=times, errors=errors)
+            yield with_clocks(table, chosen, part)
+            given = True
+        if not given:
+            empty = Part(self.decoder.many(b"", np.zeros(1, np.int64)), np.empty(0, np.int64), np.empty(0, np.int64), 0)
+            table = empty.batch.to_arrow(names, flatten=flatten, octets=octets, times=times, errors=errors)
+            yield with_clocks(table, chosen, empty)
+
+    def to_arrow(self, columns: Iterable[str] | None = None, **options: Any) -> pa.Table:
+        """The messages as a `pyarrow.Table`, a row each.
+
+        Parameters
+        ----------
+        columns
+            The fields to take, with dots those of nested messages; all by default.
+        flatten, octets, times, errors
+            As of `Batch.to_arrow`.
+        clocks
+            Columns of times that come first: ``log_time``, ``publish_time``, and ``header_time`` where messages have a ``header.stamp``.
+        start, end
+            From when on, and until before when: nanoseconds since 1970, a `datetime` or a `numpy.datetime64`.
+        on_error
+            As of `Decoder.many`.
+
+        Raises
+        ------
+        ImportError
+            pyarrow is not installed.
+        DecodeError
+            A message is not what its type promises.
+        LogError
+            The log does not tell the type.
+        """
+        from rosetta_jit.logs.tables import joined
+
+        return joined(self.tables(columns, **options))
+
+    def to_pandas(self, columns: Iterable[str] | None = None, **options: Any) -> Any:
+        """The table of `to_arrow` as a `pandas.DataFrame`."""
+        return self.to_arrow(columns, **options).to_pandas()
+
+    def to_polars(self, columns: Iterable[str] | None = None, **options: Any) -> Any:
+        """The table of `to_arrow` as a `polars.DataFrame`."""
+        import polars as pl
+
+        return pl.from_arrow(self.to_arrow(columns, **options))
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """For whoever reads Arrow's stream interface: pyarrow, polars, DuckDB."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def __repr__(self) -> str:
+        through = f" through {self._target}" if self._target else ""
+        return f"<Channel {self.topic} of {self.type or '?'}{through}, {'?' if self.count is None else self.count} messages>"
+
+
+def _many(decoder: Decoder, staged: Any, batch: Batch | None, on_error: OnError, first: int) -> Batch:
+    """Decode what is staged; the path of an error begins with the number of the message among all."""
+    try:
+        return decoder.many(staged.data.data, staged.offsets, into=batch, on_error=on_error)
+    except DecodeError as error:
+        number, _, path = error.path.removeprefix("[").partition("]")
+        raise DecodeError(error.kind, f"[{first + int(number)}]{path}", error.detail, error.offset) from None
+
+
+def _decoder(log: Log, connection: Connection, target: str | None, options: Options) -> Decoder:
+    from rosetta_jit.api.programs import Decoder
+    from rosetta_jit.frameworks.base import installed
+
+    encodings = {name for framework in installed().values() for name in framework.encodings}
+    chosen = dict[str, Any](options)
+    if connection.encoding not in encodings and "encoding" not in chosen:
+        raise LogError((words.unknown_encoding(log.name, connection.topic, connection.encoding),))
+    chosen.setdefault("encoding", connection.encoding)
+    if target is not None and target.endswith(".mapping"):
+        return Decoder(target, **chosen)
+    type_ = target or connection.type
+    if not type_:
+        details = "".join(f" ({name} {text})" for name, text in connection.details.items())
+        raise LogError((words.no_type(log.name, connection.topic, details),))
+    if connection.schema_encoding and type_ == connection.type and "schema" not in chosen:
+        chosen["schema"] = connection.schema if connection.schema_encoding == "protobuf" else connection.schema.decode("utf-8", "replace")
+    return Decoder.of(type_, **chosen)

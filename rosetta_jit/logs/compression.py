@@ -1,0 +1,110 @@
+"""Chunks as they were before they were compressed: as much of it as is whole, and never more than the chunk promises."""
+
+from __future__ import annotations
+
+import bz2
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Bytes = NDArray[np.uint8]
+
+STEP = 1 << 16
+"""Bytes that are decompressed at once where a stream is damaged, so that those before the damage are kept."""
+
+
+class Scratch:
+    """Memory that is used for one chunk after another."""
+
+    def __init__(self) -> None:
+        self._memory = np.empty(0, np.uint8)
+
+    def room(self, size: int) -> Bytes:
+        """So many bytes; what was there before is gone."""
+        if self._memory.size < size:
+            self._memory = np.empty(size, np.uint8)
+        return self._memory[:size]
+
+
+def decompressed(name: str, compression: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:
+    """The content of a chunk that promises so many bytes, and what is wrong with it; nothing of a compression that is not known.
+
+    Raises
+    ------
+    LogError
+        The package is missing that decompresses it; ``name`` is the log's.
+    """
+    if compression in ("", "none"):
+        found, wrong = np.frombuffer(body, np.uint8), ""
+    elif compression not in _STREAMS:
+        return np.empty(0, np.uint8), f"it is compressed as {compression!r}, which is not known"
+    elif size > MAX_RECORD_BYTES:
+        return np.empty(0, np.uint8), f"it promises {size} bytes, more than the limit of {MAX_RECORD_BYTES}"
+    else:
+        found, wrong = _STREAMS[compression](name, body, size, scratch)
+    if not wrong and found.size != size:
+        wrong = f"it promises {size} bytes, and holds {found.size}"
+    return found, wrong
+
+
+def _zstd(name: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:
+    zstandard = _package("zstandard", name)
+    target = scratch.room(size)
+
+    def read(step: int) -> tuple[Bytes, str]:
+        filled = 0
+        try:
+            with zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_BYTES).stream_reader(body) as stream:
+                while filled < size and (count := stream.readinto(target.data[filled : filled + step])):
+                    filled += count
+        except (zstandard.ZstdError, MemoryError) as error:
+            return target[:filled], str(error)
+        return target[:filled], ""
+
+    found, wrong = read(max(size, 1))
+    return read(STEP) if wrong else (found, wrong)
+
+
+def _lz4(name: str, body: memoryview, size: int, _: Scratch) -> tuple[Bytes, str]:
+    frame = _package("lz4.frame", name)
+    return _pieces(frame.LZ4FrameDecompressor, body, size, (RuntimeError, EOFError, MemoryError))
+
+
+def _bz2(_name: str, body: memoryview, size: int, _: Scratch) -> tuple[Bytes, str]:
+    return _pieces(bz2.BZ2Decompressor, body, size, (OSError, EOFError, ValueError))
+
+
+def _pieces(new: Callable[[], Any], body: memoryview, size: int, errors: tuple[type[Exception], ...]) -> tuple[Bytes, str]:
+    """What a decompressor of Python's manner gives: all at once, else piece by piece up to the damage."""
+    try:
+        return np.frombuffer(new().decompress(body, max_length=size), np.uint8), ""
+    except errors as error:
+        wrong = str(error)
+    decompressor, found = new(), bytearray()
+    try:
+        for begin in range(0, len(body), STEP):
+            found += decompressor.decompress(body[begin : begin + STEP], max_length=size - len(found))
+    except errors:
+        pass
+    return np.frombuffer(bytes(found[:size]), np.uint8), wrong
+
+
+def _package(module: str, name: str) -> Any:
+    from importlib import import_module
+
+    try:
+        return import_module(module)
+    except ImportError:
+        raise LogError((words.needs(name, module.partition(".")[0], "logs"),)) from None
+
+
+_STREAMS = {"zstd": _zstd, "lz4": _lz4, "bz2": _bz2}

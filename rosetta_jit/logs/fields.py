@@ -1,0 +1,62 @@
+"""Fields of a record, one after the other; ValueError where it ends too early."""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+class Fields:
+    """A place in the bytes of a record."""
+
+    def __init__(self, data: bytes | memoryview, at: int = 0, end: int | None = None) -> None:
+        self._data, self.at, self._end = memoryview(data), at, len(data) if end is None else end
+
+    @property
+    def left(self) -> int:
+        """How many bytes are left."""
+        return self._end - self.at
+
+    def bytes(self, size: int) -> bytes:
+        """So many bytes."""
+        return bytes(self.view(size))
+
+    def view(self, size: int) -> memoryview:
+        """The same, not copied."""
+        if not 0 <= size <= self.left:
+            raise ValueError(f"{size} bytes are promised, and {self.left} are left")
+        self.at += size
+        return self._data[self.at - size : self.at]
+
+    def number(self, form: str) -> int:
+        """An integer, in a form of `struct`."""
+        return int(struct.unpack(form, self.view(struct.calcsize(form)))[0])
+
+    def u16(self) -> int:
+        return self.number("<H")
+
+    def u32(self) -> int:
+        return self.number("<I")
+
+    def u64(self) -> int:
+        return self.number("<Q")
+
+    def text(self) -> str:
+        """A length of 32 bits and that many bytes of UTF-8; a byte that is none becomes a replacement character."""
+        return self.bytes(self.u32()).decode("utf-8", "replace")
+
+    def inner(self) -> Fields:
+        """A length of 32 bits, and the fields in that many bytes."""
+        return Fields(self.view(self.u32()))
+
+    def rest(self) -> memoryview:
+        """All that is left."""
+        return self.view(self.left)
+
+    def while_left(self) -> Iterator[Fields]:
+        """Itself, again and again until nothing is left."""
+        while self.left:
+            yield self

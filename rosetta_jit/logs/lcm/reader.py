@@ -1,0 +1,109 @@
+"""Opening LCM's event logs, which have no index: all of it is walked. After damage the next sync word is looked for."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.records import WINDOW, add_counts
+from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.walking import Rows, Why, walk
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from numpy.typing import NDArray
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.storage import Storage
+
+SYNC = bytes.fromhex("eda1da01")
+HEAD = 28
+"""Bytes of an event before its channel's name."""
+
+
+class LcmReader:
+    """An open event log of LCM."""
+
+    def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+        del check  # it has no checksums
+        if storage.read(0, len(SYNC)) != SYNC:
+            raise LogError((words.not_a(storage.name, "event log of LCM"),))
+        self._storage, self._tell = storage, tell
+        self._seed = secrets.randbits(64)
+        self._numbers: dict[int, int] = {}
+        self._known: dict[int, Connection] = {}
+        counts: dict[int, int | None] = {}
+        self._extent: Extent | None = None
+        for block in self.blocks(Wanted()):
+            add_counts(counts, block.rows)
+            self._time(int(block.rows.log_ns.min()), int(block.rows.log_ns.max()))
+        self._known = {number: replace(each, count=counts.get(number, 0)) for number, each in self._known.items()}
+
+    @property
+    def connections(self) -> Mapping[int, Connection]:
+        return self._known
+
+    @property
+    def extent(self) -> Extent | None:
+        return self._extent
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        return {}
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        del wanted  # nothing tells where which messages are
+        at, needed, end = 0, WINDOW, self._storage.size
+        while at < end:
+            data = self._storage.array(at, min(needed, end - at))
+            rows, stop = walk("lcm", data, 0, seed=self._seed)
+            needed = WINDOW
+            if len(rows):
+                yield Block(data, self._numbered(data, rows))
+            at += stop.at
+            if stop.why is Why.CUT and at + max(stop.size, HEAD) <= end and stop.size <= MAX_RECORD_BYTES:
+                needed = max(WINDOW, stop.size)
+            elif stop.why in (Why.CUT, Why.OTHER):
+                at = self._behind_damage(at, cut=stop.why is Why.CUT)
+
+    def _behind_damage(self, at: int, *, cut: bool) -> int:
+        """Where the next event begins behind a place that is none; the end of the file, if none does."""
+        place, end = at + 1, self._storage.size
+        while place < end:
+            found = self._storage.read(place, WINDOW).find(SYNC)
+            if found >= 0:
+                self._tell(words.skipped(self._storage.name, at, place + found - at))
+                return place + found
+            place += WINDOW - len(SYNC) + 1
+        self._tell(words.log_cut(self._storage.name, at) if cut else words.skipped(self._storage.name, at, end - at))
+        return end
+
+    def _numbered(self, data: NDArray[np.uint8], rows: Rows) -> Rows:
+        """Rows with the numbers of channels in place of their names' hashes."""
+        hashes, first, inverse = np.unique(rows.channels, return_index=True, return_inverse=True)
+        numbers = [self._number(key, data, rows, row) for key, row in zip(hashes.tolist(), first.tolist(), strict=True)]
+        return replace(rows, channels=np.array(numbers, np.int64)[inverse])
+
+    def _number(self, key: int, data: NDArray[np.uint8], rows: Rows, row: int) -> int:
+        number = self._numbers.setdefault(key, len(self._numbers))
+        if number not in self._known:
+            begin, end = int(rows.begins[row]), int(rows.ends[row])
+            before = int(rows.ends[row - 1]) if row else 0
+            head = data[before:begin].tobytes()
+            size = int.from_bytes(head[HEAD - 8 : HEAD - 4], "big")
+            name = head[len(head) - size :].decode("utf-8", "replace")
+            fingerprint = data[begin : min(begin + 8, end)].tobytes().hex()
+            details = {"fingerprint": f"0x{fingerprint}"} if len(fingerprint) == 16 else {}
+            self._known[number] = Connection(number, name, "", "lcm", details=details)
+        return number
+
+    def _time(self, first: int, last: int) -> None:
+        known = self._extent or Extent(first, last)
+        self._extent = Extent(min(first, known.start_ns), max(last, known.end_ns))

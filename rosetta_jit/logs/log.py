@@ -1,0 +1,294 @@
+"""An open log: its channels, what is wrong with it, and its messages in the order in which they came."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, Unpack, cast
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.diagnostics import render
+from rosetta_jit.errors import LogError, LogWarning
+from rosetta_jit.logs.base import Wanted, formats
+from rosetta_jit.logs.channel import Channel, OnError
+from rosetta_jit.logs.moments import Moment, nanoseconds, shown
+from rosetta_jit.logs.storage import open_storage
+from rosetta_jit.logs.walking import gathered
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Iterable, Iterator
+
+    from rosetta_jit.api.options import Options
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.base import Block, Connection, Format, Reader
+
+MAGIC_BYTES = 64
+
+
+class Message(NamedTuple):
+    """A message of a log: when it was logged, in nanoseconds since 1970, on which topic, and its holder or its bytes."""
+
+    time: int
+    topic: str
+    message: Any
+
+
+class Log:
+    """A log, of which nothing but the index is read when it is opened.
+
+    ``log["/imu"]`` is a `Channel`; so are ``log["/imu", "robot/imu.mapping"]``, through a mapping, and ``log["POSE", "exlcm.pose_t"]``, of
+    a type that the log does not tell. Iterating gives the topics.
+
+    Attributes
+    ----------
+    name : str
+    format : str
+        ``mcap``, ``bag``, ``lcm``, …
+    problems : list of Diagnostic
+        What has been noticed to be wrong with the file so far.
+    """
+
+    def __init__(self, name: str, form: Format, on_problem: Callable[[Diagnostic], None], *, check: bool, options: Options) -> None:
+        self.name, self.format = name, form.name
+        self.problems: list[Diagnostic] = []
+        self._on_problem, self._options = on_problem, options
+        self._storage = open_storage(name)
+        self._reader: Reader = form.opener()(self._storage, self._tell, check=check)
+
+    def _tell(self, problem: Diagnostic) -> None:
+        if problem not in self.problems:
+            self.problems.append(problem)
+            self._on_problem(problem)
+
+    @property
+    def path(self) -> Path:
+        return Path(self.name)
+
+    @property
+    def connections(self) -> tuple[Connection, ...]:
+        """The streams of messages, as the log has them: a bag has one for each publisher."""
+        return tuple(self._reader.connections.values())
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """The topics, sorted."""
+        return tuple(sorted({each.topic for each in self.connections}))
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """All channels, sorted by topic; of a topic with several types there are several."""
+        found: dict[tuple[str, ...], list[Connection]] = {}
+        for each in sorted(self.connections, key=lambda one: (one.topic, one.type)):
+            found.setdefault((each.topic, *_type_key(each)), []).append(each)
+        return tuple(Channel(self, tuple(each), None, self._options) for each in found.values())
+
+    @property
+    def start(self) -> int | None:
+        """When the first message was logged, in nanoseconds since 1970; None of a log without messages."""
+        return None if self._reader.extent is None else self._reader.extent.start_ns
+
+    @property
+    def end(self) -> int | None:
+        """When the last one was."""
+        return None if self._reader.extent is None else self._reader.extent.end_ns
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """What else the file tells: its version, chunks and compression."""
+        return dict(self._reader.facts)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.topics)
+
+    def __contains__(self, topic: object) -> bool:
+        return topic in self.topics
+
+    def __len__(self) -> int:
+        return len(self.topics)
+
+    def __getitem__(self, key: str | tuple[str, str | os.PathLike[str]]) -> Channel:
+        topic, target = (key, None) if isinstance(key, str) else (key[0], str(key[1]))
+        return self.channel(topic, target)
+
+    def channel(self, topic: str, target: str | None = None, **options: Unpack[Options]) -> Channel:
+        """The messages of a topic.
+
+        Parameters
+        ----------
+        topic
+            Its name.
+        target
+            A mapping (``….mapping``), or the name of the messages' type where the log does not tell it or has several.
+        **options
+            Of the decoder: see `Options`.
+
+        Raises
+        ------
+        LogError
+            There is no such topic, or it has messages of several types.
+        """
+        found = [each for each in self.connections if each.topic == topic]
+        if not found:
+            raise LogError((words.unknown_topic(self.name, topic, self.topics),))
+        named = [each for each in found if target is not None and each.type == target] or found
+        if len({_type_key(each) for each in named}) > 1:
+            raise LogError((words.several_types(self.name, topic, sorted({each.type for each in found})),))
+        return Channel(self, tuple(named), target, cast("Options", {**self._options, **options}))
+
+    def blocks(self, wanted: Wanted | None = None) -> Iterator[Block]:
+        """The messages as bytes, many at a time, in the order in which they lie; a block is good until the next is asked for."""
+        wanted = wanted or Wanted()
+        for block in self._reader.blocks(wanted):
+            rows = block.rows
+            kept = np.ones(len(rows), np.bool_)
+            if wanted.connections is not None:
+                kept &= np.isin(rows.channels, list(wanted.connections))
+            if wanted.start_ns is not None:
+                kept &= rows.log_ns >= wanted.start_ns
+            if wanted.end_ns is not None:
+                kept &= rows.log_ns < wanted.end_ns
+            if kept.all():
+                yield block
+            elif kept.any():
+                yield type(block)(block.data, rows.only(kept))
+
+    def messages(
+        self,
+        topics: Iterable[str] | None = None,
+        *,
+        start: Moment | None = None,
+        end: Moment | None = None,
+        raw: bool = False,
+        on_error: Literal["raise", "skip"] = "raise",
+    ) -> Iterator[Message]:
+        """The messages in the order of the file; within a chunk by the time at which they were logged.
+
+        Parameters
+        ----------
+        topics
+            Those to read; all by default.
+        start, end
+            From when on, and until before when: nanoseconds since 1970, a `datetime` or a `numpy.datetime64`.
+        raw
+            Bytes instead of decoded messages.
+        on_error
+            What becomes of messages that their type does not allow.
+
+        Raises
+        ------
+        DecodeError
+            A message is not what its type promises.
+        LogError
+            A topic is not there, or its type is not known.
+        """
+        channels = [self[each] for each in topics] if topics is not None else list(self.channels)
+        by_number = {each.number: channel for channel in channels for each in channel.connections}
+        numbers = frozenset(by_number) if topics is not None else None
+        for block in self.blocks(Wanted(numbers, nanoseconds(start), nanoseconds(end))):
+            by_number |= self._later(by_number) if topics is None else {}
+            order = np.argsort(block.rows.log_ns, kind="stable")
+            found = _decoded(block, by_number, on_error) if not raw else _bytes(block)
+            for row in order.tolist():
+                if row in found and int(block.rows.channels[row]) in by_number:
+                    yield Message(int(block.rows.log_ns[row]), by_number[int(block.rows.channels[row])].topic, found[row])
+
+    def _later(self, known: dict[int, Channel]) -> dict[int, Channel]:
+        """Channels that were defined behind the index, or without one."""
+        if all(each.number in known for each in self.connections):
+            return {}
+        return {each.number: channel for channel in self.channels for each in channel.connections if each.number not in known}
+
+    def close(self) -> None:
+        """Close the file."""
+        self._storage.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        """The topics with their types and counts, and the time from the first message to the last."""
+        times = "" if self.start is None or self.end is None else f", {shown(self.start)} to {shown(self.end)}"
+        lines = [f"  {each.topic}  {each.type or '?'}  {'?' if each.count is None else each.count}" for each in self.channels]
+        return "\n".join([f"<Log {self.name} ({self.format}){times}>", *lines])
+
+
+def _type_key(connection: Connection) -> tuple[str, ...]:
+    """What tells one type from another: of ROS 1 the md5 sum, because the texts of definitions differ in comments."""
+    sum_ = connection.details.get("md5sum", "")
+    return connection.type, connection.encoding, sum_ or connection.schema.hex()
+
+
+def _decoded(block: Block, channels: dict[int, Channel], on_error: OnError) -> dict[int, Any]:
+    """The messages of a block by their rows, each channel's in a batch of its own."""
+    found: dict[int, Any] = {}
+    for channel in set(channels.values()):
+        chosen = np.flatnonzero(np.isin(block.rows.channels, [each.number for each in channel.connections]))
+        if len(chosen):
+            rows = block.rows.only(chosen)
+            data, offsets = gathered(block.data, rows.begins, rows.ends)
+            batch = channel.decoder.many(data.data, offsets, on_error=on_error)
+            found |= dict(zip(chosen[batch.kept].tolist(), batch, strict=True))
+    return found
+
+
+def _bytes(block: Block) -> dict[int, bytes]:
+    view = block.data.data
+    return {
+        row: bytes(view[begin:end])
+        for row, (begin, end) in enumerate(zip(block.rows.begins.tolist(), block.rows.ends.tolist(), strict=True))
+    }
+
+
+def open_log(
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,  # noqa: A002 - what else should it be called
+    check: bool = True,
+    on_problem: Callable[[Diagnostic], None] | None = None,
+    **options: Unpack[Options],
+) -> Log:
+    """Open a log: see `rosetta_jit.open`."""
+    import os
+
+    name = os.fspath(path)
+    form = _format(name, format)
+    return Log(name, form, on_problem or _warn, check=check, options=options)
+
+
+def _format(name: str, wanted: str | None) -> Format:
+    """The format of a file: the one that is named, else by how it begins, else by its name."""
+    known = formats()
+    if wanted is not None:
+        if wanted not in known:
+            raise LogError((words.unknown_format(f"`{wanted}`", known),))
+        return known[wanted]
+    path = Path(name)
+    if "://" not in name and path.is_dir():
+        found = [each for each in known.values() if each.folder and (path / each.folder).exists()]
+    else:
+        begin = _beginning(name)
+        found = [each for each in known.values() if each.magic and begin.startswith(each.magic)]
+        found += [each for each in known.values() if name.endswith(each.suffixes) and not each.folder]
+    if not found:
+        raise LogError((words.unknown_format(name, known),))
+    return found[0]
+
+
+def _beginning(name: str) -> bytes:
+    if name == "-":
+        return b""
+    storage = open_storage(name)
+    try:
+        return storage.read(0, MAGIC_BYTES)
+    finally:
+        storage.close()
+
+
+def _warn(problem: Diagnostic) -> None:
+    warnings.warn(render(problem), LogWarning, stacklevel=4)

@@ -1,0 +1,1 @@
+"""MCAP: https://mcap.dev/spec."""

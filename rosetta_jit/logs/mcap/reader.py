@@ -1,0 +1,155 @@
+"""Opening MCAP files: by the summary at the end, else record by record."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.base import Extent
+from rosetta_jit.logs.fields import Fields
+from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
+from rosetta_jit.logs.records import Chunk, Records, Region, Scanned, segments_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.base import Block, Connection, Wanted
+    from rosetta_jit.logs.storage import Storage
+
+FOOTER_SIZE = PREFIX.size + 20
+MAX_SUMMARY_BYTES = 1 << 28
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What the end of a file tells of the rest."""
+
+    segments: list[Chunk | Region]
+    counts: Mapping[int, int | None]
+    extent: Extent | None
+    facts: Mapping[str, str]
+    end: int
+
+
+class McapReader:
+    """An open MCAP file."""
+
+    def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+        if storage.read(0, len(MAGIC)) != MAGIC:
+            raise LogError((words.not_a(storage.name, "MCAP file"),))
+        self._storage, self._tell, self._check = storage, tell, check
+        self._grammar = McapGrammar(storage.name, tell)
+        self._records = Records(storage, self._grammar, tell, check=check)
+        self._summary = self._summarised() or self._scanned()
+
+    @property
+    def connections(self) -> Mapping[int, Connection]:
+        counts = self._summary.counts
+        return {number: replace(each, count=counts.get(number, 0)) for number, each in self._grammar.connections.items()}
+
+    @property
+    def extent(self) -> Extent | None:
+        return self._summary.extent
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        return self._summary.facts
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        return self._records.blocks(self._summary.segments, wanted, self._summary.end)
+
+    def _summarised(self) -> Summary | None:
+        """By the summary, None where there is none that can be used."""
+        storage = self._storage
+        tail = storage.read(max(0, storage.size - FOOTER_SIZE - len(MAGIC)), FOOTER_SIZE + len(MAGIC))
+        if len(tail) < FOOTER_SIZE + len(MAGIC) or tail[FOOTER_SIZE:] != MAGIC or PREFIX.unpack_from(tail) != (FOOTER, 20):
+            self._tell(words.unfinished(storage.name))
+            return None
+        fields = Fields(tail, PREFIX.size)
+        start, _, crc = fields.u64(), fields.u64(), fields.u32()
+        end = storage.size - FOOTER_SIZE - len(MAGIC)
+        if not start:
+            return None
+        if not len(MAGIC) <= start <= end or end - start > MAX_SUMMARY_BYTES:
+            self._tell(words.bad_index(storage.name, "the summary is outside of the file"))
+            return None
+        data = storage.read(start, end - start)
+        if self._check and crc and zlib.crc32(data + tail[: FOOTER_SIZE - 4]) != crc:
+            self._tell(words.bad_index(storage.name, "the checksum of the summary is another one"))
+            return None
+        try:
+            return self._of_records(data, start)
+        except ValueError as error:
+            self._tell(words.bad_index(storage.name, str(error)))
+            self._grammar.connections.clear()
+            return None
+
+    def _of_records(self, data: bytes, end: int) -> Summary | None:
+        chunks, behind = list[Chunk](), dict[int, int]()
+        counts: dict[int, int | None] | None = None
+        extent, facts = None, self._header()
+        fields = Fields(data)
+        compressions: set[str] = set()
+        while fields.left:
+            opcode, record = fields.bytes(1)[0], fields.u64()
+            content = Fields(fields.view(record))
+            if opcode in (SCHEMA, CHANNEL):
+                self._grammar.define(bytes(PREFIX.pack(opcode, record)) + content.bytes(record))
+            elif opcode == CHUNK_INDEX:
+                chunk, index_size, compression = _chunk_index(content)
+                chunks.append(chunk)
+                behind[chunk.at] = index_size
+                compressions.add(compression)
+            elif opcode == STATISTICS:
+                counts, extent = _statistics(content)
+        if counts is None:
+            return None
+        segments = segments_of(chunks, len(MAGIC), end, behind)
+        if segments is None:
+            raise ValueError("the places of chunks cannot be true")
+        if chunks:
+            facts |= {"chunks": str(len(chunks)), "compression": ", ".join(sorted(each or "none" for each in compressions))}
+        return Summary(segments, counts, extent, facts, end)
+
+    def _header(self) -> dict[str, str]:
+        """What the first record says."""
+        peek = self._storage.read(len(MAGIC), 4096)
+        try:
+            fields = Fields(peek)
+            if fields.bytes(1)[0] != HEADER:
+                return {}
+            fields.u64()
+            return {name: text for name, text in (("profile", fields.text()), ("library", fields.text())) if text}
+        except ValueError:
+            return {}
+
+    def _scanned(self) -> Summary:
+        """Record by record."""
+        end = self._storage.size
+        found = Scanned(self._records, len(MAGIC), end)
+        chunks = sum(isinstance(each, Chunk) for each in found.segments)
+        extent = None if found.times is None else Extent(*found.times)
+        return Summary(found.segments, found.counts, extent, self._header() | ({"chunks": str(chunks)} if chunks else {}), end)
+
+
+def _chunk_index(fields: Fields) -> tuple[Chunk, int, str]:
+    first, last, at, size = fields.u64(), fields.u64(), fields.u64(), fields.u64()
+    channels: dict[int, int | None] = {}
+    for each in fields.inner().while_left():
+        channels[each.u16()] = None
+        each.u64()
+    index_size, compression = fields.u64(), fields.text()
+    return Chunk(at, size, (first, last) if channels or first or last else None, channels or None), index_size, compression
+
+
+def _statistics(fields: Fields) -> tuple[dict[int, int | None], Extent | None]:
+    messages = fields.u64()
+    fields.view(2 + 4 + 4 + 4 + 4)
+    start_ns, end_ns = fields.u64(), fields.u64()
+    extent = Extent(start_ns, end_ns) if messages else None
+    return {each.u16(): each.u64() for each in fields.inner().while_left()}, extent

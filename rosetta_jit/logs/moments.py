@@ -1,0 +1,59 @@
+"""Moments of logs: nanoseconds since 1970, and what a person writes for them."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Moment: TypeAlias = int | datetime | np.datetime64
+else:
+    Moment = object
+
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+
+def nanoseconds(moment: Moment | None) -> int | None:
+    """Nanoseconds since 1970. A `datetime` without a zone is in UTC.
+
+    Raises
+    ------
+    TypeError
+        It is a float, which has no room for nanoseconds, or nothing of time.
+    """
+    match moment:
+        case None:
+            return None
+        case np.datetime64():
+            return int(moment.astype("datetime64[ns]").astype(np.int64))
+        case datetime():
+            since = (moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)) - _EPOCH
+            return (since // timedelta(microseconds=1)) * 1000
+        case _:
+            return _integer(moment)
+
+
+def _integer(moment: object) -> int:
+    if isinstance(moment, int | np.integer):
+        return int(cast("int", moment))
+    raise TypeError(f"a moment is an int of nanoseconds, a datetime or a numpy.datetime64, not {type(moment).__name__}")
+
+
+def shown(time_ns: int) -> str:
+    """A moment as ISO 8601 with nanoseconds."""
+    return f"{np.datetime64(time_ns, 'ns')}Z"
+
+
+def moment_of(text: str) -> int:
+    """A moment as a person writes it: seconds since 1970, or ISO 8601; ValueError if it is neither.
+
+    Seconds are read as digits, not as a float, which has no room for nanoseconds.
+    """
+    seconds, _, fraction = text.partition(".")
+    if seconds.isdigit() and (fraction.isdigit() or not fraction):
+        return int(seconds) * 10**9 + int(fraction[:9].ljust(9, "0"))
+    return nanoseconds(datetime.fromisoformat(text)) or 0

@@ -1,0 +1,324 @@
+"""Logs of records, of which some are chunks of compressed records: what MCAP and ROS 1's bags have in common.
+
+    log     = record*
+    record  = message | definition | chunk | index | other
+    chunk   = record*, compressed
+
+An index at the end says where the chunks are. Whatever it does not cover is read record by record; so is a log that has none, because its
+writer was killed, or one whose index lies.
+"""
+
+from __future__ import annotations
+
+import zlib
+from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.logs.base import Block, Wanted
+from rosetta_jit.logs.compression import Scratch, decompressed
+from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.walking import Why, walk
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.storage import Storage
+    from rosetta_jit.logs.walking import Rows, Stop
+
+WINDOW = 4 << 20
+"""Bytes that are read at once where records are not in chunks."""
+
+PEEK = 4096
+"""Bytes from which it is told what a record is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Where a chunk is, and what is known of it before it is read.
+
+    Attributes
+    ----------
+    times
+        Of its first and its last message.
+    counts
+        How many messages of which channel it has; None where that is not known, and the count where the channel alone is.
+    """
+
+    at: int
+    size: int
+    times: tuple[int, int] | None = None
+    counts: Mapping[int, int | None] | None = None
+
+    def has(self, wanted: Wanted) -> bool:
+        """Whether it may have messages that are wanted."""
+        if self.times is not None and not wanted.overlaps(*self.times):
+            return False
+        return wanted.connections is None or not self.counts or not wanted.connections.isdisjoint(self.counts)
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A stretch of records that no index covers."""
+
+    at: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """What a chunk says of its content. A checksum of None is not checked."""
+
+    compression: str
+    size: int
+    body: memoryview
+    crc: int | None = None
+
+
+Kind: TypeAlias = Literal["message", "definition", "chunk", "index", "other", "end", "damaged"]
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """What a record is, and its size; nothing is known of a damaged one."""
+
+    kind: Kind
+    size: int = 0
+    times: tuple[int, int] | None = None
+
+
+class Grammar(Protocol):
+    """What the formats differ in."""
+
+    @property
+    def walk(self) -> Literal["mcap", "bag"]: ...
+
+    def head(self, peek: bytes) -> Head:
+        """What the record is that begins so; there are at least nine bytes."""
+        ...
+
+    def define(self, record: bytes) -> None:
+        """Learn from a definition. ValueError on a damaged one."""
+        ...
+
+    def counted(self, record: bytes) -> tuple[int, int]:
+        """Channel and number of messages that a record of an index tells of the chunk before it. ValueError on a damaged one."""
+        ...
+
+    def packed(self, record: bytes) -> Packed:
+        """The content of a chunk, which may be cut short. ValueError if not even its head is whole."""
+        ...
+
+    def knows(self, channel: int) -> bool:
+        """Whether a channel is defined."""
+        ...
+
+
+class Records:
+    """Reads the records of one log."""
+
+    def __init__(self, storage: Storage, grammar: Grammar, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+        self._storage, self._grammar, self._tell, self._check = storage, grammar, tell, check
+        self._scratch = Scratch()
+
+    def blocks(self, segments: Sequence[Chunk | Region], wanted: Wanted, end: int) -> Iterator[Block]:
+        """The messages of segments, which lie in order; the log's records end at ``end``."""
+        done = segments[0].at if segments else 0
+        for segment in segments:
+            match segment:
+                case Region(at, stop):
+                    yield from self._region(at, stop, wanted)
+                    done = stop
+                case Chunk(at, size):
+                    if segment.has(wanted):
+                        record = self._storage.read(at, size)
+                        head = self._grammar.head(record[:PEEK]) if len(record) > 9 else Head("damaged")
+                        if head.kind != "chunk" or head.size > size:
+                            self._tell(words.index_lies(self._storage.name, at))
+                            yield from self._region(done, end, wanted)
+                            return
+                        yield from self._content(record, at)
+                        if head.size < size:
+                            yield from self._region(at + head.size, at + size, wanted)
+                    done = at + size
+
+    def _region(self, at: int, end: int, wanted: Wanted) -> Iterator[Block]:
+        for item in self.items(at, end):
+            match item:
+                case Block():
+                    yield item
+                case Chunk():
+                    if item.has(wanted):
+                        yield from self._content(self._storage.read(item.at, item.size), item.at)
+
+    def items(self, at: int, end: int) -> Iterator[Chunk | Block]:
+        """Go from record to record: the chunks, and the messages outside of chunks. Definitions are learned on the way."""
+        while at < end:
+            peek = self._storage.read(at, min(PEEK, end - at))
+            head = self._grammar.head(peek) if len(peek) >= 9 else Head("damaged")
+            left = end - at
+            is_cut = len(peek) < 9 or head.size > left
+            if head.kind == "damaged" or (is_cut and head.kind != "chunk"):
+                self._tell((words.log_cut if is_cut else words.damaged)(self._storage.name, at))
+                return
+            match head.kind:
+                case "chunk":
+                    if head.size > left:
+                        self._tell(words.log_cut(self._storage.name, at))
+                    chunk, at = self._described(Chunk(at, min(head.size, left), head.times), end)
+                    yield chunk
+                case "message":
+                    at = yield from self._messages(at, end)
+                case "definition":
+                    self._define(self._storage.read(at, head.size), at)
+                    at += head.size
+                case "end":
+                    return
+                case _:
+                    at += head.size
+
+    def _described(self, chunk: Chunk, end: int) -> tuple[Chunk, int]:
+        """A chunk with what the index records behind it tell, and where those end."""
+        at, counts = chunk.at + chunk.size, dict[int, int | None]()
+        while at < end and len(peek := self._storage.read(at, min(PEEK, end - at))) >= 9:
+            head = self._grammar.head(peek)
+            if head.kind != "index" or head.size > end - at:
+                break
+            try:
+                channel, count = self._grammar.counted(self._storage.read(at, head.size))
+            except ValueError:
+                self._tell(words.damaged(self._storage.name, at))
+                break
+            counts[channel] = count
+            at += head.size
+        return Chunk(chunk.at, chunk.size, chunk.times, counts or None), at
+
+    def learn(self, chunk: Chunk) -> dict[int, int | None]:
+        """How many messages of which channel a chunk has: it is decompressed where that, or the channel itself, is not known."""
+        if chunk.counts is not None and all(map(self._grammar.knows, chunk.counts)):
+            return dict(chunk.counts)
+        counts: dict[int, int | None] = {}
+        for block in self._content(self._storage.read(chunk.at, chunk.size), chunk.at):
+            add_counts(counts, block.rows)
+        return counts
+
+    def _content(self, record: bytes, at: int) -> Iterator[Block]:
+        """The messages of a chunk."""
+        try:
+            packed = self._grammar.packed(record)
+        except ValueError as error:
+            self._tell(words.chunk_damaged(self._storage.name, at, str(error)))
+            return
+        data, wrong = decompressed(self._storage.name, packed.compression, packed.body, packed.size, self._scratch)
+        if not wrong and self._check and packed.crc is not None and zlib.crc32(data.data) != packed.crc:
+            self._tell(words.checksum(self._storage.name, at))
+            return
+        if wrong:
+            self._tell(words.chunk_damaged(self._storage.name, at, wrong))
+        place = 0
+        while place < data.size:
+            rows, stop = walk(self._grammar.walk, data, place)
+            if len(rows):
+                yield Block(data, rows)
+            place = self._inside(data, stop, at, told=bool(wrong))
+
+    def _inside(self, data: NDArray[np.uint8], stop: Stop, at: int, *, told: bool) -> int:
+        """Where to go on in a chunk: behind the definition that stopped the walk, or at the end."""
+        if stop.why in (Why.END, Why.ROOM):
+            return stop.at
+        peek = data[stop.at : stop.at + PEEK].tobytes()
+        head = self._grammar.head(peek) if len(peek) >= 9 and stop.why is Why.OTHER else Head("damaged")
+        if head.kind == "damaged" or head.size > data.size - stop.at:
+            if not told:
+                self._tell(words.chunk_damaged(self._storage.name, at, f"its records break off at byte {stop.at} of {data.size}"))
+            return data.size
+        if head.kind == "definition":
+            self._define(data[stop.at : stop.at + head.size].tobytes(), at)
+        return stop.at + head.size
+
+    def _messages(self, at: int, end: int) -> Generator[Block, None, int]:
+        """The messages from a place on, as far as they lie together, window by window; the place behind them."""
+        needed = 0
+        while at < end:
+            data = np.frombuffer(self._storage.read(at, min(max(WINDOW, needed), end - at)), np.uint8)
+            rows, stop = walk(self._grammar.walk, data, 0)
+            if len(rows):
+                yield Block(data, rows)
+            at += stop.at
+            if stop.why is Why.OTHER:
+                return at
+            if stop.why is Why.CUT and stop.at == 0:
+                needed = 2 * max(WINDOW, needed)
+                if data.size >= min(end - at, MAX_RECORD_BYTES):
+                    self._tell(words.log_cut(self._storage.name, at))
+                    return end
+            elif stop.why is Why.BROKEN:
+                self._tell(words.damaged(self._storage.name, at))
+                return end
+        return at
+
+    def _define(self, record: bytes, at: int) -> None:
+        try:
+            self._grammar.define(record)
+        except ValueError as error:
+            self._tell(words.bad_definition(self._storage.name, at, str(error)))
+
+
+def add_counts(counts: dict[int, int | None], rows: Rows) -> None:
+    """Count messages by channel."""
+    channels, numbers = np.unique(rows.channels, return_counts=True)
+    for channel, number in zip(channels.tolist(), numbers.tolist(), strict=True):
+        counts[channel] = (counts.get(channel) or 0) + number
+
+
+def segments_of(chunks: Iterable[Chunk], start: int, end: int, behind: Mapping[int, int]) -> list[Chunk | Region] | None:
+    """Chunks of an index, and the regions between them; ``behind`` says how much of an index follows a chunk. None if they overlap."""
+    found: list[Chunk | Region] = []
+    at = start
+    for chunk in sorted(chunks, key=lambda each: each.at):
+        if chunk.at < at or chunk.size < 9 or chunk.at + chunk.size > end:
+            return None
+        if chunk.at > at:
+            found.append(Region(at, chunk.at))
+        found.append(chunk)
+        at = min(chunk.at + chunk.size + behind.get(chunk.at, 0), end)
+    if at < end:
+        found.append(Region(at, end))
+    return found
+
+
+class Scanned:
+    """What a log without an index turns out to have."""
+
+    def __init__(self, records: Records, start: int, end: int) -> None:
+        self.segments: list[Chunk | Region] = []
+        self.counts: dict[int, int | None] = {}
+        self.times: tuple[int, int] | None = None
+        loose = start
+        for item in records.items(start, end):
+            match item:
+                case Block():
+                    add_counts(self.counts, item.rows)
+                    self._time(int(item.rows.log_ns.min()), int(item.rows.log_ns.max()))
+                case Chunk():
+                    self._chunk(item, records)
+                    if item.at > loose:
+                        self.segments.append(Region(loose, item.at))
+                    self.segments.append(item)
+                    loose = item.at + item.size
+        if loose < end:
+            self.segments.append(Region(loose, end))
+
+    def _chunk(self, chunk: Chunk, records: Records) -> None:
+        for channel, count in records.learn(chunk).items():
+            self.counts[channel] = (self.counts.get(channel) or 0) + (count or 0)
+        if chunk.times is not None:
+            self._time(*chunk.times)
+
+    def _time(self, first: int, last: int) -> None:
+        self.times = (first, last) if self.times is None else (min(first, self.times[0]), max(last, self.times[1]))

@@ -1,0 +1,92 @@
+"""The bytes of a log, wherever they lie: a file, standard input, or what `fsspec` reaches."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from importlib import import_module
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
+from weakref import finalize
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+MAX_RECORD_BYTES = 1 << 30
+"""A record, and what a chunk may hold when it is decompressed: more is damage, or an attack."""
+
+
+class Storage:
+    """A file that can be read at any place. The size is that when it was opened: a log that is being written is read so far."""
+
+    def __init__(self, name: str, file: BinaryIO) -> None:
+        self.name = name
+        self._file = file
+        self._lock = Lock()
+        self._close = finalize(self, file.close)  # who opens a log for one expression closes nothing
+        self.size = file.seek(0, os.SEEK_END)
+
+    @property
+    def path(self) -> Path:
+        """The path of a local file or folder."""
+        return Path(self.name)
+
+    def read(self, at: int, size: int) -> bytes:
+        """So many bytes from a place on; fewer where the file ends."""
+        size = max(0, min(size, self.size - at))
+        with self._lock:
+            self._file.seek(at)
+            return self._file.read(size)
+
+    def array(self, at: int, size: int) -> NDArray[np.uint8]:
+        """The same as an array."""
+        return np.frombuffer(self.read(at, size), np.uint8)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._close()
+
+
+def open_storage(name: str) -> Storage:
+    """Open a file, a URL that `fsspec` knows, or standard input (``-``).
+
+    Raises
+    ------
+    LogError
+        It cannot be read.
+    """
+    try:
+        return Storage(name, _file(name))
+    except (OSError, ValueError) as error:
+        why = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise LogError((words.unreadable(name, why),)) from error
+
+
+def _file(name: str) -> BinaryIO:
+    if name == "-":
+        return _spooled(sys.stdin.buffer)
+    if "://" not in name:
+        path = Path(name)
+        if path.exists() and not path.is_file():
+            raise OSError(0, "it is no file that ends")
+        return path.open("rb")
+    try:
+        fsspec: Any = import_module("fsspec")
+    except ImportError:
+        raise LogError((words.needs(name, "fsspec", "logs"),)) from None
+    return cast("BinaryIO", fsspec.open(name, "rb").open())
+
+
+def _spooled(stream: BinaryIO) -> BinaryIO:
+    """A stream as a file, since logs are read from their end."""
+    file = tempfile.TemporaryFile()  # noqa: SIM115 - the storage closes it
+    shutil.copyfileobj(stream, file)
+    return cast("BinaryIO", file)

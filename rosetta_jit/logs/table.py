@@ -1,0 +1,13 @@
+"""The formats of logs that come with rosetta_jit."""
+
+from __future__ import annotations
+
+from rosetta_jit.logs.base import Format
+
+_HERE = "rosetta_jit.logs"
+
+FORMATS = (
+    Format("mcap", (".mcap",), f"{_HERE}.mcap.reader:McapReader", b"\x89MCAP0\r\n"),
+    Format("bag", (".bag", ".bag.active"), f"{_HERE}.bag.reader:BagReader", b"#ROSBAG V"),
+    Format("lcm", (".lcmlog", ".lcm"), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
+)

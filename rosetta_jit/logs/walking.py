@@ -1,0 +1,140 @@
+"""Walks over the records of a log in compiled code: a stretch of bytes becomes a row a message, in one call without the interpreter lock.
+
+A walk stops at the end, where its room is full, or at a record that it does not know: a definition, a chunk, damage. The reader deals with
+that record and walks on behind it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from enum import IntEnum
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rosetta_jit.runtime.cache.kernels import Cache
+from rosetta_jit.runtime.cache.names import entry_name
+from rosetta_jit.runtime.code import native
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.code.native import Library
+
+WALKS = ("mcap", "lcm", "bag")
+SYMBOLS = (*WALKS, "gather")
+ROOM = 65_536
+"""Messages a walk finds in one call."""
+
+_WALK = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
+_GATHER = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
+
+
+class Why(IntEnum):
+    """Why a walk stopped."""
+
+    END = 0
+    ROOM = 1
+    CUT = 2
+    OTHER = 3
+    BROKEN = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rows:
+    """The messages in a stretch of bytes, in the order in which they lie there.
+
+    Attributes
+    ----------
+    channels, log_ns, publish_ns, begins, ends : ndarray of int64, shape (n,)
+        Of each message: the number of its channel, its times since 1970, and where it lies.
+    """
+
+    channels: NDArray[np.int64]
+    log_ns: NDArray[np.int64]
+    publish_ns: NDArray[np.int64]
+    begins: NDArray[np.int64]
+    ends: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, numbers: NDArray[np.int64]) -> Rows:
+        """From an array of shape (5, n)."""
+        return cls(numbers[0], numbers[1], numbers[2], numbers[3], numbers[4])
+
+    def __len__(self) -> int:
+        return len(self.channels)
+
+    def only(self, chosen: NDArray[Any] | slice) -> Rows:
+        """Some of them, by a mask or by numbers."""
+        return Rows(self.channels[chosen], self.log_ns[chosen], self.publish_ns[chosen], self.begins[chosen], self.ends[chosen])
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Where a walk stopped, why, and the size that the record there says it has, if it was reached."""
+
+    at: int
+    why: Why
+    size: int
+
+
+def walk(records: Literal["mcap", "lcm", "bag"], data: NDArray[np.uint8], at: int, *, seed: int = 0) -> tuple[Rows, Stop]:
+    """The messages from a place on."""
+    assert 0 <= at <= data.size
+    state = np.array([at, 0, 0, seed], np.uint64)
+    room = min(ROOM, (data.size - at) // _LEAST[records] + 1)
+    rows = np.empty((5, room), np.int64)
+    count = _function(records)(data.ctypes.data, data.size, state.ctypes.data, rows.ctypes.data, room)
+    return Rows.of(rows[:, :count]), Stop(int(state[0]), Why(int(state[1])), int(state[2]))
+
+
+_LEAST = {"mcap": 31, "lcm": 28, "bag": 8}
+"""Bytes that a message takes at least."""
+
+
+def gathered(data: NDArray[np.uint8], begins: NDArray[np.int64], ends: NDArray[np.int64]) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """Messages of a stretch one behind the other, and their offsets, as `Decoder.many` takes them; not copied where they lie so."""
+    if not len(begins):
+        return data[:0], np.zeros(1, np.int64)
+    if bool((begins[1:] == ends[:-1]).all()):
+        return data, np.append(begins, ends[-1])
+    target, offsets = np.empty(int((ends - begins).sum()), np.uint8), np.zeros(len(begins) + 1, np.int64)
+    gather_into(data, begins, ends, target, offsets)
+    return target, offsets
+
+
+def gather_into(
+    data: NDArray[np.uint8], begins: NDArray[np.int64], ends: NDArray[np.int64], target: NDArray[np.uint8], offsets: NDArray[np.int64]
+) -> None:
+    """Put messages of a stretch one behind the other, from byte ``offsets[0]`` of the target on; the other offsets are written."""
+    begins, ends = np.ascontiguousarray(begins), np.ascontiguousarray(ends)
+    assert len(begins) == len(ends) == len(offsets) - 1 > 0
+    assert int(begins.min()) >= 0
+    assert int(ends.max()) <= data.size
+    assert bool((begins <= ends).all())
+    assert 0 <= int(offsets[0]) <= target.size - int((ends - begins).sum())
+    function = _GATHER(_library()["gather"])
+    function(data.ctypes.data, begins.ctypes.data, ends.ctypes.data, len(begins), target.ctypes.data, offsets.ctypes.data)
+
+
+@cache
+def _function(name: str) -> Any:
+    return _WALK(_library()[name])
+
+
+@cache
+def _library() -> Library:
+    """The code, from the kernel cache or compiled."""
+    text = Path(__file__).with_name("walk.ll").read_text("utf-8")
+    kept, name = Cache.default(), entry_name(text)
+    entry = kept.get(name)
+    if entry is not None:
+        return native.load(entry.image, SYMBOLS)
+    from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
+
+    image = assembled(text, SYMBOLS)
+    kept.put(name, {"entry": "walks"}, image)
+    return native.load(image, SYMBOLS)

@@ -1,0 +1,132 @@
+"""Logs that the real libraries write are read: their topics, messages, times and columns."""
+
+from __future__ import annotations
+
+import io
+import sys
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.errors import DecodeError, LogError
+
+from .made import BAGS, COMPRESSIONS, LCM_TYPES, START, STEP, expected, time_of, values, write_bag, write_lcm, write_mcap
+
+COUNT = 200
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("logs")
+
+
+@pytest.mark.parametrize("compression", COMPRESSIONS)
+@pytest.mark.parametrize("how", [{}, {"chunked": False}, {"index": False}], ids=str)
+def test_mcap(folder, compression, how):
+    log = rj.open(write_mcap(folder / "a.mcap", COUNT, compression, **how))
+    assert values(log.messages()) == list(expected(COUNT))
+    assert [(each.topic, each.type, each.count) for each in log.channels] == [
+        ("/a", "t/msg/Point", COUNT),
+        ("/b", "t/msg/Text", COUNT // 5),
+    ]
+    assert log["/a"]["publish_time"].astype(np.int64).tolist() == [time_of(number) - 7 for number in range(COUNT)]
+
+
+def test_an_mcap_file_whose_writer_was_stopped(folder):
+    path, found = write_mcap(folder / "stopped.mcap", COUNT, finish=False), []
+    log = rj.open(path, on_problem=found.append)
+    there = list(expected(COUNT))[: len(list(log.messages(raw=True)))]
+    assert len(there) > COUNT  # all but the chunk that the writer had not written yet
+    assert values(log.messages()) == there
+    assert sum(each.count for each in log.channels) == len(there)
+    assert [each.code for each in found] == ["log-unfinished"]
+
+
+@pytest.mark.parametrize("compression", BAGS)
+def test_bag(folder, compression):
+    log = rj.open(write_bag(folder / f"{compression}.bag", COUNT, compression))
+    assert values(log.messages()) == list(expected(COUNT))
+    assert log.facts["compression"] == compression
+    assert (log.start, log.end) == (time_of(0), time_of(COUNT - 1))
+    assert log["/a"].count == COUNT
+
+
+def test_lcm(folder):
+    log = rj.open(write_lcm(folder / "a.log", COUNT))
+    with pytest.raises(LogError, match=r"does not say of which type.*fingerprint 0x"):
+        log["/a"].to_arrow()
+    assert log.channel("/a", "t.point_t", schema=LCM_TYPES)["x"].tolist() == [number / 4 for number in range(COUNT)]
+    assert [(each.time, each.topic) for each in log.messages(raw=True)] == [
+        (time // 1000 * 1000, topic) for time, topic, _ in expected(COUNT)
+    ]
+
+
+@pytest.fixture(scope="module")
+def log(folder):
+    return rj.open(write_mcap(folder / "whole.mcap", COUNT))
+
+
+def test_columns_and_tables(log):
+    points = log["/a"]
+    table = points.to_arrow()
+    assert table.column_names == ["log_time", "publish_time", "x", "name"]
+    assert table["name"].to_pylist() == points.to_polars(["name"])["name"].to_list() == [f"p{number}" for number in range(COUNT)]
+    frame = points.to_pandas(["x"], clocks=["log_time"])
+    assert frame["log_time"].astype("int64").tolist() == [time_of(number) for number in range(COUNT)]
+    assert log["/b"].to_arrow(start=time_of(COUNT)).num_rows == 0
+    assert log["/b"].to_arrow(start=time_of(COUNT)).schema == log["/b"].to_arrow().schema
+
+
+@pytest.mark.parametrize("kind", [int, "datetime", np.datetime64])
+def test_a_stretch_of_time(log, kind):
+    def moment(number):
+        if kind is int:
+            return time_of(number)
+        return np.datetime64(time_of(number), "ns") if kind is np.datetime64 else datetime.fromtimestamp(time_of(number) / 1e9, UTC)
+
+    found = [each.time for each in log.messages(["/a"], start=moment(100), end=moment(125))]
+    assert found == [time_of(number) for number in range(100, 125)]
+    assert log["/a"].to_arrow(start=moment(100), end=moment(125)).num_rows == 25
+    with pytest.raises(TypeError, match="not float"):
+        next(log.messages(start=1.5))
+
+
+def test_only_wanted_chunks_are_read(log, monkeypatch):
+    sizes = []
+    read = log._storage.read
+    monkeypatch.setattr(log._storage, "read", lambda at, size: sizes.append(size) or read(at, size))
+    assert len(list(log.messages(["/a"], start=START + 50 * STEP, end=START + 51 * STEP))) == 1
+    assert sum(sizes) < log._storage.size / 4
+
+
+def test_what_there_is_not(log):
+    with pytest.raises(LogError, match="did you mean `/a`"):
+        log["a"]
+    assert "/a" in log
+    assert list(log) == ["/a", "/b"]
+    assert "t/msg/Point  200" in repr(log)
+
+
+def test_standard_input(log, monkeypatch):
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(log.path.read_bytes())))
+    assert len(rj.open("-", format="mcap")["/a"]) == COUNT
+
+
+def test_a_message_that_its_type_does_not_allow(folder):
+    from mcap.writer import Writer
+
+    path = folder / "bad.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channel = writer.register_channel("/x", "cdr", writer.register_schema("t/msg/X", "ros2msg", b"int32 x"))
+        for number, data in enumerate([b"\0\1\0\0\1\0\0\0", b"\0\1\0\0\1", b"\0\1\0\0\3\0\0\0"]):
+            writer.add_message(channel, log_time=number, publish_time=number, data=data)
+        writer.finish()
+    log = rj.open(path)
+    with pytest.raises(DecodeError, match=r"`\[1\]"):
+        log["/x"].to_arrow()
+    assert log["/x"].to_arrow(on_error="skip")["x"].to_pylist() == [1, 3]
+    assert [each.time for each in log.messages(on_error="skip")] == [0, 2]
