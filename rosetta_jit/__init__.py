@@ -118,7 +118,7 @@ def open(  # noqa: A001 - a log is opened as a file is
     *,
     format: str | None = None,  # noqa: A002 - it is what the format is called
     check: bool = True,
-    on_problem: Callable[[Diagnostic], None] | None = None,
+    on_problem: Callable[[Diagnostic], object] | None = None,
     **options: Unpack[Options],
 ) -> Log:
     """Open a log, whatever its format. Its index is read, and nothing more; where it has none, it is gone through.

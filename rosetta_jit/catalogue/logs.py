@@ -162,3 +162,24 @@ def no_type(name: str, topic: str, details: str) -> Diagnostic:
 def unknown_encoding(name: str, topic: str, encoding: str) -> Diagnostic:
     """Messages in an encoding that no framework has."""
     return Diagnostic("error", "log-encoding", f"{name}: the messages of `{topic}` are encoded as `{encoding}`, which no framework reads")
+
+
+def no_writer(name: str, suffixes: Iterable[str]) -> Diagnostic:
+    """A file whose name tells no format that is written."""
+    return Diagnostic("error", "log-format", f"{name}: nothing writes such files", help=f"names end with {', '.join(suffixes)}")
+
+
+def not_carried(name: str, topic: str, encoding: str, carried: str) -> Diagnostic:
+    """Messages that a format has no place for."""
+    wrong = f"{name}: the messages of `{topic}` are encoded as `{encoding}`, and such files hold {carried}"
+    return Diagnostic("error", "log-encoding", wrong, help="write .mcap, which holds all")
+
+
+def which_topic(name: str, topics: Iterable[str]) -> Diagnostic:
+    """A log of several topics, of which a command takes one."""
+    return Diagnostic("error", "log-topic", f"{name} has several topics: {', '.join(topics)}", help="name one: --topic")
+
+
+def no_definition(name: str, topic: str, type_: str) -> Diagnostic:
+    """A type of which the log has no definition."""
+    return Diagnostic("warning", "log-definition", f"{name} has no definition of {type_ or 'the type'} of `{topic}`")

@@ -13,13 +13,30 @@ import os
 import sys
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli import cache, check, decode, demo, dump, encode, explain, frameworks, infer, operations, prove, stubs
+from rosetta_jit.cli import (
+    cache,
+    cat,
+    check,
+    convert,
+    decode,
+    demo,
+    doctor,
+    dump,
+    encode,
+    explain,
+    frameworks,
+    infer,
+    info,
+    operations,
+    prove,
+    stubs,
+)
 from rosetta_jit.cli import compile as compile_
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-COMMANDS = (demo, check, explain, operations, prove, compile_, decode, encode, dump, infer, stubs, frameworks, cache)
+COMMANDS = (demo, check, explain, operations, prove, compile_, decode, encode, info, cat, convert, doctor, dump, infer, stubs, frameworks, cache)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -33,6 +33,15 @@ def add_mapping(command: ArgumentParser) -> None:
     )
 
 
+def add_mapping_or_type(command: ArgumentParser) -> None:
+    """The same, or a type whose messages are decoded into its own holder."""
+    command.add_argument(
+        "mapping",
+        metavar="MAPPING|TYPE",
+        help="a mapping, by its path or its name on the search path, or a type (sensor_msgs/Imu)",
+    )
+
+
 def add_mappings(command: ArgumentParser) -> None:
     """The same, several."""
     command.add_argument("mappings", metavar="MAPPING", nargs="+", help="a mapping's path, or its name on the search path")

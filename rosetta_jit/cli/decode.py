@@ -6,9 +6,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.inputs import add_topic, messages_of, program_of
 from rosetta_jit.errors import DecodeError
-from rosetta_jit.recording import read_messages
 
 if TYPE_CHECKING:
     import argparse
@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "decode", "Decode messages and print their values.", run)
-    add_mapping(command)
-    command.add_argument("files", metavar="FILE", nargs="+", help="one message, or a recording (.rec, .rec.xz)")
+    add_mapping_or_type(command)
+    command.add_argument("files", metavar="FILE", nargs="+", help="one message, a recording (.rec, .rec.xz) or a log; - is standard input")
+    add_topic(command)
     add_encoding(command)
     add_parameters(command)
     form = command.add_mutually_exclusive_group()
@@ -33,9 +34,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Messages that cannot be decoded are reported and skipped; then the exit code is 1."""
     import rosetta_jit
 
-    decode = rosetta_jit.Decoder(arguments.mapping, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
+    decode = program_of(rosetta_jit.Decoder, arguments, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
     failures: list[str] = []
-    holders = _holders(decode, cast("list[str]", arguments.files), failures)
+    holders = _holders(decode, cast("list[str]", arguments.files), arguments.topic, failures)
     if arguments.npz:
         from rosetta_jit.cli.columns import write_columns
 
@@ -46,10 +47,10 @@ def run(arguments: argparse.Namespace) -> int:
     return int(bool(failures))
 
 
-def _holders(decode: Callable[[bytes], Holder], files: Sequence[str], failures: list[str]) -> Iterator[Holder]:
+def _holders(decode: Callable[[bytes], Holder], files: Sequence[str], topic: str | None, failures: list[str]) -> Iterator[Holder]:
     """The decoder's own holder, filled anew for each message."""
     for file in files:
-        for index, message in enumerate(read_messages(Path(file))):
+        for index, message in enumerate(messages_of(file, topic)):
             try:
                 yield decode(message.data)
             except DecodeError as error:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.inputs import program_of
 
 if TYPE_CHECKING:
     import argparse
@@ -15,7 +16,7 @@ STAGES = ("model", "codec", "kernel", "python", "llvm", "asm")
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "dump", "Print what a mapping became at one stage of compilation.", run)
-    add_mapping(command)
+    add_mapping_or_type(command)
     command.add_argument("--stage", choices=STAGES, default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
     add_encoding(command)
@@ -27,5 +28,6 @@ def run(arguments: argparse.Namespace) -> int:
     import rosetta_jit
 
     program = rosetta_jit.Encoder if arguments.direction == "encode" else rosetta_jit.Decoder
-    print(program(arguments.mapping, encoding=encoding_of(arguments), parameters=parameters_of(arguments)).stage(arguments.stage))
+    made = program_of(program, arguments, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
+    print(made.stage(arguments.stage))
     return 0

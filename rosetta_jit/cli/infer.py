@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding
-from rosetta_jit.recording import read_messages
+from rosetta_jit.cli.inputs import add_topic, messages_of
 
 if TYPE_CHECKING:
     import argparse
@@ -15,7 +14,8 @@ if TYPE_CHECKING:
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "infer", "Draft a bottle schema from captured messages.", run)
-    command.add_argument("files", metavar="FILE", nargs="+", help="one message, or a recording (.rec, .rec.xz)")
+    command.add_argument("files", metavar="FILE", nargs="+", help="one message, a recording (.rec, .rec.xz) or a log; - is standard input")
+    add_topic(command)
     command.add_argument("--name", default="captured", help="name of the type (default: captured)")
     add_encoding(command, default="yarp")
 
@@ -24,6 +24,6 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the schema."""
     import rosetta_jit
 
-    messages = [message.data for file in cast("list[str]", arguments.files) for message in read_messages(Path(file))]
+    messages = [message.data for file in cast("list[str]", arguments.files) for message in messages_of(file, arguments.topic)]
     print(rosetta_jit.infer(messages, name=arguments.name, encoding=arguments.encoding), end="")
     return 0

@@ -146,7 +146,7 @@ class Format:
     open
         An `Open`, as ``module:name``.
     folder
-        For formats that are folders: a file that such a folder has.
+        For formats that are folders: a pattern of a file that such a folder has.
     """
 
     name: str

@@ -10,12 +10,12 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.moments import nanoseconds
-from rosetta_jit.logs.staging import Staging
+from rosetta_jit.logs.staging import Staged, Staging
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     import pyarrow as pa
     from numpy.typing import NDArray
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.base import Block, Connection
     from rosetta_jit.logs.log import Log
     from rosetta_jit.logs.moments import Moment
-    from rosetta_jit.runtime.arrow.arrays import Octets
-    from rosetta_jit.runtime.arrow.times import Unit
     from rosetta_jit.runtime.batch import Batch
 
 OnError: TypeAlias = Literal["raise", "skip", "mask"]
@@ -42,14 +40,19 @@ class Part:
     ----------
     batch
         Filled again for the next part.
+    log_ns, publish_ns
+        Of the messages in it.
     first
         The number of the first among all messages that are read.
+    staged
+        All messages as bytes, also those that ``batch.errors`` has.
     """
 
     batch: Batch
     log_ns: NDArray[np.int64]
     publish_ns: NDArray[np.int64]
     first: int
+    staged: Staged
 
 
 class Channel:
@@ -113,7 +116,7 @@ class Channel:
         for staged in staging.filled(self._blocks(start, end)):
             batch = _many(decoder, staged, batch, on_error, first)
             kept = batch.kept
-            yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first)
+            yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first, staged)
             first += len(staged.log_ns)
 
     def _blocks(self, start: Moment | None, end: Moment | None) -> Iterator[Block]:
@@ -122,11 +125,7 @@ class Channel:
 
     def __iter__(self) -> Iterator[Any]:
         """The messages, each a holder of its own."""
-        return (each.message for each in self._log.messages([self.topic])) if self._target is None else self._rows()
-
-    def _rows(self) -> Iterator[Any]:
-        for part in self.parts():
-            yield from part.batch[:]
+        return (each.message for each in self._log.messages([self]))
 
     def __len__(self) -> int:
         return self.count if self.count is not None else sum(len(each.rows) for each in self._blocks(None, None))
@@ -153,31 +152,35 @@ class Channel:
             found[-1] = found[-1].copy()
         return np.concatenate(found) if found else np.empty(0)
 
-    def tables(
+    def tables(self, columns: Iterable[str] | None = None, **options: Any) -> Iterator[pa.Table]:
+        """The tables of `to_arrow` one by one, for logs that are larger than the memory; at least one, if only for its schema."""
+        return (table for _, table in self.tables_of_parts(columns, **options))
+
+    def tables_of_parts(
         self,
         columns: Iterable[str] | None = None,
         *,
-        flatten: bool = False,
-        octets: Octets = "string",
-        times: Iterable[str] | Mapping[str, Unit] = (),
-        errors: str | None = None,
         clocks: Iterable[str] = CLOCKS,
         start: Moment | None = None,
         end: Moment | None = None,
         on_error: OnError = "raise",
-    ) -> Iterator[pa.Table]:
-        """The tables of `to_arrow` one by one, for logs that are larger than the memory; at least one, if only for its schema."""
+        **form: Any,
+    ) -> Iterator[tuple[Part, pa.Table]]:
+        """The same with the messages that each table is of."""
         from rosetta_jit.logs.tables import with_clocks
 
         names, chosen, given = None if columns is None else list(columns), tuple(clocks), False
         for part in self.parts(start=start, end=end, on_error=on_error):
-            table = part.batch.to_arrow(names, flatten=flatten, octets=octets, times=times, errors=errors)
-            yield with_clocks(table, chosen, part)
+            yield part, with_clocks(part.batch.to_arrow(names, **form), chosen, part)
             given = True
         if not given:
-            empty = Part(self.decoder.many(b"", np.zeros(1, np.int64)), np.empty(0, np.int64), np.empty(0, np.int64), 0)
-            table = empty.batch.to_arrow(names, flatten=flatten, octets=octets, times=times, errors=errors)
-            yield with_clocks(table, chosen, empty)
+            empty = self._empty()
+            yield empty, with_clocks(empty.batch.to_arrow(names, **form), chosen, empty)
+
+    def _empty(self) -> Part:
+        nothing = np.empty(0, np.int64)
+        staged = Staged(np.empty(0, np.uint8), np.zeros(1, np.int64), nothing, nothing)
+        return Part(self.decoder.many(b"", staged.offsets), nothing, nothing, 0, staged)
 
     def to_arrow(self, columns: Iterable[str] | None = None, **options: Any) -> pa.Table:
         """The messages as a `pyarrow.Table`, a row each.
@@ -227,7 +230,7 @@ class Channel:
         return f"<Channel {self.topic} of {self.type or '?'}{through}, {'?' if self.count is None else self.count} messages>"
 
 
-def _many(decoder: Decoder, staged: Any, batch: Batch | None, on_error: OnError, first: int) -> Batch:
+def _many(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnError, first: int) -> Batch:
     """Decode what is staged; the path of an error begins with the number of the message among all."""
     try:
         return decoder.many(staged.data.data, staged.offsets, into=batch, on_error=on_error)

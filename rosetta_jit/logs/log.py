@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.api.options import Options
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.base import Block, Connection, Format, Reader
+    from rosetta_jit.logs.storage import Storage
 
 MAGIC_BYTES = 64
 
@@ -51,12 +52,14 @@ class Log:
         What has been noticed to be wrong with the file so far.
     """
 
-    def __init__(self, name: str, form: Format, on_problem: Callable[[Diagnostic], None], *, check: bool, options: Options) -> None:
-        self.name, self.format = name, form.name
+    def __init__(
+        self, storage: Storage, form: Format, on_problem: Callable[[Diagnostic], object], *, check: bool, options: Options
+    ) -> None:
+        self.name, self.format = storage.name, form.name
         self.problems: list[Diagnostic] = []
         self._on_problem, self._options = on_problem, options
-        self._storage = open_storage(name)
-        self._reader: Reader = form.opener()(self._storage, self._tell, check=check)
+        self._storage = storage
+        self._reader: Reader = form.opener()(storage, self._tell, check=check)
 
     def _tell(self, problem: Diagnostic) -> None:
         if problem not in self.problems:
@@ -157,7 +160,7 @@ class Log:
 
     def messages(
         self,
-        topics: Iterable[str] | None = None,
+        topics: Iterable[str | Channel] | None = None,
         *,
         start: Moment | None = None,
         end: Moment | None = None,
@@ -169,7 +172,7 @@ class Log:
         Parameters
         ----------
         topics
-            Those to read; all by default.
+            Those to read, or channels of this log, which may be through mappings; all by default.
         start, end
             From when on, and until before when: nanoseconds since 1970, a `datetime` or a `numpy.datetime64`.
         raw
@@ -184,7 +187,7 @@ class Log:
         LogError
             A topic is not there, or its type is not known.
         """
-        channels = [self[each] for each in topics] if topics is not None else list(self.channels)
+        channels = [self[each] if isinstance(each, str) else each for each in topics] if topics is not None else list(self.channels)
         by_number = {each.number: channel for channel in channels for each in channel.connections}
         numbers = frozenset(by_number) if topics is not None else None
         for block in self.blocks(Wanted(numbers, nanoseconds(start), nanoseconds(end))):
@@ -250,44 +253,42 @@ def open_log(
     *,
     format: str | None = None,  # noqa: A002 - what else should it be called
     check: bool = True,
-    on_problem: Callable[[Diagnostic], None] | None = None,
+    on_problem: Callable[[Diagnostic], object] | None = None,
     **options: Unpack[Options],
 ) -> Log:
     """Open a log: see `rosetta_jit.open`."""
     import os
 
-    name = os.fspath(path)
-    form = _format(name, format)
-    return Log(name, form, on_problem or _warn, check=check, options=options)
+    storage = open_storage(os.fspath(path))
+    try:
+        return Log(storage, format_of(storage, format), on_problem or _warn, check=check, options=options)
+    except BaseException:
+        storage.close()
+        raise
 
 
-def _format(name: str, wanted: str | None) -> Format:
-    """The format of a file: the one that is named, else by how it begins, else by its name."""
-    known = formats()
+def format_of(storage: Storage, wanted: str | None = None) -> Format:
+    """The format of a log: the one that is named, else by how it begins, else by its name.
+
+    Raises
+    ------
+    LogError
+        It is none that is known.
+    """
+    known, name = formats(), storage.name
     if wanted is not None:
         if wanted not in known:
             raise LogError((words.unknown_format(f"`{wanted}`", known),))
         return known[wanted]
-    path = Path(name)
-    if "://" not in name and path.is_dir():
-        found = [each for each in known.values() if each.folder and (path / each.folder).exists()]
+    if storage.is_folder:
+        found = [each for each in known.values() if each.folder and any(storage.path.glob(each.folder))]
     else:
-        begin = _beginning(name)
+        begin = storage.read(0, MAGIC_BYTES)
         found = [each for each in known.values() if each.magic and begin.startswith(each.magic)]
         found += [each for each in known.values() if name.endswith(each.suffixes) and not each.folder]
     if not found:
         raise LogError((words.unknown_format(name, known),))
     return found[0]
-
-
-def _beginning(name: str) -> bytes:
-    if name == "-":
-        return b""
-    storage = open_storage(name)
-    try:
-        return storage.read(0, MAGIC_BYTES)
-    finally:
-        storage.close()
 
 
 def _warn(problem: Diagnostic) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 import sys
@@ -25,10 +26,13 @@ MAX_RECORD_BYTES = 1 << 30
 
 
 class Storage:
-    """A file that can be read at any place. The size is that when it was opened: a log that is being written is read so far."""
+    """A file that can be read at any place. The size is that when it was opened: a log that is being written is read so far.
 
-    def __init__(self, name: str, file: BinaryIO) -> None:
-        self.name = name
+    Of a log that is a folder, which ``is_folder`` says, it is an empty file: its reader opens the files in it.
+    """
+
+    def __init__(self, name: str, file: BinaryIO, *, is_folder: bool = False) -> None:
+        self.name, self.is_folder = name, is_folder
         self._file = file
         self._lock = Lock()
         self._close = finalize(self, file.close)  # who opens a log for one expression closes nothing
@@ -64,6 +68,8 @@ def open_storage(name: str) -> Storage:
         It cannot be read.
     """
     try:
+        if "://" not in name and Path(name).is_dir():
+            return Storage(name, io.BytesIO(), is_folder=True)
         return Storage(name, _file(name))
     except (OSError, ValueError) as error:
         why = (error.strerror if isinstance(error, OSError) else None) or str(error)

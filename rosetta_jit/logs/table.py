@@ -9,5 +9,6 @@ _HERE = "rosetta_jit.logs"
 FORMATS = (
     Format("mcap", (".mcap",), f"{_HERE}.mcap.reader:McapReader", b"\x89MCAP0\r\n"),
     Format("bag", (".bag", ".bag.active"), f"{_HERE}.bag.reader:BagReader", b"#ROSBAG V"),
+    Format("recording", (".rec", ".rec.xz"), f"{_HERE}.recordings.reader:RecordingReader"),
     Format("lcm", (".lcmlog", ".lcm"), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
 )

@@ -1,0 +1,112 @@
+"""What the commands on logs share: which log, which topics, which stretch of time, and how far the work is."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentTypeError
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, cast
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+    from collections.abc import Callable, Generator
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.log import Log
+
+
+def add_log(command: ArgumentParser) -> None:
+    """The log, and how it is read."""
+    command.add_argument("log", metavar="LOG", help="a file or folder, a URL that fsspec knows, or - for standard input")
+    command.add_argument("--format", metavar="NAME", help="its format, where neither its beginning nor its name tells: mcap, bag, lcm, …")
+    command.add_argument("--no-check", action="store_true", help="do not compare checksums")
+
+
+def add_selection(command: ArgumentParser) -> None:
+    """Which of its messages."""
+    command.add_argument("--topic", metavar="TOPIC", action="append", default=[], help="a topic; several by giving it again (default: all)")
+    command.add_argument("--start", metavar="TIME", type=_moment, help="from when on: seconds since 1970, or 2024-05-01T12:00:00")
+    command.add_argument("--end", metavar="TIME", type=_moment, help="until before when")
+
+
+def add_decoding(command: ArgumentParser) -> None:
+    """What decodes them, where the log does not tell."""
+    decoding = command.add_mutually_exclusive_group()
+    decoding.add_argument("--mapping", metavar="MAPPING", help="decode through a mapping: its path, or its name on the search path")
+    decoding.add_argument("--type", metavar="TYPE", help="the type of the messages, where the log does not tell it or has several")
+    command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: what the log says)")
+    add_search_path(command)
+
+
+def add_search_path(command: ArgumentParser) -> None:
+    """Folders of definitions."""
+    command.add_argument(
+        "--search-path", metavar="FOLDER", action="append", default=[], help="where definitions are found that the log lacks"
+    )
+
+
+def _moment(text: str) -> int:
+    from rosetta_jit.logs.moments import moment_of
+
+    try:
+        return moment_of(text)
+    except ValueError as error:
+        raise ArgumentTypeError(f"{text!r} is neither seconds since 1970 nor ISO 8601") from error
+
+
+def log_of(arguments: Namespace, on_problem: Callable[[Diagnostic], object] | None = None) -> Log:
+    """The log that the user names. What is wrong with it goes to stderr."""
+    import rosetta_jit
+
+    options: dict[str, Any] = {}
+    if getattr(arguments, "encoding", None):
+        options["encoding"] = arguments.encoding
+    if getattr(arguments, "search_path", None):
+        options["search_path"] = arguments.search_path
+    return rosetta_jit.open(arguments.log, format=arguments.format, check=not arguments.no_check, on_problem=on_problem or show, **options)
+
+
+def show(problem: Diagnostic) -> None:
+    """Say what is wrong with a log."""
+    from rosetta_jit.diagnostics import render
+
+    print(render(problem), file=sys.stderr)
+
+
+def topics_of(arguments: Namespace) -> list[str] | None:
+    """The topics that the user names; None for all."""
+    return cast("list[str]", arguments.topic) or None
+
+
+def target_of(arguments: Namespace) -> str | None:
+    """The mapping or the type that the user names."""
+    return arguments.mapping or arguments.type
+
+
+def one_topic(log: Log, topics: list[str] | None) -> str:
+    """The topic of a command that takes one: that which is named, or the only one.
+
+    Raises
+    ------
+    LogError
+        There are several.
+    """
+    from rosetta_jit.catalogue import logs as words
+    from rosetta_jit.errors import LogError
+
+    found = topics or list(log.topics)
+    if len(found) != 1:
+        raise LogError((words.which_topic(log.name, found),))
+    return found[0]
+
+
+@contextmanager
+def progress(total: int | None, *, quiet: bool = False) -> Generator[Callable[[int], object]]:
+    """How many messages are done, the rate and the time left, on stderr if a person looks at it."""
+    if quiet or not sys.stderr.isatty():
+        yield int
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=total, unit=" messages", unit_scale=True, file=sys.stderr) as bar:
+        yield bar.update

@@ -1,0 +1,1 @@
+"""Recordings of this project: `rosetta_jit.recording`."""
