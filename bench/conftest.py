@@ -26,6 +26,7 @@ ORDER = (
     "manners",
     "columns",
     "numba",
+    "logs",
     "start",
     "memory",
     "limits",

@@ -61,7 +61,7 @@ MAY_IMPORT = {
     "api.options": REPORTS | {"model", "frameworks", "runtime.functions", "pipeline.request"},
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
-    "logs": REPORTS | {"api", "api.options", "file_errors", "frameworks", "runtime", "runtime.cache", "runtime.code"},
+    "logs": REPORTS | {"api", "api.options", "file_errors", "recording", "frameworks", "runtime", "runtime.cache", "runtime.code"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,

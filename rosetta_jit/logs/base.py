@@ -121,7 +121,7 @@ class Reader(Protocol):
         ...
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
-        """The messages. The bytes of a block are good until the next one is asked for."""
+        """The messages. The bytes of a block are good until the second one behind it is asked for: one block is read ahead."""
         ...
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError
+from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.moments import nanoseconds
 from rosetta_jit.logs.staging import Staged, Staging
@@ -113,7 +114,7 @@ class Channel:
     def parts(self, *, start: Moment | None = None, end: Moment | None = None, on_error: OnError = "raise") -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again."""
         decoder, staging, batch, first = self.decoder, Staging(), None, 0
-        for staged in staging.filled(self._blocks(start, end)):
+        for staged in staging.filled(ahead(self._blocks(start, end))):
             batch = _many(decoder, staged, batch, on_error, first)
             kept = batch.kept
             yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first, staged)

@@ -22,17 +22,21 @@ STEP = 1 << 16
 """Bytes that are decompressed at once where a stream is damaged, so that those before the damage are kept."""
 
 
+AT_ONCE = 3
+"""Chunks that are in memory at once: one that is decoded, one that waits, one that is decompressed (`rosetta_jit.logs.ahead`)."""
+
+
 class Scratch:
-    """Memory that is used for one chunk after another."""
+    """Memory that is used for one chunk after another, of those that are read at the same time."""
 
     def __init__(self) -> None:
-        self._memory = np.empty(0, np.uint8)
+        self._memory = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
 
     def room(self, size: int) -> Bytes:
-        """So many bytes; what was there before is gone."""
-        if self._memory.size < size:
-            self._memory = np.empty(size, np.uint8)
-        return self._memory[:size]
+        """So many bytes; what was there three chunks before is gone."""
+        memory = self._memory.pop(0)
+        self._memory.append(memory if memory.size >= size else np.empty(size, np.uint8))
+        return self._memory[-1][:size]
 
 
 def decompressed(name: str, compression: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:

@@ -124,15 +124,14 @@ class Records:
 
     def __init__(self, storage: Storage, grammar: Grammar, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
         self._storage, self._grammar, self._tell, self._check = storage, grammar, tell, check
-        self._scratch = Scratch()
 
     def blocks(self, segments: Sequence[Chunk | Region], wanted: Wanted, end: int) -> Iterator[Block]:
         """The messages of segments, which lie in order; the log's records end at ``end``."""
-        done = segments[0].at if segments else 0
+        done, scratch = segments[0].at if segments else 0, Scratch()
         for segment in segments:
             match segment:
                 case Region(at, stop):
-                    yield from self._region(at, stop, wanted)
+                    yield from self._region(at, stop, wanted, scratch)
                     done = stop
                 case Chunk(at, size):
                     if segment.has(wanted):
@@ -140,21 +139,21 @@ class Records:
                         head = self._grammar.head(record[:PEEK]) if len(record) > 9 else Head("damaged")
                         if head.kind != "chunk" or head.size > size:
                             self._tell(words.index_lies(self._storage.name, at))
-                            yield from self._region(done, end, wanted)
+                            yield from self._region(done, end, wanted, scratch)
                             return
-                        yield from self._content(record, at)
+                        yield from self._content(record, at, scratch)
                         if head.size < size:
-                            yield from self._region(at + head.size, at + size, wanted)
+                            yield from self._region(at + head.size, at + size, wanted, scratch)
                     done = at + size
 
-    def _region(self, at: int, end: int, wanted: Wanted) -> Iterator[Block]:
+    def _region(self, at: int, end: int, wanted: Wanted, scratch: Scratch) -> Iterator[Block]:
         for item in self.items(at, end):
             match item:
                 case Block():
                     yield item
                 case Chunk():
                     if item.has(wanted):
-                        yield from self._content(self._storage.read(item.at, item.size), item.at)
+                        yield from self._content(self._storage.read(item.at, item.size), item.at, scratch)
 
     def items(self, at: int, end: int) -> Iterator[Chunk | Block]:
         """Go from record to record: the chunks, and the messages outside of chunks. Definitions are learned on the way."""
@@ -203,18 +202,18 @@ class Records:
         if chunk.counts is not None and all(map(self._grammar.knows, chunk.counts)):
             return dict(chunk.counts)
         counts: dict[int, int | None] = {}
-        for block in self._content(self._storage.read(chunk.at, chunk.size), chunk.at):
+        for block in self._content(self._storage.read(chunk.at, chunk.size), chunk.at, Scratch()):
             add_counts(counts, block.rows)
         return counts
 
-    def _content(self, record: bytes, at: int) -> Iterator[Block]:
+    def _content(self, record: bytes, at: int, scratch: Scratch) -> Iterator[Block]:
         """The messages of a chunk."""
         try:
             packed = self._grammar.packed(record)
         except ValueError as error:
             self._tell(words.chunk_damaged(self._storage.name, at, str(error)))
             return
-        data, wrong = decompressed(self._storage.name, packed.compression, packed.body, packed.size, self._scratch)
+        data, wrong = decompressed(self._storage.name, packed.compression, packed.body, packed.size, scratch)
         if not wrong and self._check and packed.crc is not None and zlib.crc32(data.data) != packed.crc:
             self._tell(words.checksum(self._storage.name, at))
             return

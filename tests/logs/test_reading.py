@@ -130,3 +130,38 @@ def test_a_message_that_its_type_does_not_allow(folder):
         log["/x"].to_arrow()
     assert log["/x"].to_arrow(on_error="skip")["x"].to_pylist() == [1, 3]
     assert [each.time for each in log.messages(on_error="skip")] == [0, 2]
+
+
+def test_two_readings_at_once(log):
+    """Each has memory of its own, also for what it reads ahead; one that is left early ends its thread."""
+    import threading
+
+    before = threading.active_count()
+    one, other = log["/a"].tables(["x"]), log["/b"].tables(["data"])
+    assert next(one)["x"].to_pylist() == [number / 4 for number in range(COUNT)]
+    assert next(other)["data"].to_pylist() == [f"text {number}" for number in range(0, COUNT, 5)]
+    one.close()
+    other.close()
+    assert threading.active_count() == before
+    pairs = zip(log["/a"], log["/a"], strict=True)
+    assert all((first.x, first.name) == (second.x, second.name) for first, second in pairs)
+
+
+def test_what_goes_wrong_ahead_is_raised(log, monkeypatch):
+    def broken(at, size):
+        raise OSError(5, "the disk is gone")
+
+    points = log["/a"]
+    assert points.decoder
+    monkeypatch.setattr(log._storage, "read", broken)
+    with pytest.raises(OSError, match="the disk is gone"):
+        points.to_arrow()
+
+
+def test_many_messages_in_small_memory(tmp_path):
+    """Longer than what is decoded at once: tables of some thousand messages, one after the other."""
+    log = rj.open(write_mcap(tmp_path / "long.mcap", 40_000, chunk_size=100_000))
+    sizes = [table.num_rows for table in log["/a"].tables()]
+    assert sum(sizes) == 40_000
+    assert max(sizes) <= 16_384
+    assert np.array_equal(log["/a"]["x"], np.arange(40_000) / 4)

@@ -1,0 +1,146 @@
+"""Logs to columns: beside what it takes to decompress them, and beside the Python readers of logs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import lz4.frame
+import zstandard
+from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
+from mcap_ros1.decoder import DecoderFactory as Ros1Factory
+from mcap_ros2.decoder import DecoderFactory as Ros2Factory
+from pybag.mcap_reader import McapFileReader
+from rosbags.rosbag1 import Reader as BagReader
+from rosbags.rosbag1 import Writer as BagWriter
+
+import rosetta_jit as rj
+from bench.contest import Contender
+from bench.peers.mcap import definition
+from bench.peers.rosbags import store, type_name
+from bench.subjects import IMU, IMU_2
+from rosetta_jit.logs.records import Chunk
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CHAPTER = "Logs"
+COUNT, FEW = 200_000, 5_000
+TABLE, BYTES, ALONE = "rosetta_jit, `to_arrow`", "rosetta_jit, messages as bytes", "decompression alone"
+START, STEP = 1_700_000_000 * 10**9, 5_000_000
+
+
+def varied(subject, count):
+    """Messages that differ as those of a sensor do, in all of their numbers but the covariances."""
+    import numpy as np
+
+    encode, dice = subject.encoder(), np.random.default_rng(0)
+    holder = subject.decoder()(subject.message)
+    for each in range(count):
+        values = dice.normal(size=10).round(6).tolist()
+        holder.header.frame_id = "base_link"
+        for name, part in (("orientation", "xyzw"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz")):
+            for axis in part:
+                setattr(getattr(holder, name), axis, values.pop())
+        yield START + each * STEP, encode(holder)
+
+
+def mcap_file(path: Path, count: int) -> Path:
+    with path.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.ZSTD)
+        writer.start(profile="ros2")
+        schema = writer.register_schema(IMU_2.type, "ros2msg", definition(IMU_2, 2).encode())
+        channel = writer.register_channel("/imu", "cdr", schema)
+        for time, data in varied(IMU_2, count):
+            writer.add_message(channel, log_time=time, publish_time=time, data=data)
+        writer.finish()
+    return path
+
+
+def bag_file(path: Path, count: int) -> Path:
+    writer = BagWriter(path)
+    writer.set_compression(BagWriter.CompressionFormat.LZ4)
+    with writer:
+        connection = writer.add_connection("/imu", type_name(IMU), typestore=store("ros1"))
+        for time, data in varied(IMU, count):
+            writer.write(connection, time, data)
+    return path
+
+
+def decompress(path: Path) -> Any:
+    """What decompresses all chunks, in memory already, and does nothing else."""
+    reader: Any = rj.open(path)._reader
+    records, grammar = reader._storage, reader._grammar
+    summary = getattr(reader, "_summary", None) or reader._contents
+    packed = [grammar.packed(records.read(each.at, each.size)) for each in summary.segments if isinstance(each, Chunk)]
+
+    def run() -> None:
+        for each in packed:
+            if each.compression == "zstd":
+                zstandard.ZstdDecompressor().decompress(each.body, max_output_size=each.size)
+            else:
+                lz4.frame.decompress(each.body)
+
+    return run
+
+
+def run_mcap(path, *factories):
+    with path.open("rb") as file:
+        reader = make_reader(file, decoder_factories=factories)
+        return sum(1 for _ in (reader.iter_decoded_messages() if factories else reader.iter_messages()))
+
+
+def run_pybag(path):
+    with McapFileReader.from_file(path) as reader:
+        return sum(1 for _ in reader.messages("/imu"))
+
+
+def run_rosbags(path):
+    types = store("ros1")
+    with BagReader(path) as reader:
+        return sum(1 for each in reader.messages() if types.deserialize_ros1(each[2], each[0].msgtype))
+
+
+def ours(effort, path, count):
+    channel, log = rj.open(path)["/imu"], rj.open(path)
+    assert channel.to_arrow().num_rows == count
+    return [
+        Contender(TABLE, "ours", "a table of all fields and two times; checksums compared", effort.call(channel.to_arrow, messages=count)),
+        Contender(BYTES, "ours", "one bytes object a message", effort.call(lambda: sum(1 for _ in log.messages(raw=True)), messages=count)),
+        Contender(ALONE, "limit", "the chunks' content, in memory", effort.call(decompress(path), messages=count)),
+    ]
+
+
+def test_mcap(effort, compare, record, tmp_path):
+    count = COUNT // 10 if effort.quick else COUNT
+    path, few = mcap_file(tmp_path / "many.mcap", count), mcap_file(tmp_path / "few.mcap", FEW)
+    peers = {
+        "mcap, messages as bytes": lambda: run_mcap(few),
+        "mcap with mcap-ros2-support": lambda: run_mcap(few, Ros2Factory()),
+        "pybag": lambda: run_pybag(few),
+    }
+    assert {run() for run in peers.values()} == {FEW}
+    contenders = [Contender(name, "peer", "one object a message", effort.call(run, messages=FEW)) for name, run in peers.items()]
+    outcome = compare(CHAPTER, f"{count:,} messages of sensor_msgs/msg/Imu in MCAP, zstd", [*ours(effort, path, count), *contenders])
+    told(record, outcome, "Imu, MCAP (zstd) to Arrow", 2, [name for name in peers if "bytes" not in name])
+
+
+def test_bag(effort, compare, record, tmp_path):
+    count = COUNT // 10 if effort.quick else COUNT
+    path, few = bag_file(tmp_path / "many.bag", count), bag_file(tmp_path / "few.bag", FEW)
+    mcap_of_bag = tmp_path / "few.mcap"
+    from rosetta_jit.cli import main
+
+    assert main(["convert", str(few), "-o", str(mcap_of_bag)]) == 0
+    peers = {"rosbags": lambda: run_rosbags(few), "mcap with mcap-ros1-support, of MCAP": lambda: run_mcap(mcap_of_bag, Ros1Factory())}
+    assert {run() for run in peers.values()} == {FEW}
+    contenders = [Contender(name, "peer", "one object a message", effort.call(run, messages=FEW)) for name, run in peers.items()]
+    outcome = compare(CHAPTER, f"{count:,} messages of sensor_msgs/Imu in a bag, lz4", [*ours(effort, path, count), *contenders])
+    told(record, outcome, "Imu, bag (lz4) to Arrow", None, list(peers))
+
+
+def told(record, outcome, what, at_most, peers):
+    took = outcome.took(TABLE).median
+    record(what, outcome.ratio(TABLE, ALONE), at_most, "x decompression alone", f"{took:.0f} ns a message")
+    fastest = outcome.fastest(peers)
+    record(f"{what}, against the fastest Python peer", outcome.ratio(TABLE, fastest), 1 / 20, "of it", fastest)
