@@ -183,3 +183,23 @@ def which_topic(name: str, topics: Iterable[str]) -> Diagnostic:
 def no_definition(name: str, topic: str, type_: str) -> Diagnostic:
     """A type of which the log has no definition."""
     return Diagnostic("warning", "log-definition", f"{name} has no definition of {type_ or 'the type'} of `{topic}`")
+
+
+def stopped(name: str, why: str) -> Diagnostic:
+    """A database that breaks off."""
+    return Diagnostic("warning", "log-damaged", f"{name} cannot be read on: {why}", help="what lies before it is read")
+
+
+def missing_file(name: str, file: str) -> Diagnostic:
+    """A file that a log should have."""
+    return Diagnostic("warning", "log-file", f"{name} has no file {file}", help=_READ)
+
+
+def unnamed_file(name: str, file: str) -> Diagnostic:
+    """A file that the metadata does not mention."""
+    return Diagnostic("warning", "log-file", f"{name}: its metadata does not mention {file}, which is read all the same")
+
+
+def bad_line(name: str, at: int, why: str) -> Diagnostic:
+    """A line that is no message."""
+    return Diagnostic("warning", "log-message", f"{name}: the line at byte {at} is no message: {why}")

@@ -78,6 +78,16 @@ def _zstd(name: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Byt
     return read(STEP) if wrong else (found, wrong)
 
 
+def zstd_size(data: memoryview) -> int:
+    """How many bytes a frame of zstd says that it holds; 0 where it does not say, or says more than is read."""
+    zstandard = _package("zstandard", "a message")
+    try:
+        size = int(zstandard.get_frame_parameters(data[:64]).content_size)
+    except zstandard.ZstdError:
+        return 0
+    return size if size <= MAX_RECORD_BYTES else 0
+
+
 def _lz4(name: str, body: memoryview, size: int, _: Scratch) -> tuple[Bytes, str]:
     frame = _package("lz4.frame", name)
     return _pieces(frame.LZ4FrameDecompressor, body, size, (RuntimeError, EOFError, MemoryError))

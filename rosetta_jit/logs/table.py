@@ -9,6 +9,10 @@ _HERE = "rosetta_jit.logs"
 FORMATS = (
     Format("mcap", (".mcap",), f"{_HERE}.mcap.reader:McapReader", b"\x89MCAP0\r\n"),
     Format("bag", (".bag", ".bag.active"), f"{_HERE}.bag.reader:BagReader", b"#ROSBAG V"),
+    Format("rosbag2", (), f"{_HERE}.rosbag2.reader:Rosbag2Reader", folder="metadata.yaml"),
+    Format("rosbag2-sqlite", (".db3",), f"{_HERE}.rosbag2.sqlite:SqliteReader", b"SQLite format 3\0"),
+    Format("yarpdatadumper", (), f"{_HERE}.yarp.reader:DumperReader", folder="data.log"),
+    Format("yarpdatadumper-ports", (), f"{_HERE}.yarp.reader:DumperReader", folder="*/data.log"),
     Format("recording", (".rec", ".rec.xz"), f"{_HERE}.recordings.reader:RecordingReader"),
     Format("lcm", (".lcmlog", ".lcm"), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
 )

@@ -1,0 +1,147 @@
+"""Opening rosbag2's folders: `metadata.yaml` names the files, which are read one after the other."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from weakref import finalize
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.base import Block, Connection, Extent, Reader, Wanted
+from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.compression import Scratch, decompressed, zstd_size
+from rosetta_jit.logs.mcap.reader import McapReader
+from rosetta_jit.logs.rosbag2.sqlite import SqliteReader
+from rosetta_jit.logs.storage import MAX_RECORD_BYTES, open_storage
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.storage import Storage
+
+PART = 1 << 32
+"""Connections of file n are numbered from n times this on."""
+
+MAX_METADATA_BYTES = 16 << 20
+SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
+
+
+class Rosbag2Reader:
+    """An open folder of a rosbag2."""
+
+    def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+        self._folder, self._tell, self._check = storage.path, tell, check
+        information = self._metadata()
+        self._compressed = str(information.get("compression_mode", "")).upper() == "MESSAGE"
+        self._parts: list[Reader] = []
+        for name in self._files(information):
+            try:
+                self._parts.append(self._opened(self._folder / name))
+            except LogError as error:  # the others are read
+                for each in error.diagnostics:
+                    tell(replace(each, severity="warning"))
+        if not self._parts:
+            raise LogError((words.not_a(storage.name, "rosbag2: none of its files can be read"),))
+
+    @property
+    def connections(self) -> Mapping[int, Connection]:
+        numbered = ((place * PART, part.connections) for place, part in enumerate(self._parts))
+        return {base + number: replace(each, number=base + number) for base, found in numbered for number, each in found.items()}
+
+    @property
+    def extent(self) -> Extent | None:
+        found = [each.extent for each in self._parts if each.extent is not None]
+        return Extent(min(each.start_ns for each in found), max(each.end_ns for each in found)) if found else None
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        return {"files": str(len(self._parts)), **self._parts[0].facts}
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        for place, part in enumerate(self._parts):
+            base = place * PART
+            own = None
+            if wanted.connections is not None:
+                own = frozenset(each - base for each in wanted.connections if base <= each < base + PART)
+                if not own:
+                    continue
+            blocks = part.blocks(Wanted(own, wanted.start_ns, wanted.end_ns))
+            for block in blocks_of(self._unpacked(blocks)) if self._compressed else blocks:
+                yield Block(block.data, replace(block.rows, channels=block.rows.channels + base))
+
+    def _unpacked(self, blocks: Iterable[Block]) -> Iterator[tuple[int, int, int, bytes]]:
+        """The messages of a bag in which each is compressed by zstd, one by one."""
+        scratch = Scratch()
+        for block in blocks:
+            rows, view = block.rows, block.data.data
+            columns = (each.tolist() for each in (rows.channels, rows.log_ns, rows.publish_ns, rows.begins, rows.ends))
+            for channel, log_ns, publish_ns, begin, end in zip(*columns, strict=True):
+                data = view[begin:end]
+                found, wrong = decompressed(str(self._folder), "zstd", data, zstd_size(data), scratch)
+                if wrong:
+                    self._tell(words.bad_line(str(self._folder), begin, wrong))
+                yield channel, log_ns, publish_ns, found.tobytes()
+
+    def _metadata(self) -> dict[str, Any]:
+        """What `metadata.yaml` says; nothing where it is damaged or missing."""
+        path = self._folder / "metadata.yaml"
+        try:
+            yaml: Any = import_module("yaml")
+        except ImportError:
+            raise LogError((words.needs(str(path), "pyyaml", "logs"),)) from None
+        try:
+            with path.open("rb") as file:
+                found = yaml.load(file.read(MAX_METADATA_BYTES), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            information = found["rosbag2_bagfile_information"]
+            return dict(information)
+        except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError) as error:
+            self._tell(words.bad_index(str(path), str(error).partition("\n")[0]))
+            return {}
+
+    def _files(self, information: dict[str, Any]) -> list[str]:
+        """The names of the files: those of the metadata, and those that it does not mention."""
+        named = [str(each) for each in information.get("relative_file_paths") or ()]
+        for each in named:
+            if not (self._folder / each).is_file() or Path(each).is_absolute() or ".." in Path(each).parts:
+                self._tell(words.missing_file(str(self._folder), each))
+        there = sorted(path.name for path in self._folder.iterdir() if path.name.endswith(SUFFIXES))
+        unnamed = [each for each in there if each not in {Path(one).name for one in named}]
+        for each in unnamed if named else ():
+            self._tell(words.unnamed_file(str(self._folder), each))
+        own = [each for each in named if (self._folder / each).is_file() and ".." not in Path(each).parts and not Path(each).is_absolute()]
+        return own + unnamed
+
+    def _opened(self, path: Path) -> Reader:
+        if path.suffix == ".zstd":
+            path = self._decompressed(path)
+        storage = open_storage(str(path))
+        if storage.read(0, 5) == b"\x89MCAP":
+            return McapReader(storage, self._tell, check=self._check)
+        return SqliteReader(storage, self._tell, check=self._check)
+
+    def _decompressed(self, path: Path) -> Path:
+        """A file that was compressed as a whole, as a temporary file as long as the log is open."""
+        try:
+            zstandard: Any = import_module("zstandard")
+        except ImportError:
+            raise LogError((words.needs(str(path), "zstandard", "logs"),)) from None
+        folder = tempfile.mkdtemp(prefix="rosetta-jit-")
+        finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        target = Path(folder) / path.stem
+        room = shutil.disk_usage(folder).free // 2
+        with path.open("rb") as file, target.open("wb") as out:
+            try:
+                with zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_BYTES).stream_reader(file) as stream:
+                    while piece := stream.read(1 << 20):
+                        out.write(piece)
+                        if out.tell() > room:
+                            raise LogError((words.unreadable(str(path), "it holds more than half of the disk has room for"),))
+            except zstandard.ZstdError as error:
+                self._tell(words.chunk_damaged(str(path), out.tell(), str(error)))
+        return target

@@ -1,0 +1,113 @@
+"""One SQLite file of a rosbag2: the tables `topics` and `messages`, and `message_definitions` since Iron.
+
+The file is opened for reading alone, and asked for tables, never for views: a view can be a program without an end.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.storage import Storage
+
+MAGIC = b"SQLite format 3\0"
+ENCODINGS = {"cdr": "cdr", "ros_v1": "ros1"}
+TABLES = {"topics": ("id", "name", "type", "serialization_format"), "messages": ("id", "topic_id", "timestamp", "data")}
+
+
+class SqliteReader:
+    """An open SQLite file of a rosbag2."""
+
+    def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+        del check  # it has no checksums
+        self._name, self._tell = storage.name, tell
+        try:
+            self._database = sqlite3.connect(f"{storage.path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
+            self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
+            self._check_tables()
+            self._connections = self._defined()
+            first, last = self._database.execute("SELECT MIN(timestamp), MAX(timestamp) FROM messages").fetchone()
+        except (sqlite3.Error, ValueError, OverflowError) as error:
+            raise LogError((words.unreadable(storage.name, str(error)),)) from error
+        self._extent = Extent(first, last) if isinstance(first, int) and isinstance(last, int) else None
+
+    @property
+    def connections(self) -> Mapping[int, Connection]:
+        return self._connections
+
+    @property
+    def extent(self) -> Extent | None:
+        return self._extent
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        return {"storage": "sqlite3"}
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        return blocks_of(self._messages(wanted))
+
+    def _check_tables(self) -> None:
+        self._database.execute("PRAGMA trusted_schema = OFF")
+        found = dict(self._database.execute("SELECT name, type FROM sqlite_master WHERE sql NOT LIKE 'CREATE VIRTUAL%'").fetchall())
+        for table, columns in TABLES.items():
+            there = {each[1] for each in self._database.execute(f"PRAGMA table_info({table})")}
+            if found.get(table) != "table" or not there.issuperset(columns):
+                raise LogError((words.not_a(self._name, "rosbag2 file: it has no tables `topics` and `messages`"),))
+        self._has_definitions = found.get("message_definitions") == "table"
+
+    def _defined(self) -> dict[int, Connection]:
+        counts = dict(self._database.execute("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id").fetchall())
+        definitions: dict[str, tuple[str, bytes]] = {}
+        if self._has_definitions:
+            rows = self._database.execute("SELECT topic_type, encoding, encoded_message_definition FROM message_definitions")
+            definitions = {str(type_): (str(encoding), _octets(text)) for type_, encoding, text in rows if text}
+        found: dict[int, Connection] = {}
+        for number, topic, type_, encoding in self._database.execute("SELECT id, name, type, serialization_format FROM topics"):
+            language, text = definitions.get(str(type_), ("", b""))
+            known = ENCODINGS.get(str(encoding), str(encoding))
+            found[int(number)] = Connection(int(number), str(topic), str(type_), known, language, text, int(counts.get(number, 0)))
+        return found
+
+    def _messages(self, wanted: Wanted) -> Iterator[tuple[int, int, int, bytes]]:
+        query, parameters = _query(wanted)
+        try:
+            for number, topic, time_ns, data in self._database.execute(query, parameters):
+                if not isinstance(topic, int) or not isinstance(time_ns, int):
+                    self._tell(words.bad_definition(self._name, number, "a message without a topic or a time"))
+                    continue
+                yield topic, time_ns, time_ns, _octets(data)
+        except sqlite3.Error as error:
+            self._tell(words.stopped(self._name, str(error)))
+
+
+def _query(wanted: Wanted) -> tuple[str, list[int]]:
+    conditions, parameters = list[str](), list[int]()
+    if wanted.connections is not None:
+        conditions.append(f"topic_id IN ({', '.join('?' for _ in wanted.connections)})")
+        parameters += wanted.connections
+    for moment, condition in ((wanted.start_ns, "timestamp >= ?"), (wanted.end_ns, "timestamp < ?")):
+        if moment is not None:
+            conditions.append(condition)
+            parameters.append(moment)
+    where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
+    return f"SELECT id, topic_id, timestamp, data FROM messages{where} ORDER BY timestamp, id", parameters  # noqa: S608 - of our own words
+
+
+def _octets(value: object) -> bytes:
+    match value:
+        case bytes():
+            return value
+        case str():
+            return value.encode("utf-8", "replace")
+        case _:
+            return b""

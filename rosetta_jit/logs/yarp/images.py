@@ -1,0 +1,97 @@
+"""Images that `yarpdatadumper` kept as files, as the messages that they came in: YARP 3's form, rows padded to 8 bytes.
+
+`.ppm`, `.pgm`, `.float` and `.floatzip` are read here; `.png` and `.jpg` by Pillow (extra `images`).
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+import zlib
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+HEAD = struct.Struct("<II i4s i4s ii iiiii ii")
+NETPBM = re.compile(rb"P([56])\s(\d+)\s(\d+)\s255\s")
+DEPTH = {b"mono": 1, b"rgb": 3, b"dec": 4}
+QUANTUM = 8
+MAX_PIXELS = 1 << 28
+
+
+class ImageError(ValueError):
+    """A file that holds no image."""
+
+
+def image_message(folder: Path, content: bytes) -> bytes:
+    """The message of an image: ``content`` names its file, and its pixels.
+
+    Raises
+    ------
+    ImageError, OSError
+        There is no such file, or it holds no image.
+    """
+    name, _, _ = content.partition(b" ")
+    file = name.decode("ascii", "replace")
+    if not file or "/" in file or "\\" in file or file.startswith("."):
+        raise ImageError(f"{file!r} is no name of a file in the folder")
+    path = folder / file
+    match path.suffix:
+        case ".ppm" | ".pgm":
+            return _message(*_netpbm(path.read_bytes()))
+        case ".float" | ".floatzip":
+            return _message(*_floats(path.read_bytes(), compressed=path.suffix == ".floatzip"))
+        case ".png" | ".jpg" | ".jpeg":
+            return _message(*_pillow(path))
+        case suffix:
+            raise ImageError(f"images of the kind {suffix or 'without a suffix'} are not read")
+
+
+def _message(code: bytes, width: int, height: int, pixels: bytes) -> bytes:
+    depth = DEPTH[code]
+    row = width * depth
+    if not width or not height or len(pixels) != row * height:
+        raise ImageError(f"{width} by {height} pixels take {row * height} bytes, and there are {len(pixels)}")
+    padded = -(-row // QUANTUM) * QUANTUM
+    lines = (pixels[begin : begin + row].ljust(padded, b"\0") for begin in range(0, len(pixels), row))
+    size = padded * height
+    head = HEAD.pack(256, 4, 9, b"mat", 9, code, 257, 5, depth, size, QUANTUM | 1 << 16, width, height, 12, size)
+    return head + b"".join(lines)
+
+
+def _netpbm(data: bytes) -> tuple[bytes, int, int, bytes]:
+    found = NETPBM.match(data)
+    if found is None:
+        raise ImageError("it is no PPM or PGM file of 255 steps")
+    return b"rgb" if found[1] == b"6" else b"mono", int(found[2]), int(found[3]), data[found.end() :]
+
+
+def _floats(data: bytes, *, compressed: bool) -> tuple[bytes, int, int, bytes]:
+    if len(data) < 16:
+        raise ImageError("it is cut short")
+    height, width = struct.unpack_from("<QQ", data)
+    if width * height > MAX_PIXELS:
+        raise ImageError(f"{width} by {height} pixels are too many")
+    pixels = data[16:]
+    if compressed:
+        try:
+            pixels = zlib.decompressobj().decompress(pixels, width * height * 4 or 1)
+        except zlib.error as error:
+            raise ImageError(str(error)) from error
+    return b"dec", width, height, pixels
+
+
+def _pillow(path: Path) -> tuple[bytes, int, int, bytes]:
+    try:
+        image: Any = import_module("PIL.Image")
+    except ImportError:
+        raise ImageError("it needs the package pillow: pip install 'rosetta-jit[images]'") from None
+    try:
+        with image.open(path) as opened:
+            code = b"mono" if opened.mode == "L" else b"rgb"
+            pixels = opened.convert("L" if code == b"mono" else "RGB")
+            return code, pixels.width, pixels.height, pixels.tobytes()
+    except (image.DecompressionBombError, SyntaxError, ValueError) as error:
+        raise ImageError(str(error)) from error

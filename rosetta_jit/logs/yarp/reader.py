@@ -1,0 +1,139 @@
+"""Opening folders of `yarpdatadumper`: of each port `data.log`, a line a message, and `info.log`, which says what the lines are.
+
+    line    = number, time, [time], content        number: the envelope's counter, -1 without an envelope
+    content = the text of a bottle, or the name of an image's file and its pixels: `00000007.ppm [rgb]`
+
+Bottles come out as YARP 3 writes them. The text has lost the widths of integers, and that a float had 32 bits.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal, InvalidOperation
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import EncodeError, LogError
+from rosetta_jit.frameworks.yarp import bottle
+from rosetta_jit.frameworks.yarp.tags import DIALECTS
+from rosetta_jit.frameworks.yarp.text import parse_text
+from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.yarp.images import ImageError, image_message
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.storage import Storage
+
+DIALECT = DIALECTS["yarp3"]
+IMAGES = {b"[rgb]": "yarp.sig.ImageOfPixelRgb", b"[mono]": "yarp.sig.ImageOfPixelMono", b"[dec]": "yarp.sig.ImageOfPixelFloat"}
+"""The types of images, by the pixels that a line tells."""
+
+MAX_LINE_BYTES = 256 << 20
+PATH_BYTES = 4096
+MAX_INFO_BYTES = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """The folder of one port: its name, whether it has images, and which times its lines have."""
+
+    folder: Path
+    name: str
+    kind: str
+    stamps: str
+    type: str
+
+    def times(self, number: int) -> int:
+        """How many columns of times a line has: `--txTime` without an envelope writes both."""
+        if self.stamps == "tx+rx" or (self.stamps == "tx" and number < 0):
+            return 2
+        return 1
+
+
+class DumperReader:
+    """Open folders of `yarpdatadumper`: one, or one a port in a folder around them."""
+
+    def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+        del check  # it has no checksums
+        self._tell = tell
+        root = storage.path
+        folders = [root] if (root / "data.log").is_file() else sorted(each.parent for each in root.glob("*/data.log"))
+        if not folders:
+            raise LogError((words.not_a(storage.name, "folder of yarpdatadumper: it has no data.log"),))
+        self._ports = [_port(folder, tell) for folder in folders]
+        self._counts, self._extent = dict[int, int](), None
+        for block in self.blocks(Wanted()):
+            times = block.rows.log_ns
+            for number in block.rows.channels.tolist():
+                self._counts[number] = self._counts.get(number, 0) + 1
+            known = self._extent or Extent(int(times[0]), int(times[0]))
+            self._extent = Extent(min(known.start_ns, int(times.min())), max(known.end_ns, int(times.max())))
+
+    @property
+    def connections(self) -> Mapping[int, Connection]:
+        return {
+            number: Connection(number, port.name, port.type, "yarp3", count=self._counts.get(number, 0), details={"kind": port.kind})
+            for number, port in enumerate(self._ports)
+        }
+
+    @property
+    def extent(self) -> Extent | None:
+        return self._extent
+
+    @property
+    def facts(self) -> Mapping[str, str]:
+        return {"ports": str(len(self._ports))}
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        for number, port in enumerate(self._ports):
+            if wanted.connections is None or number in wanted.connections:
+                yield from blocks_of((number, *each) for each in self._messages(port))
+
+    def _messages(self, port: Port) -> Iterator[tuple[int, int, bytes]]:
+        path = port.folder / "data.log"
+        with path.open("rb") as file:
+            at = 0
+            while line := file.readline(MAX_LINE_BYTES):
+                try:
+                    yield _message(port, line)
+                except (ValueError, EncodeError, ImageError, InvalidOperation, OSError) as error:
+                    cut = not line.endswith(b"\n")
+                    self._tell(words.log_cut(str(path), at) if cut else words.bad_line(str(path), at, str(error)))
+                at += len(line)
+
+
+def _port(folder: Path, tell: Callable[[Diagnostic], None]) -> Port:
+    """What `info.log` says: `Type: Bottle;`, `Stamp: tx+rx;`, and the ports that were connected."""
+    try:
+        with (folder / "info.log").open("rb") as file:
+            text = file.read(MAX_INFO_BYTES).decode("utf-8", "replace")
+    except OSError:
+        tell(words.missing_file(str(folder), "info.log"))
+        text = ""
+    found = {name: value.strip(" ;") for name, _, value in (line.partition(":") for line in text.splitlines()) if value}
+    kind = found.get("Type", "Bottle")
+    return Port(folder, f"/{folder.name}", kind, found.get("Stamp", "rx"), "" if kind == "Bottle" else _type_of_images(folder))
+
+
+def _type_of_images(folder: Path) -> str:
+    """By the first line."""
+    with (folder / "data.log").open("rb") as file:
+        return IMAGES.get(file.readline(PATH_BYTES).rstrip().rpartition(b" ")[2], "")
+
+
+def _message(port: Port, line: bytes) -> tuple[int, int, bytes]:
+    """Log time, publish time and bytes of a line. Where both times are there, the sender's comes first."""
+    first, _, rest = line.rstrip(b"\r\n").partition(b" ")
+    number = int(first)
+    times: list[int] = []
+    for _ in range(port.times(number)):
+        time, _, rest = rest.partition(b" ")
+        times.append(int(Decimal(time.decode("ascii", "replace")) * 10**9))
+    if not line.endswith(b"\n"):
+        raise ValueError("the line has no end")
+    data = bottle.write(parse_text(rest, DIALECT), DIALECT) if port.kind == "Bottle" else image_message(port.folder, rest)
+    return times[-1], times[0] if len(times) > 1 and times[0] else times[-1], data

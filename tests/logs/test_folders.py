@@ -1,0 +1,182 @@
+"""Logs that are folders: rosbag2's, written by rosbags, and yarpdatadumper's, written by YARP."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+import struct
+from pathlib import Path
+
+import pytest
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+import rosetta_jit as rj
+from rosetta_jit.errors import LogError
+
+from .made import POINT, TEXT, encoders, expected, time_of, values
+
+COUNT = 50
+DUMPED = Path(__file__).parent / "yarpdatadumper"
+MODES = {"none": CompressionMode.NONE, "file": CompressionMode.FILE, "message": CompressionMode.MESSAGE}
+
+
+def write_rosbag2(path, storage=StoragePlugin.SQLITE3, mode=CompressionMode.NONE, version=9):
+    encode, types = encoders("cdr"), get_typestore(Stores.EMPTY)
+    types.register(get_types_from_msg(POINT, "t/msg/Point") | get_types_from_msg(TEXT, "t/msg/Text"))
+    writer = Writer(path, version=version, storage_plugin=storage)
+    if mode is not CompressionMode.NONE:
+        writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        connections = {
+            topic: writer.add_connection(topic, name, typestore=types) for topic, name in (("/a", "t/msg/Point"), ("/b", "t/msg/Text"))
+        }
+        for time, topic, value in expected(COUNT):
+            writer.write(connections[topic], time, encode(topic, value))
+    return path
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("storage", StoragePlugin)
+def test_rosbag2(tmp_path, storage, mode):
+    log = rj.open(write_rosbag2(tmp_path / "a", storage, MODES[mode]))
+    assert values(log.messages()) == list(expected(COUNT))
+    assert [(each.topic, each.type, each.count) for each in log.channels] == [("/a", "t/msg/Point", COUNT), ("/b", "t/msg/Text", 10)]
+    assert log["/a"]["x"].tolist() == [number / 4 for number in range(COUNT)]
+    found = log.messages(["/a"], start=time_of(10), end=time_of(20), raw=True)
+    assert [each.time for each in found] == [time_of(number) for number in range(10, 20)]
+
+
+def test_a_single_file_of_a_rosbag2(tmp_path):
+    (file,) = write_rosbag2(tmp_path / "a").glob("*.db3")
+    assert values(rj.open(file).messages()) == list(expected(COUNT))
+
+
+def test_split_files_and_damaged_metadata(tmp_path):
+    folder = write_rosbag2(tmp_path / "a")
+    (file,) = folder.glob("*.db3")
+    shutil.copy(file, folder / "b.db3")
+    found = []
+    log = rj.open(folder, on_problem=found.append)
+    assert [each.code for each in found] == ["log-file"]
+    assert [each.time for each in log.messages(["/a"])] == 2 * [time_of(number) for number in range(COUNT)]
+    assert log["/a"].count == 2 * COUNT
+    (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: [1, 2")
+    (folder / "b.db3").write_bytes(file.read_bytes()[:5000])
+    found.clear()
+    log = rj.open(folder, on_problem=found.append)
+    assert values(log.messages()) == list(expected(COUNT))
+    assert [each.code for each in found] == ["log-index", "log-unreadable"]
+
+
+def test_old_files_have_no_definitions(tmp_path):
+    log = rj.open(write_rosbag2(tmp_path / "a", version=8))
+    (file,) = (tmp_path / "a").glob("*.db3")
+    with sqlite3.connect(file) as database:
+        database.execute("DROP TABLE IF EXISTS message_definitions")
+    database.close()
+    log = rj.open(file)
+    with pytest.raises(rj.SchemaError, match="t/msg/Point"):
+        log["/a"].to_arrow()
+    (tmp_path / "t" / "msg").mkdir(parents=True)
+    (tmp_path / "t" / "msg" / "Point.msg").write_text(POINT)
+    assert rj.open(file, search_path=[tmp_path])["/a"]["x"].shape == (COUNT,)
+
+
+def test_a_database_that_is_a_program(tmp_path):
+    """A view that never ends is not asked."""
+    path = tmp_path / "a.db3"
+    with sqlite3.connect(path) as database:
+        database.execute("CREATE TABLE topics (id, name, type, serialization_format)")
+        database.execute(
+            "CREATE VIEW messages AS WITH RECURSIVE n(id) AS (SELECT 1 UNION ALL SELECT id FROM n)"
+            " SELECT id, 1 AS topic_id, 1 AS timestamp, x'00' AS data FROM n"
+        )
+    database.close()
+    with pytest.raises(LogError, match="it has no tables"):
+        rj.open(path)
+
+
+def sent(name):
+    return json.loads((DUMPED / name / "sent.json").read_text())["sent"]
+
+
+@pytest.mark.parametrize("name", ["bottle_default", "bottle_tx_noenv", "bottle_txrx_noenv"])
+def test_bottles_that_yarp_kept(name):
+    """The messages are those that were sent, as far as text can say them."""
+    from rosetta_jit.frameworks.yarp.bottle import read
+    from rosetta_jit.frameworks.yarp.tags import YARP3
+
+    log = rj.open(DUMPED / name)
+    messages = list(log.messages(raw=True))
+    assert [each.topic for each in messages] == [f"/{name}"] * len(messages)
+    assert [plain(read(each.message, YARP3)) for each in messages] == [plain_sent(each["tree"]) for each in sent(name)[-len(messages) :]]
+    assert len(messages) == log[f"/{name}"].count >= 20
+    times = [each.time for each in messages]
+    assert times == sorted(times)
+    if name == "bottle_default":
+        assert times[0] == 1_700_000_003 * 10**9
+
+
+def plain(item):
+    """An item of a bottle without its width."""
+    from rosetta_jit.frameworks.yarp.tree import List
+
+    if isinstance(item, List):
+        return [plain(each) for each in item.items]
+    return item.value
+
+
+def plain_sent(tree):
+    found = []
+    for each in tree:
+        match each:
+            case ["list", _, items]:
+                found.append(plain_sent(items))
+            case ["float64", text, *_]:
+                found.append(float.fromhex(text))
+            case ["string" | "blob", octets, *_]:
+                found.append(bytes.fromhex(octets))
+            case [_, number, *_]:
+                found.append(int(number))
+    return found
+
+
+def test_images_that_yarp_kept():
+    log = rj.open(DUMPED)
+    assert "/image_mono" in log.topics
+    for name, depth in (("image_mono", 1), ("image_png", 3)):
+        for each, image in zip(log[f"/{name}"], sent(name), strict=True):
+            geometry = each.geometry
+            assert (geometry.width, geometry.height, geometry.depth) == (image["image"]["width"], image["image"]["height"], depth)
+            assert bytes(each.pixels) == padded(image["image"]["formula"], geometry)
+    first = next(iter(log["/depth_compressed"]))
+    pixels = struct.unpack(f"<{20 * 16}f", bytes(first.pixels))
+    assert pixels == tuple(0.25 * x + y + 3 for y in range(16) for x in range(20))
+
+
+def padded(formula, geometry):
+    """The rows that a formula of x and y gives, padded to 8 bytes."""
+    formulas = [each.rpartition("=")[2] for each in formula.split()]
+    rows = []
+    for y in range(geometry.height):
+        row = bytes(eval(each, {"x": x, "y": y}) for x in range(geometry.width) for each in formulas)  # noqa: S307 - our own file
+        rows.append(row + bytes(-len(row) % 8))
+    return b"".join(rows)
+
+
+def test_damaged_folders_of_yarp(tmp_path):
+    folder = tmp_path / "p"
+    shutil.copytree(DUMPED / "bottle_default", folder)
+    data = (folder / "data.log").read_bytes()
+    whole = len(list(rj.open(folder).messages(raw=True)))
+    (folder / "data.log").write_bytes(b"no line\n" + data[:-3])
+    found = []
+    assert len(list(rj.open(folder, on_problem=found.append).messages(raw=True))) == whole - 1
+    assert [each.code for each in found] == ["log-message", "log-cut"]
+    (folder / "data.log").write_bytes(b"1 1.5 ../../secret.ppm [rgb]\n1 1.5 gone.ppm [rgb]\n")
+    (folder / "info.log").write_text("Type: Image;\nStamp: tx;\n")
+    found.clear()
+    assert not list(rj.open(folder, on_problem=found.append).messages(raw=True))
+    assert [each.code for each in found] == ["log-message"] * 2
