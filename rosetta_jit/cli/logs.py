@@ -35,6 +35,14 @@ def add_decoding(command: ArgumentParser) -> None:
     decoding.add_argument("--mapping", metavar="MAPPING", help="decode through a mapping: its path, or its name on the search path")
     decoding.add_argument("--type", metavar="TYPE", help="the type of the messages, where the log does not tell it or has several")
     command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: what the log says)")
+    command.add_argument(
+        "--import",
+        metavar="FILE",
+        dest="imports",
+        action="append",
+        default=[],
+        help="a file that declares it, on the search path",
+    )
     add_search_path(command)
 
 
@@ -61,6 +69,8 @@ def log_of(arguments: Namespace, on_problem: Callable[[Diagnostic], object] | No
     options: dict[str, Any] = {}
     if getattr(arguments, "encoding", None):
         options["encoding"] = arguments.encoding
+    if getattr(arguments, "imports", None):
+        options["imports"] = arguments.imports
     if getattr(arguments, "search_path", None):
         options["search_path"] = arguments.search_path
     return rosetta_jit.open(arguments.log, format=arguments.format, check=not arguments.no_check, on_problem=on_problem or show, **options)

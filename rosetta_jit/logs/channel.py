@@ -256,5 +256,6 @@ def _decoder(log: Log, connection: Connection, target: str | None, options: Opti
         details = "".join(f" ({name} {text})" for name, text in connection.details.items())
         raise LogError((words.no_type(log.name, connection.topic, details),))
     if connection.schema_encoding and type_ == connection.type and "schema" not in chosen:
+        chosen.pop("imports", None)  # they are for types that the log does not define
         chosen["schema"] = connection.schema if connection.schema_encoding == "protobuf" else connection.schema.decode("utf-8", "replace")
     return Decoder.of(type_, **chosen)

@@ -14,5 +14,7 @@ FORMATS = (
     Format("yarpdatadumper", (), f"{_HERE}.yarp.reader:DumperReader", folder="data.log"),
     Format("yarpdatadumper-ports", (), f"{_HERE}.yarp.reader:DumperReader", folder="*/data.log"),
     Format("recording", (".rec", ".rec.xz"), f"{_HERE}.recordings.reader:RecordingReader"),
+    Format("tide", (".tide",), f"{_HERE}.tide.reader:TideReader", b"TIDE"),
+    Format("delimited", (".delimited", ".pbd", ".binpb.delimited"), f"{_HERE}.delimited.reader:DelimitedReader"),
     Format("lcm", (".lcmlog", ".lcm"), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
 )
