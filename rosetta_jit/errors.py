@@ -37,6 +37,7 @@ Kind = Literal[
     "missing",  # a required field did not come
     "image",  # a compressed image that is none, or pixels that cannot be compressed
     "rejected",  # the mapping refuses the message
+    "union",  # another case of a union is set than its discriminator says
 ]
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,18 @@ def test_examples_run(document):
     names: dict[str, object] = {}
     for block in re.findall(r"```python\n(.*?)```", document.read_text(), re.DOTALL):
         exec(compile(block, str(document), "exec"), names)  # noqa: S102 - our own documents
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="the example in C is compiled by gcc, which is not installed")
+def test_the_example_in_c_runs(tmp_path, monkeypatch):
+    from rosetta_jit.cli import main
+
+    text = (ROOT / "docs" / "c.md").read_text()
+    (generate, build), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "c", "text"))
+    monkeypatch.chdir(tmp_path)
+    assert main(generate.split()[1:]) == 0
+    Path("main.c").write_text(source)
+    assert subprocess.run(["sh", "-ec", build], capture_output=True, text=True, check=True).stdout == said
 
 
 def test_the_documented_mapping_is_the_shipped_one():

@@ -24,7 +24,11 @@ BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "b
 RUNTIME = {"runtime", "runtime.code", "runtime.cache", "runtime.functions"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
-ANYTHING = COMPILER | API | {"in_numba", "stubs", "logs", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
+ANYTHING = (
+    COMPILER
+    | API
+    | {"in_numba", "stubs", "logs", "generate", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
+)
 
 MAY_IMPORT = {
     "startup": set(),
@@ -62,6 +66,8 @@ MAY_IMPORT = {
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
     "logs": REPORTS | {"api", "api.options", "file_errors", "recording", "frameworks", "runtime", "runtime.cache", "runtime.code"},
+    "generate": REPORTS
+    | {"model", "kernel", "kernel.passes", "lowering", "lowering.rules", "backends", "frameworks", "pipeline", "pipeline.request"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,

@@ -25,6 +25,7 @@ from rosetta_jit.cli import (
     encode,
     explain,
     frameworks,
+    generate,
     infer,
     info,
     operations,
@@ -36,7 +37,26 @@ from rosetta_jit.cli import compile as compile_
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-COMMANDS = (demo, check, explain, operations, prove, compile_, decode, encode, info, cat, convert, doctor, dump, infer, stubs, frameworks, cache)
+COMMANDS = (
+    demo,
+    check,
+    explain,
+    operations,
+    prove,
+    compile_,
+    decode,
+    encode,
+    info,
+    cat,
+    convert,
+    doctor,
+    dump,
+    infer,
+    generate,
+    stubs,
+    frameworks,
+    cache,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

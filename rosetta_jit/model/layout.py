@@ -146,15 +146,20 @@ class Layout:
         return self.lanes[0].element
 
 
-def layout(type_: Type, schema: Schema) -> Layout:
+def layout(type_: Type, schema: Schema, *, padded: bool = False) -> Layout:
     """The layout of a type.
+
+    Parameters
+    ----------
+    padded
+        Structs within structs take whole words, eight bytes at least, as a compiler of C lays them out.
 
     Raises
     ------
     ValueError
         If a row would be larger than `MAX_ROW_BYTES`, or the type unfolds to more than `MAX_SLOTS` fields.
     """
-    building = _Building(schema, recursive_structs(type_, schema))
+    building = _Building(schema, recursive_structs(type_, schema), padded)
     building.lane(type_, "", "")
     return Layout(tuple(lane for lane in building.lanes if lane is not None), tuple(building.linked))
 
@@ -268,6 +273,7 @@ class _Building:
 
     schema: Schema
     recursive: frozenset[str]
+    padded: bool = False
     lanes: list[Lane | None] = field(default_factory=list[Lane | None])
     slots: int = 0
     by_key: dict[str, int] = field(default_factory=dict[str, int])
@@ -346,7 +352,7 @@ class _Building:
     def row(self, struct: Struct, offset: int, name: str, key: str) -> tuple[Row, int]:
         bits = sum(isinstance(each.type, Optional) for each in struct.fields)
         words = (bits + 63) // 64
-        start = _align(offset, 8) if struct.fields else offset
+        start = _align(offset, 8) if struct.fields or self.padded else offset
         behind = start + 8 * words
         unknown = None
         if struct.option("unknown"):
@@ -359,6 +365,8 @@ class _Building:
             slot, behind = self.slot(each.type, behind, _join(name, each.name), _join(start_of_key, each.name))
             members.append(Member(each.name, slot, presence if isinstance(each.type, Optional) else None))
             presence += isinstance(each.type, Optional)
+        if self.padded:
+            behind = max(_align(behind, 8), start + 8)
         return Row(start, struct.name, words, Members(members), unknown), behind
 
     def variant(self, cases: tuple[Field, ...], offset: int, name: str, key: str) -> tuple[Variant, int]:
@@ -368,7 +376,7 @@ class _Building:
         for case in cases:
             slot, behind = self.slot(case.type, behind, _join(name, case.name), _join(key, case.name))
             members.append(Member(case.name, slot))
-        return Variant(start, Members(members)), behind
+        return Variant(start, Members(members)), _align(behind, 8) if self.padded else behind
 
 
 def map_entry(key: Type, value: Type) -> Struct:

@@ -104,9 +104,13 @@ class Build:
 
     def _layout(self, struct: Struct) -> Layout:
         try:
-            return layout(Ref(struct.name), self.types.schema)
+            return self._layout_of(struct.name, self.types.schema)
         except ValueError as error:
             raise _report(self.request, words.too_large(struct.name, struct.span, str(error))) from error
+
+    def _layout_of(self, name: str, schema: Schema) -> Layout:
+        """Where the fields of a struct lie."""
+        return layout(Ref(name), schema)
 
     @cached_property
     def kernels(self) -> tuple[Kernel, ...]:
@@ -116,9 +120,13 @@ class Build:
 
     def _proven(self, kernel: Kernel) -> Kernel:
         try:
-            return passes.run(kernel)
+            return self._optimised(kernel)
         except VerificationError as error:
             raise _report(self.request, words.unproven(self._span, str(error))) from error
+
+    def _optimised(self, kernel: Kernel) -> Kernel:
+        """The kernel after the passes; VerificationError if it cannot be proven safe."""
+        return passes.run(kernel)
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types = self.types

@@ -63,6 +63,28 @@ def bulk(kernel: Kernel) -> Kernel:
     return with_bodies(kernel, tuple(map(block, kernel.bodies)))
 
 
+def bulk_of_bytes(kernel: Kernel) -> Kernel:
+    """The same with loops over single bytes alone: these are right whatever order a machine has the bytes of larger numbers in."""
+
+    def block(body: Block) -> Block:
+        return tuple(part for stmt in body for part in _of_bytes(with_blocks(stmt, block), kernel.strides))
+
+    return with_bodies(kernel, tuple(map(block, kernel.bodies)))
+
+
+def _of_bytes(stmt: Stmt, strides: tuple[int, ...]) -> Block:
+    return _statement(stmt, strides) if isinstance(stmt, For) and all(map(_keeps_order, stmt.body)) else (stmt,)
+
+
+def _keeps_order(stmt: Stmt) -> bool:
+    """Whether a statement moves no number of several bytes between the message and a lane."""
+    match stmt:
+        case SetField(_, value) | Store(_, value):
+            return WIDTH[type_of(value)] == 1 or isinstance(value, Const)
+        case _:
+            return True
+
+
 def group(kernel: Kernel) -> Kernel:
     """The kernel with moves in place of short loops whose rounds are known to lie end to end: the bytes of a channel, not yet a row."""
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.passes.bulk import bulk, group
+from rosetta_jit.kernel.passes.bulk import bulk, bulk_of_bytes, group
 from rosetta_jit.kernel.passes.drop import drop
 from rosetta_jit.kernel.passes.hoist import hoist
 from rosetta_jit.kernel.passes.merge import merge
@@ -16,11 +17,11 @@ from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.kernel.shape import is_large
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosetta_jit.kernel.ir import Kernel
 
-PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
+Pass = Callable[["Kernel"], "Kernel"]
+
+PASSES: tuple[Pass, ...] = (
     simplify,
     reuse,
     simplify,
@@ -39,8 +40,11 @@ PASSES: tuple[Callable[[Kernel], Kernel], ...] = (
     sink,
 )
 
+ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in PASSES if each is not group)
+"""Those for code that may run where numbers lie with their high byte first."""
 
-def run(kernel: Kernel) -> Kernel:
+
+def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES) -> Kernel:
     """All passes, and the proof that what comes out is safe.
 
     The proof looks only so far; where it cannot follow a pass, the kernel stays as it was before that pass.
@@ -51,18 +55,18 @@ def run(kernel: Kernel) -> Kernel:
         The kernel as it was lowered could not be proven safe.
     """
     try:
-        return _all(kernel)
+        return _all(kernel, passes)
     except VerificationError:
         verify(kernel)
-    for transform in PASSES:
+    for transform in passes:
         kernel = _proven(transform, kernel)
     return kernel
 
 
-def _all(kernel: Kernel) -> Kernel:
-    results: dict[Callable[[Kernel], Kernel], Kernel] = {}
+def _all(kernel: Kernel, passes: tuple[Pass, ...]) -> Kernel:
+    results: dict[Pass, Kernel] = {}
     large = is_large(kernel)
-    for transform in PASSES:
+    for transform in passes:
         # What a pass has made, and no pass has changed since, it would not change again. In large kernels later rounds find little.
         if results.get(transform) is not kernel and not (large and transform in results):
             kernel = results[transform] = transform(kernel)
@@ -70,7 +74,7 @@ def _all(kernel: Kernel) -> Kernel:
     return kernel
 
 
-def _proven(transform: Callable[[Kernel], Kernel], kernel: Kernel) -> Kernel:
+def _proven(transform: Pass, kernel: Kernel) -> Kernel:
     """The result of a pass, if it can be proven."""
     try:
         changed = transform(kernel)

@@ -1,0 +1,158 @@
+"""From what a user asks for to a unit: the kernels of all its directions, for any machine."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
+from rosetta_jit.generate.languages import installed
+from rosetta_jit.generate.unit import Unit, UserFunction
+from rosetta_jit.kernel.ir import Digits, Nearest, Scale, Unary
+from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.passes.alone import alone
+from rosetta_jit.kernel.shape import calls_to_host, expressions_of, our_functions, statements, subexpressions
+from rosetta_jit.lowering.rules.values import scalar_type
+from rosetta_jit.model.layout import layout
+from rosetta_jit.model.types import Ref
+from rosetta_jit.pipeline.build import Build, within_stack
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rosetta_jit.generate.unit import Role
+    from rosetta_jit.kernel.ir import Kernel, Scalar
+    from rosetta_jit.model.layout import Layout
+    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.pipeline.request import Request
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
+MAX_LINES = 200
+"""Rules that the head of a file shows."""
+
+
+class AheadOfTime(Build):
+    """A program in the making for a machine that is not known yet."""
+
+    def _layout_of(self, name: str, schema: Schema) -> Layout:
+        return layout(Ref(name), schema, padded=True)
+
+    def _optimised(self, kernel: Kernel) -> Kernel:
+        return alone(passes.run(kernel, passes.ANY_MACHINE))
+
+
+def unit_of(request: Request, roles: tuple[Role, ...], name: str, *, freestanding: bool = False) -> Unit:
+    """The unit of a request's mapping or type, for some directions whatever its own is.
+
+    Raises
+    ------
+    MappingError, SchemaError
+        The mapping or type has mistakes, or needs what generated source cannot have.
+    """
+    if not NAME.fullmatch(name):
+        raise SchemaError((words.unusable_name(name),))
+    builds: dict[Role, AheadOfTime] = {role: AheadOfTime(_for(request, role)) for role in roles}
+    kernels: dict[Role, Kernel] = {}
+    for role, build in builds.items():
+        kernels[role] = build.kernels[0]
+        if role == "encode":
+            kernels["size"] = build.kernels[1]
+    _check(kernels, freestanding=freestanding)
+    first = next(iter(builds.values()))
+    return Unit(name, tuple(_made_from(builds)), first.layout, _bounds(first, kernels), kernels, _functions(first, kernels), freestanding)
+
+
+def _for(request: Request, role: Role) -> Request:
+    return replace(request, direction="encode" if role == "encode" else "decode", borrow=role == "borrow")
+
+
+def _bounds(build: Build, kernels: dict[Role, Kernel]) -> tuple[int | None, ...]:
+    """What the type allows; where nothing is encoded, no more than what decoders take."""
+    bounds = bounds_of_type(Ref(build.types.holder.name), build.types.schema, build.layout)
+    decoders = [reserved(kernel)[: len(bounds)] for kernel in kernels.values() if kernel.direction == "decode"]
+    taken = tuple(None if None in some else max(some) for some in zip(*decoders, strict=True)) if decoders else bounds
+    return least(bounds, (1, *taken[1:]))
+
+
+def _functions(build: Build, kernels: dict[Role, Kernel]) -> tuple[UserFunction, ...]:
+    """The functions that the mapping declares and a kernel calls."""
+    called = sorted({call.function for call in calls_to_host(kernels.values())})
+    declared = (build.types.functions[name] for name in called)
+    return tuple(UserFunction(each.name, _scalars(each.parameters), scalar_type(each.result)) for each in declared)
+
+
+def _scalars(types: Iterable[Type]) -> tuple[Scalar, ...]:
+    found: list[Scalar] = [scalar_type(each) for each in types]
+    return tuple(found)
+
+
+def _check(kernels: dict[Role, Kernel], *, freestanding: bool) -> None:
+    for kernel in kernels.values():
+        for function in our_functions([kernel]):
+            raise SchemaError((words.needs_library(kernel.name, f"calls `{function}`: it compresses or decompresses"),))
+        for what in _of_the_library(kernel) if freestanding else ():
+            raise SchemaError((words.needs_c_library(kernel.name, what),))
+
+
+def _of_the_library(kernel: Kernel) -> Iterator[str]:
+    """What a kernel needs of a C library."""
+    blocks = (*kernel.bodies, *(routine.body for routine in kernel.routines))
+    exprs = (part for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt) for part in subexpressions(expr))
+    for expr in exprs:
+        match expr:
+            case Nearest() | Digits() | Scale():
+                yield "decimal numbers"
+            case Unary("sqrt" | "floor" | "ceil" | "trunc" | "rint" | "sin" | "cos" | "tan" | "asin" | "acos" | "atan" as function, _):
+                yield f"`{function}`"
+            case _:
+                pass
+
+
+def _made_from(builds: dict[Role, AheadOfTime]) -> Iterator[str]:
+    """What a person asks who finds the file."""
+    for role, build in builds.items():
+        types, encoding = build.types, build.request.encoding or next(iter(build.wire_framework.encodings))
+        if types.rules is None:
+            yield f"{role}: {types.wire.name}, {encoding}"
+            continue
+        arrow = "<-" if role == "encode" else "->"
+        yield f"{role}: {types.wire.name}, {encoding} {arrow} {types.holder.name}, by {PurePath(build.checked.mapping.source.name).name}"
+        yield from _rules(build)
+
+
+def _rules(build: AheadOfTime) -> Iterator[str]:
+    """The lines of the mapping that the rules come from."""
+    spans = {span for rule in build.types.rules or () if (span := getattr(rule, "span", None)) is not None}
+    lines = sorted({(span.source.name, span.source.line_column(span.start)[0], span.source) for span in spans}, key=lambda each: each[:2])
+    for _, number, source in lines[:MAX_LINES]:
+        yield f"    {number}: {source.text.splitlines()[number - 1].strip()}"
+
+
+def generated(request: Request, language: str, roles: tuple[Role, ...], name: str, *, freestanding: bool = False) -> dict[str, str]:
+    """The files of a mapping or type in a language, by their names.
+
+    Parameters
+    ----------
+    request
+        The mapping or type; its own direction does not matter.
+    language
+        The name of one that is installed.
+    roles
+        ``"decode"``, ``"borrow"``, ``"encode"``.
+    name
+        Of the files, and what the names in them begin with.
+
+    Raises
+    ------
+    MappingError, SchemaError
+        The mapping or type has mistakes, there is no such language, or it cannot say what the kernels do.
+    """
+    known = installed()
+    if language not in known:
+        raise SchemaError((words.unknown_language(language, tuple(known)),))
+    with within_stack():
+        return known[language].files(unit_of(request, roles, name, freestanding=freestanding))

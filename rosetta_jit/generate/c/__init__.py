@@ -1,0 +1,1 @@
+"""C11 without allocation, mutable globals or dependencies."""

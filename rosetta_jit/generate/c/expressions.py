@@ -1,0 +1,382 @@
+"""Kernel expressions as C expressions of exactly their type.
+
+C computes narrow integers as `int`, so that what is narrower than that is cast back. What C leaves undefined or to the implementation, as
+shifts of negative numbers, goes through the other signedness or through a function of `support.c`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+
+from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Binary,
+    Bits,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Digits,
+    Expr,
+    Fits,
+    Get,
+    IsText,
+    Load,
+    Local,
+    Nearest,
+    Place,
+    Scalar,
+    Scale,
+    Select,
+    Told,
+    Unary,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.base import Namespace
+    from rosetta_jit.generate.c.lanes import Lanes
+
+C_TYPES: dict[str, str] = {
+    "bool": "bool",
+    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
+    "f32": "float",
+    "f64": "double",
+}
+OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
+LOGICAL = {"and": "&&", "or": "||", "xor": "!="}
+COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+OF_FLOATS = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor", "ceil": "ceil", "trunc": "trunc", "rint": "rint"}
+"""Functions of `math.h`; those of single precision end in ``f``."""
+
+
+@dataclass(slots=True)
+class Scope:
+    """What the printers of a function share: names, how lanes are reached, and what they find that the function needs.
+
+    ``parameters`` are those that it must be given, ``touched`` the lanes whose rows it reads or writes, ``counted`` those whose rows in use
+    it counts, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes that its kernel uses.
+    """
+
+    locals: Namespace
+    lanes: Lanes
+    support: set[str]
+    hidden: set[int]
+    parameters: set[str] = field(default_factory=set[str])
+    touched: set[int] = field(default_factory=set[int])
+    counted: set[int] = field(default_factory=set[int])
+
+    def calls(self, function: str) -> str:
+        """A function of the support, which will be part of the file."""
+        self.support.add(function)
+        return function
+
+    def takes(self, parameter: str) -> str:
+        """A parameter, which the function will have."""
+        self.parameters.add(parameter)
+        return parameter
+
+    def rows(self, lane: int) -> str:
+        """The pointer to the rows of a lane."""
+        self.parameters.add("holder")
+        self.touched.add(lane)
+        self._note(lane)
+        return self.lanes.rows(lane)
+
+    def used(self, lane: int) -> str:
+        """The variable that counts a lane's rows in use."""
+        if lane:
+            self.parameters.add("holder")
+        self.counted.add(lane)
+        self._note(lane)
+        return self.lanes.used(lane)
+
+    def capacity(self, lane: int) -> str:
+        """How many rows a lane has room for."""
+        self.parameters.add("holder")
+        self._note(lane)
+        return self.lanes.capacity(lane)
+
+    def _note(self, lane: int) -> None:
+        if lane >= self.lanes.own:
+            self.hidden.add(lane - self.lanes.own)
+
+
+def expression(scope: Scope, expr: Expr) -> str:
+    """The text of an expression; one with an operator stands in parentheses."""
+    match expr:
+        case Const(type_, value):
+            return constant(scope, type_, value)
+        case Local(_, name):
+            return scope.takes("end") if name == END.name else scope.locals.identifier(name)
+        case Load(type_, at, order):
+            return _loaded(scope, type_, expression(scope, at), order)
+        case Get(type_, place):
+            return read(scope, type_, place)
+        case Used() | Capacity() | Told():
+            return _about_the_holder(scope, expr)
+        case Unary(function, operand):
+            return _unary(scope, function, type_of(operand), _wide(scope, operand))
+        case Binary(op, left, right):
+            return _binary(scope, op, left, right)
+        case Compare(op, left, right):
+            return f"({' '.join(_operands(scope, left, COMPARISONS[op], right))})"
+        case Fits(op, left, right):
+            return f"{scope.calls(f'fits_{op}')}({expression(scope, left)}, {expression(scope, right)})"
+        case Convert(type_, operand):
+            return _convert(scope, type_, operand)
+        case Bits(type_, operand):
+            return _bits(scope, type_, operand)
+        case Select(condition, then, otherwise):
+            chosen = f"({expression(scope, condition)} ? {expression(scope, then)} : {expression(scope, otherwise)})"
+            return f"({C_TYPES[type_of(then)]}){chosen}" if WIDTH[type_of(then)] < 4 else chosen
+        case IsText(address, size):
+            memory, start = location(scope, address)
+            return f"{scope.calls('is_text')}({memory}, {start}, {expression(scope, size)})"
+        case Nearest() | Digits() | Scale():
+            return _decimal(scope, expr)
+        case _:
+            assert_never(expr)
+
+
+def _about_the_holder(scope: Scope, expr: Used | Capacity | Told) -> str:
+    match expr:
+        case Used(lane):
+            return scope.used(lane)
+        case Capacity(lane):
+            return scope.capacity(lane)
+        case Told(what):
+            return f"{scope.takes('holder')}->{what}"
+        case _:
+            assert_never(expr)
+
+
+def constant(scope: Scope, type_: Scalar, value: float, *, wide: bool = False) -> str:
+    """A literal; ``wide`` where C would take it for an int and nothing around it says otherwise."""
+    if type_ == "bool":
+        return "true" if value else "false"
+    if type_ in FLOATS:
+        return _float(scope, type_, float(value))
+    number, suffix = int(value), "u" if type_ not in SIGNED else ""
+    if type_ in ("i64", "u64") and (wide or not -(2**31) < number < 2**31):
+        if number == -(2**63):
+            return "INT64_MIN"
+        name = "INT64_C" if type_ == "i64" else "UINT64_C"
+        return f"{name}({number})" if number >= 0 else f"(-{name}({-number}))"
+    if type_ == "i32" and number == -(2**31):
+        return "INT32_MIN"
+    return f"{number}{suffix}" if number >= 0 else f"({number})"
+
+
+def _float(scope: Scope, type_: Scalar, value: float) -> str:
+    with np.errstate(over="ignore"):
+        number = np.float32(value) if type_ == "f32" else np.float64(value)
+    if not math.isfinite(number):
+        width = 8 * WIDTH[type_]
+        bits = int.from_bytes(to_bytes(type_, number), "little")
+        return f"{scope.calls(f'float{width}_of')}(UINT{width}_C(0x{bits:x}))"
+    text = str(number)
+    text = text if "." in text or "e" in text else f"{text}.0"
+    text = f"{text}f" if type_ == "f32" else text
+    return f"({text})" if text.startswith("-") else text
+
+
+def _is_wide(expr: Expr) -> bool:
+    """Whether C takes what is printed for more than an int."""
+    match expr:
+        case Const(type_, value):
+            return type_ in ("i64", "u64") and not -(2**31) < value < 2**31
+        case Binary(op, left, right):
+            return _is_wide(left) or (op != "shr" and _is_wide(right))
+        case Select(_, then, otherwise):
+            return _is_wide(then) or _is_wide(otherwise)
+        case _:
+            return True
+
+
+def _operands(scope: Scope, left: Expr, operator: str, right: Expr) -> tuple[str, str, str]:
+    """Both sides of an operator, of which one has the type of both."""
+    return expression(scope, left) if _is_wide(right) else _wide(scope, left), operator, expression(scope, right)
+
+
+def _binary(scope: Scope, op: str, left: Expr, right: Expr) -> str:
+    type_ = type_of(left)
+    if type_ == "bool" and op in LOGICAL:
+        return f"({expression(scope, left)} {LOGICAL[op]} {expression(scope, right)})"
+    if op in ("min", "max"):
+        return f"{scope.calls(f'{op}_{type_}')}({expression(scope, left)}, {expression(scope, right)})"
+    if type_ in FLOATS and op in ("rem", "atan2"):
+        name = scope.calls("math") and {"rem": "fmod", "atan2": "atan2"}[op]
+        return f"{name}{'f' if type_ == 'f32' else ''}({expression(scope, left)}, {expression(scope, right)})"
+    if op in ("shl", "shr"):
+        return _shifted(op, type_, _wide(scope, left), expression(scope, right))
+    return _narrowed(type_, f"({' '.join(_operands(scope, left, OPERATORS[op], right))})")
+
+
+def _wide(scope: Scope, expr: Expr) -> str:
+    """An expression that C takes for what it is."""
+    if isinstance(expr, Const):
+        return constant(scope, expr.type, expr.value, wide=True)
+    text = expression(scope, expr)
+    return text if _is_wide(expr) or type_of(expr) not in ("i64", "u64") else f"({C_TYPES[type_of(expr)]}){text}"
+
+
+def _shifted(op: str, type_: Scalar, left: str, right: str) -> str:
+    """High bits that leave are those of an unsigned number: of a signed one C does not say what becomes of it."""
+    if op == "shr":
+        return _narrowed(type_, f"({left} >> {right})")
+    unsigned = "uint64_t" if WIDTH[type_] == 8 else "uint32_t"
+    shifted = f"(({unsigned}){left} << {right})"
+    return shifted if C_TYPES[type_] == unsigned else f"({C_TYPES[type_]}){shifted}"
+
+
+def _narrowed(type_: Scalar, text: str) -> str:
+    """C computes what is narrower than an int as an int."""
+    return f"({C_TYPES[type_]}){text}" if WIDTH[type_] < 4 and type_ != "bool" else text
+
+
+def _unary(scope: Scope, function: str, type_: Scalar, value: str) -> str:
+    match function:
+        case "not" if type_ == "bool":
+            return f"(!{value})"
+        case "not":
+            return _narrowed(type_, f"(~{value})")
+        case "neg":
+            return _narrowed(type_, f"(-{value})")
+        case "abs" if type_ in SIGNED:
+            return f"{scope.calls(f'abs_{type_}')}({value})"
+        case _ if type_ not in FLOATS:
+            return value
+        case _:
+            scope.calls("math")
+            return f"{OF_FLOATS.get(function, function)}{'f' if type_ == 'f32' else ''}({value})"
+
+
+def _convert(scope: Scope, target: Scalar, operand: Expr) -> str:
+    source, value = type_of(operand), expression(scope, operand)
+    if target == source:
+        return value
+    if target == "bool":
+        return f"({value} != {constant(scope, source, 0)})"
+    if source in FLOATS and target not in FLOATS:
+        return f"{scope.calls(f'{target}_of_{source}')}({value})"
+    return f"({C_TYPES[target]}){value}"
+
+
+def _bits(scope: Scope, target: Scalar, operand: Expr) -> str:
+    source, value = type_of(operand), expression(scope, operand)
+    if source == target:
+        return value
+    width = 8 * WIDTH[source]
+    if source in FLOATS:
+        value = f"{scope.calls(f'bits_of_f{width}')}({value})"
+        return value if target == f"u{width}" else f"({C_TYPES[target]}){value}"
+    if target in FLOATS:
+        return f"{scope.calls(f'float{width}_of')}((uint{width}_t){value})"
+    return f"({C_TYPES[target]}){value}"
+
+
+def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> str:
+    scope.calls("decimals")
+    match expr:
+        case Nearest(address, size, exponent):
+            memory, start = location(scope, address)
+            return f"nearest({memory}, {start}, {expression(scope, size)}, {expression(scope, exponent)})"
+        case Digits(value, None):
+            return f"shortest_digits({expression(scope, value)}, {_is_single(value)})"
+        case Digits(value, places):
+            return f"fixed_digits({expression(scope, value)}, {places})"
+        case Scale(value):
+            return f"shortest_scale({expression(scope, value)}, {_is_single(value)})"
+        case _:
+            assert_never(expr)
+
+
+def _is_single(value: Expr) -> str:
+    return "true" if type_of(value) == "f32" else "false"
+
+
+# --- memory ------------------------------------------------------------------------------------------------------------
+
+
+def _loaded(scope: Scope, type_: Scalar, at: str, order: str) -> str:
+    return f"{scope.calls(f'load_{type_}{_suffix(type_, order)}')}({scope.takes('bytes')}, {at})"
+
+
+def _suffix(type_: Scalar, order: str) -> str:
+    """The byte order in the name of a function; single bytes have none."""
+    return "" if WIDTH[type_] == 1 else "_le" if order == "<" else "_be"
+
+
+def store(scope: Scope, at: Expr, value: Expr, order: str) -> str:
+    """A statement that writes a scalar to the message."""
+    type_ = type_of(value)
+    name = scope.calls(f"store_{type_}{_suffix(type_, order)}")
+    return f"{name}({scope.takes('bytes')}, {expression(scope, at)}, {expression(scope, value)});"
+
+
+def read(scope: Scope, type_: Scalar, place: Place) -> str:
+    """A field of a row: by its name, or where the schema has no such field by its bytes."""
+    named = _field(scope, place, type_)
+    if named is not None:
+        return f"({named} != 0)" if type_ == "bool" else named
+    return f"{scope.calls(f'get_{type_}')}({', '.join(location(scope, place))})"
+
+
+def written(scope: Scope, place: Place, value: Expr) -> str:
+    """A statement that sets a field of a row."""
+    type_, text = type_of(value), expression(scope, value)
+    named = _field(scope, place, type_)
+    if named is None:
+        return f"{scope.calls(f'set_{type_}')}({', '.join(location(scope, place))}, {text});"
+    if type_ == "bool":
+        return f"{named} = (uint8_t)({bare(text)} ? 1 : 0);"
+    return f"{named} = {bare(text)};"
+
+
+def _field(scope: Scope, place: Place, type_: Scalar) -> str | None:
+    scope.rows(place.lane)
+    return scope.lanes.field(place.lane, bare(expression(scope, place.row)), place.offset, type_)
+
+
+def location(scope: Scope, address: Address) -> tuple[str, str]:
+    """Memory, and the number of a byte in there."""
+    match address:
+        case Wire(at):
+            return scope.takes("bytes"), bare(expression(scope, at))
+        case Place(lane, row, offset):
+            stride = scope.lanes.stride(lane)
+            start = _scaled(scope, row, stride)
+            if offset:
+                start = str(offset) if start == "0" else f"{start} + {offset}"
+            return scope.rows(lane), start
+        case _:
+            assert_never(address)
+
+
+def _scaled(scope: Scope, row: Expr, stride: int) -> str:
+    if isinstance(row, Const):
+        return str(int(row.value) * stride)
+    text = expression(scope, row)
+    return bare(text) if stride == 1 else f"{text} * {stride}"
+
+
+def bare(text: str) -> str:
+    """A text without the parentheses around all of it."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return text
+    depth = 0
+    for number, char in enumerate(text):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and number < len(text) - 1:
+            return text
+    return text[1:-1]

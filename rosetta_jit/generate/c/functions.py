@@ -1,0 +1,134 @@
+"""A kernel as static functions of C: one for each routine, and one for each attempt.
+
+    int64 decode_1(holder, bytes, end, failure)         where the message ends, or -1 - site
+    int64 decode_varint(bytes, end, failure, …, &…)     0, or the number of a site of its own
+
+Each takes those of the shared parameters that it needs.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
+from rosetta_jit.generate.c.expressions import C_TYPES, Scope, bare, expression
+from rosetta_jit.generate.c.statements import Callable, Function, leaves, print_block, read_names
+from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.kernel.ir import Advance
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.kernel.ir import Direction, Kernel, Routine
+
+SHARED = ("holder", "bytes", "end", "failure")
+"""The parameters that all functions of a kernel may have, in order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """A body as a function: its name, and which of the shared parameters it takes."""
+
+    name: str
+    parameters: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A kernel's functions as text: its attempts in order, the sites that they name, the support and the hidden lanes that they use."""
+
+    text: str
+    attempts: tuple[Attempt, ...]
+    sites: tuple[int, ...]
+    support: frozenset[str]
+    hidden: frozenset[int]
+
+
+def print_kernel(kernel: Kernel, lanes: Lanes, role: str) -> Printed:
+    """The functions of a kernel that is for a message alone (`kernel.passes.alone`); their names begin with its role."""
+    writer, support, hidden, routines = Writer(), set[str](), set[int](), dict[str, Callable]()
+    words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}
+
+    def scope() -> Scope:
+        return Scope(Namespace(words), lanes, support, hidden)
+
+    for routine in kernel.routines:
+        routines[routine.name] = _routine(
+            writer, role, kernel.direction, routine, Function(scope(), routine.sites, routines, is_routine=True)
+        )
+    numbers = {0: 0}
+    attempts = tuple(
+        _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers))
+        for number in range(len(kernel.bodies))
+    )
+    return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden))
+
+
+def _attempt(writer: Writer, role: str, kernel: Kernel, number: int, function: Function) -> Attempt:
+    body, scope = kernel.bodies[number], function.scope
+    advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
+    finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted_lanes(kernel, body) if lane < scope.lanes.own}
+    function.read = frozenset(read_names(body))
+    function.finish = tuple(f"{scope.takes('holder')}->{scope.lanes.rows(lane)}.used = {used};" for lane, used in finish.items())
+    print_block(function, body)
+    if not leaves(body):
+        function.line("return INT64_MIN; /* never reached: every path has returned */")
+    name = f"{role}_{number + 1}" if len(kernel.bodies) > 1 else f"{role}_message"
+    parameters = tuple(each for each in SHARED if each in scope.parameters)
+    declared = ", ".join(_declared(parameters, kernel.direction, scope.lanes)) or "void"
+    _head(writer, f"static int64_t {name}({declared})", scope, kernel.direction)
+    for lane in sorted(scope.counted):
+        start = _used_at_start(kernel, scope.lanes, lane)
+        writer.line(f"    {'' if lane in advanced else 'const '}int64_t {scope.lanes.used(lane)} = {start};")
+    writer.lines += [*function.writer.lines, "}"]
+    return Attempt(name, parameters)
+
+
+def _used_at_start(kernel: Kernel, lanes: Lanes, lane: int) -> str:
+    """Lane 0 has the row of the message; a decoder starts with all others empty."""
+    if lane == 0:
+        return "1"
+    return "0" if kernel.direction == "decode" or lane >= lanes.own else f"holder->{lanes.rows(lane)}.used"
+
+
+def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, function: Function) -> Callable:
+    scope = function.scope
+    own = {each.name: scope.locals.identifier(each.name) for each in routine.parameters}
+    function.read = frozenset(read_names(routine.body) | {each.name for each in routine.results})
+    print_block(function, routine.body)
+    for each in routine.results:
+        function.line(f"*found_{scope.locals.identifier(each.name)} = {bare(expression(scope, each))};")
+    fails = "failure" in scope.parameters
+    if fails:
+        function.line("return 0;")
+    shared = tuple(each for each in SHARED if each in scope.parameters)
+    given = [f"{C_TYPES[each.type]} {own[each.name]}" for each in routine.parameters]
+    found = [f"{C_TYPES[each.type]} *found_{scope.locals.identifier(each.name)}" for each in routine.results]
+    name = f"{role}_{routine.name}"
+    declared = ", ".join((*_declared(shared, direction, scope.lanes), *given, *found)) or "void"
+    _head(writer, f"static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
+    writer.lines += [f"    (void){identifier};" for parameter, identifier in own.items() if parameter not in function.read]
+    writer.lines += [*function.writer.lines, "}"]
+    return Callable(name, shared, fails)
+
+
+def _head(writer: Writer, head: str, scope: Scope, direction: Direction) -> None:
+    """The begin of a function, with a pointer to each lane's rows."""
+    if writer.lines:
+        writer.line()
+    writer.line(head)
+    writer.line("{")
+    for lane in sorted(scope.touched):
+        constant = "const " if lane == 0 and direction != "decode" else ""
+        writer.line(f"    {constant}{scope.lanes.type(lane)} *restrict const {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
+
+
+def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:
+    kinds = {
+        "holder": f"{'' if direction == 'decode' else 'const '}{lanes.prefix}_holder *holder",
+        "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
+        "end": "int64_t end",
+        "failure": "struct failure *failure",
+    }
+    return [kinds[each] for each in parameters]

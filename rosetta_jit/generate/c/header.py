@@ -1,0 +1,109 @@
+"""The header of a unit: its structs, the holder, the errors, and what calls it has."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING, get_args
+
+from rosetta_jit.errors import Kind
+from rosetta_jit.generate.c.accessors import accessors, memory
+from rosetta_jit.generate.c.expressions import C_TYPES
+from rosetta_jit.generate.c.lanes import C_ROWS, row_type
+from rosetta_jit.generate.c.rows import SpanType, Struct
+from rosetta_jit.generate.c.texts import comment
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.rows import Member
+    from rosetta_jit.generate.unit import Role, Unit
+
+STATUSES = ("ok", "full", *get_args(Kind))
+
+CALLS: dict[Role, str] = {
+    "decode": """/* Reads a message. FULL: a lane lacks room; give it more and call again. After a failure the holder is empty. */
+{name}_status {name}_decode({name}_holder *holder, const void *bytes, size_t size, {name}_error *error);""",
+    "borrow": """/* The same, but bytes fields stay in the message: their spans have its offset as `start`, and -1 - the size as `count`. */
+{name}_status {name}_borrow({name}_holder *holder, const void *bytes, size_t size, {name}_error *error);""",
+    "encode": """/* Writes a message to `bytes`, which has `capacity` of them, and says how many it took. */
+{name}_status {name}_encode(const {name}_holder *holder, void *bytes, size_t capacity, size_t *size, {name}_error *error);""",
+    "size": """/* How many bytes the message takes. */
+{name}_status {name}_size(const {name}_holder *holder, size_t *size, {name}_error *error);""",
+}
+
+
+def header(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], hidden: int) -> str:
+    """The text of the header."""
+    template = Template(Path(__file__).with_name("header.h").read_text("utf-8"))
+    return template.substitute(
+        made=made(unit),
+        name=unit.name,
+        guard=f"{unit.name.upper()}_H",
+        statuses="\n".join(f"    {unit.name.upper()}_{status.upper()} = {number}," for number, status in enumerate(STATUSES)),
+        structs="\n\n".join(_struct(unit.name, lanes, struct) for struct in structs),
+        root=lanes.type(0),
+        members="\n".join(_members(unit, lanes, hidden)),
+        declarations="\n\n".join(_calls(unit)),
+        memory=memory(unit, lanes, hidden),
+        accessors=accessors(unit, lanes, structs),
+    )
+
+
+def made(unit: Unit) -> str:
+    """Comments that say from what the file was made."""
+    lines = ("Made by rosetta-jit. Changes will be lost.", *unit.made_from)
+    return "\n".join(map(comment, lines))
+
+
+def _calls(unit: Unit) -> list[str]:
+    called = [CALLS[role].format(name=unit.name) for role in CALLS if role in unit.kernels]
+    for function in unit.functions:
+        given = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(function.parameters, 1))
+        text = f"bool {unit.name}_{function.name}({given}{C_TYPES[function.result]} *result);"
+        called.append(f"/* You write this function, which the mapping calls: false refuses the message. */\n{text}")
+    return called
+
+
+def _struct(name: str, lanes: Lanes, struct: Struct) -> str:
+    lines = [comment(struct.shown), f"typedef struct {struct.identifier} {{"]
+    lines += [f"    {_member(name, lanes, member)}" for member in struct.members]
+    lines.append(f"}} {struct.identifier};")
+    if struct.cases:
+        lines += ["", "enum {", f"    {struct.identifier}_none = 0,"]
+        lines += [f"    {struct.identifier}_is_{case} = {number}," for number, case in enumerate(struct.cases, 1)]
+        lines.append("};")
+    return "\n".join(lines)
+
+
+def _member(name: str, lanes: Lanes, member: Member) -> str:
+    match member.type:
+        case str():
+            text = f"{C_ROWS[member.type]} {member.identifier}{'' if member.many is None else f'[{member.many}]'};"
+        case SpanType():
+            text = f"{row_type(name, member.type)} {member.identifier};"
+        case Struct():
+            text = f"{member.type.identifier} {member.identifier};"
+    said = member.comment
+    if member.lane is not None:
+        said = f"{said}; in `{lanes.rows(member.lane)}`".removeprefix("; ")
+    if member.type == "bool":
+        said = "0, or else true"
+    if member.presence is not None:
+        said = f"{said}; only if its bit {member.presence} is set".removeprefix("; ")
+    return f"{text} {comment(said)}" if said else text
+
+
+def _members(unit: Unit, lanes: Lanes, hidden: int) -> list[str]:
+    """The holder's members behind the message."""
+    lines: list[str] = []
+    for lane in range(1, lanes.own):
+        lines += ["    struct {", f"        {lanes.type(lane)} *rows;", "        int64_t capacity;", "        int64_t used;"]
+        lines.append(f"    }} {lanes.rows(lane)}; {comment(f'{lane}: .{unit.layout.lanes[lane].name}')}")
+    if hidden:
+        lines += ["    struct {", "        unsigned char *bytes;", "        int64_t size;"]
+        lines.append(f"    }} scratch[{hidden}]; /* {lanes.own}: memory for the functions alone */")
+    lines += [f"    int64_t {word}; {comment(said)}" for word, said in TOLD.items()]
+    return lines
+
+
+TOLD = {"now": "ns since 1970, for mappings that ask for it", "number": "of the message, for mappings that count"}

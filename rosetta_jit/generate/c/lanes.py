@@ -1,0 +1,135 @@
+"""How the lanes of a holder are reached from C.
+
+    message         the row of lane 0           position[i]     a row of another lane, through a pointer of the function's own
+    position_used   how many rows are in use    scratch_2       bytes of a hidden lane
+
+A `Lane` whose element is None has no fields that C knows: it is bytes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Namespace
+from rosetta_jit.generate.c.rows import SpanType, Struct, path_to
+from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.kernel.ir import WIDTH
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from rosetta_jit.generate.c.rows import Element
+
+OWN_WORDS = frozenset({"message", "now", "number", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem"})
+"""What the functions call their parameters, and the holder its other members."""
+
+C_ROWS: dict[str, str] = {
+    "bool": "uint8_t",
+    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
+    "f32": "float",
+    "f64": "double",
+}
+"""Types of scalars in rows."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One lane: its member of the holder, the local pointer and the local count of rows in use."""
+
+    identifier: str
+    used: str
+    stride: int
+    element: Element | None
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden."""
+
+    prefix: str
+    all: tuple[Lane, ...]
+    own: int
+
+    def stride(self, lane: int) -> int:
+        """Bytes of a row."""
+        return self.all[lane].stride
+
+    def rows(self, lane: int) -> str:
+        """The local pointer to the rows."""
+        return self.all[lane].identifier
+
+    def used(self, lane: int) -> str:
+        """The local variable that counts the rows in use."""
+        return self.all[lane].used
+
+    def capacity(self, lane: int) -> str:
+        """How many rows there is room for."""
+        if lane >= self.own:
+            size = f"holder->scratch[{lane - self.own}].size"
+            return size if self.stride(lane) == 1 else f"({size} / {self.stride(lane)})"
+        return "1" if lane == 0 else f"holder->{self.rows(lane)}.capacity"
+
+    def member(self, lane: int) -> str:
+        """The expression for the rows in the holder."""
+        if lane >= self.own:
+            return f"holder->scratch[{lane - self.own}].bytes"
+        return "&holder->message" if lane == 0 else f"holder->{self.rows(lane)}.rows"
+
+    def type(self, lane: int) -> str:
+        """The C type of a row."""
+        return row_type(self.prefix, self.all[lane].element)
+
+    def field(self, lane: int, row: str, offset: int, scalar: str) -> str | None:
+        """A scalar of a row by its name, None where no member of that type lies there."""
+        element = self.all[lane].element
+        path = None if element is None else path_to(element, offset, scalar)
+        if path is None:
+            return None
+        return f"{self.rows(lane)}->{path[1:]}" if lane == 0 else f"{self.rows(lane)}[{row}]{path}"
+
+    def words(self) -> frozenset[str]:
+        """All that no local of a kernel may be called."""
+        return RESERVED | OWN_WORDS | {word for lane in self.all for word in (lane.identifier, lane.used)}
+
+
+def row_type(prefix: str, element: Element | None) -> str:
+    """The C type of a lane's rows."""
+    match element:
+        case None:
+            return "unsigned char"
+        case str():
+            return C_ROWS[element]
+        case SpanType():
+            return f"{prefix}_span"
+        case Struct():
+            return element.identifier
+
+
+def named_lanes(names: Sequence[str]) -> list[tuple[str, str]]:
+    """For each lane the identifiers of its pointer and of its count."""
+    scope = Namespace(RESERVED | OWN_WORDS)
+    pointers = ["message" if number == 0 else scope.identifier(_unique(names, number)) for number in range(len(names))]
+    return [(pointer, scope.identifier(f"{pointer}\0used")) for pointer in pointers]
+
+
+def hidden_lanes(strides: Iterable[int]) -> list[Lane]:
+    """The lanes of a kernel that are not the holder's."""
+    return [Lane(f"scratch_{number}", f"scratch_{number}_used", stride, None) for number, stride in enumerate(strides)]
+
+
+def _unique(names: Sequence[str], number: int) -> str:
+    """The name of a lane; those that share one, as the rows of recursive structs may, are numbered."""
+    name = names[number] or "rows"
+    return name if names.count(names[number]) == 1 else f"{name}_{number}"
+
+
+def bytes_of(element: Element) -> int:
+    """Bytes of a row."""
+    match element:
+        case str():
+            return WIDTH[element]
+        case SpanType():
+            return 16
+        case Struct():
+            return element.size

@@ -1,0 +1,41 @@
+"""A unit as C: `NAME.h` and `NAME.c`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Namespace
+from rosetta_jit.generate.c.accessors import WORDS
+from rosetta_jit.generate.c.functions import print_kernel
+from rosetta_jit.generate.c.header import header
+from rosetta_jit.generate.c.lanes import Lane, Lanes, hidden_lanes, named_lanes
+from rosetta_jit.generate.c.rows import Structs, elements_of
+from rosetta_jit.generate.c.source import source
+from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.model.layout import UNKNOWN
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.functions import Printed
+    from rosetta_jit.generate.unit import Role, Unit
+
+
+def files(unit: Unit) -> dict[str, str]:
+    """The texts of the files by their names."""
+    layout = unit.layout
+    structs = Structs(unit.name, Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS}), {})
+    named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in layout.lanes])
+    elements = elements_of(layout, structs, tuple(name for name, _ in named))
+    own = [Lane(*names, lane.stride, element) for names, lane, element in zip(named, layout.lanes, elements, strict=True)]
+    lanes = Lanes(unit.name, tuple(own), len(own))
+    printed: dict[Role, Printed] = {
+        role: print_kernel(kernel, replace(lanes, all=(*own, *hidden_lanes(kernel.strides[len(own) :]))), role)
+        for role, kernel in unit.kernels.items()
+    }
+    hidden = 1 + max((number for each in printed.values() for number in each.hidden), default=-1)
+    lanes = replace(lanes, all=(*own, *hidden_lanes([1] * hidden)))
+    made = tuple(structs.made.values())
+    return {
+        f"{unit.name}.h": header(unit, lanes, made, hidden),
+        f"{unit.name}.c": source(unit, lanes, made, printed),
+    }

@@ -1,0 +1,184 @@
+"""The source file of a unit: its functions, the tables of what can be wrong, and the calls that the header declares."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.c.accessors import clear
+from rosetta_jit.generate.c.header import STATUSES, made
+from rosetta_jit.generate.c.support import support
+from rosetta_jit.generate.c.texts import literal
+from rosetta_jit.kernel.ir import Site
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.generate.c.functions import Attempt, Printed
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.rows import Struct
+    from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.kernel.ir import Kernel
+
+FREESTANDING = """#include <float.h>
+
+/* Every compiler of C calls these two by itself, and needs them even where there is no library. */
+void *memcpy(void *restrict target, const void *restrict source, size_t size);
+void *memset(void *target, int byte, size_t size);"""
+
+SAID = """    if (site->scratch >= 0 && failure->site != 0) { /* the mapping has put this text together */
+        const size_t first = indices_in(site->path);
+        found.detail = (const char *)holder->scratch[site->scratch].bytes + failure->indices[first];
+        found.detail_size = (size_t)failure->indices[first + 1];
+    }
+"""
+REACH = """/* As an offset; no object is larger than this. */
+static int64_t reach(size_t size)
+{
+    const uint64_t given = size;
+    return given < (UINT64_C(1) << 60) ? (int64_t)given : (INT64_C(1) << 60);
+}"""
+DECODE = """{name}_status {name}_{role}({name}_holder *holder, const void *bytes, size_t size, {name}_error *error)
+{{
+    struct failure failure = {{0, 0, {{0, 0, 0, 0}}}};
+    const int64_t end = reach(size);
+{unused}    int64_t result = {first};
+{others}    if (result >= 0) {{
+        return {status}_OK;
+    }}
+    {name}_clear(holder);
+    return report(error, {role}_sites, &failure, end - failure.offset, holder);
+}}"""
+ANOTHER = """    if (result < 0 && failure.site != 0) {{
+        struct failure other = {{0, 0, {{0, 0, 0, 0}}}};
+        result = {call};
+        if (result < 0 && (other.site == 0 || other.offset > failure.offset)) {{
+            failure = other;
+        }}
+    }}
+"""
+ENCODE = """{name}_status {name}_encode(const {name}_holder *holder, void *bytes, size_t capacity, size_t *size, {name}_error *error)
+{{
+    struct failure failure = {{0, 0, {{0, 0, 0, 0}}}};
+    const int64_t end = reach(capacity);
+{unused}    const int64_t result = {first};
+{status_check}"""
+MEASURED = """{name}_status {name}_encode(const {name}_holder *holder, void *bytes, size_t capacity, size_t *size, {name}_error *error)
+{{
+    struct failure failure = {{0, 0, {{0, 0, 0, 0}}}};
+    const int64_t end = {measure}; /* which leaves the lengths of the message's parts in the scratch memory */
+    if (end < 0) {{
+        return report(error, size_sites, &failure, 0, holder);
+    }}
+    if (end > reach(capacity)) {{
+        failure.site = {no_room};
+        return report(error, encode_sites, &failure, 0, holder);
+    }}
+    const int64_t result = {first};
+{status_check}"""
+NO_ROOM = Site("length", "", "no room for the message", "")
+SIZE = """{name}_status {name}_size(const {name}_holder *holder, size_t *size, {name}_error *error)
+{{
+    struct failure failure = {{0, 0, {{0, 0, 0, 0}}}};
+    const int64_t result = {first};
+{status_check}"""
+STATUS_CHECK = """    if (result < 0) {{
+        return report(error, {role}_sites, &failure, 0, holder);
+    }}
+    *size = (size_t)result;
+    return {status}_OK;
+}}"""
+
+
+ORDER: tuple[Role, ...] = ("decode", "borrow", "size", "encode")
+
+
+def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mapping[Role, Printed]) -> str:
+    """The text of the source file."""
+    called = {name for each in printed.values() for name in each.support} | {"fail", "failure"}
+    ordered = sorted(printed, key=ORDER.index)
+    functions = [
+        text
+        for role in ordered
+        for text in (_table(role, unit, lanes, printed[role].sites), printed[role].text.rstrip(), _call(unit, role, printed))
+    ]
+    text = Template(Path(__file__).with_name("source.c").read_text("utf-8")).substitute(
+        made=made(unit),
+        name=unit.name,
+        status=unit.name.upper(),
+        includes=_includes(unit, called),
+        asserts="\n".join(f'_Static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in structs),
+        support=support(_without_unused(called, printed)),
+        lanes=",\n    ".join([*(literal(_shown(each.name)) for each in unit.layout.lanes), *_scratch(lanes)]),
+        said=SAID if any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites) else "",
+        functions="\n\n".join([clear(unit.name, lanes), REACH, *functions]),
+        texts="\n".join(f'    case {unit.name.upper()}_{each.upper()}:\n        return "{each}";' for each in STATUSES),
+    )
+    return re.sub(r"\n{3,}", "\n\n", text)
+
+
+def _without_unused(called: set[str], printed: Mapping[Role, Printed]) -> set[str]:
+    used = {name for each in printed.values() for name in each.support}
+    return {each for each in called if each in used or each == "failure"}
+
+
+def _scratch(lanes: Lanes) -> list[str]:
+    return [literal(f"scratch[{number}]") for number in range(len(lanes.all) - lanes.own)]
+
+
+def _shown(name: str) -> str:
+    return f".{name}" if name else ""
+
+
+def _includes(unit: Unit, called: set[str]) -> str:
+    lines = [FREESTANDING] if unit.freestanding else ["#include <float.h>", "#include <string.h>"]
+    lines += ["#include <math.h>"] if "math" in called else []
+    lines += ["#include <inttypes.h>", "#include <stdio.h>", "#include <stdlib.h>"] if "decimals" in called else []
+    return "\n".join(sorted(lines) if not unit.freestanding else lines)
+
+
+def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
+    """The function of the header that runs a kernel."""
+    attempts = printed[role].attempts
+    words = {"name": unit.name, "role": role, "status": unit.name.upper(), "first": _run(attempts[0], "failure")}
+    taken = {parameter for each in attempts for parameter in each.parameters}
+    needed = {"decode": ("bytes",), "borrow": ("bytes",), "encode": ("bytes", "end"), "size": ()}[role]
+    unused = "".join(f"    (void){each};\n" for each in needed if each not in taken)
+    match role:
+        case "decode" | "borrow":
+            others = "".join(ANOTHER.format(call=_run(each, "other")) for each in attempts[1:])
+            return DECODE.format(**words, others=others, unused=unused)
+        case "encode" | "size":
+            if role == "encode" and printed[role].hidden:
+                words |= {"measure": _run(printed["size"].attempts[0], "failure"), "no_room": str(len(printed[role].sites))}
+                return MEASURED.format(**words, status_check=STATUS_CHECK.format(**words))
+            return (ENCODE if role == "encode" else SIZE).format(**words, status_check=STATUS_CHECK.format(**words), unused=unused)
+
+
+def _run(attempt: Attempt, failure: str) -> str:
+    given = (f"&{failure}" if each == "failure" else each for each in attempt.parameters)
+    return f"{attempt.name}({', '.join(given)})"
+
+
+def _table(role: Role, unit: Unit, lanes: Lanes, named: tuple[int, ...]) -> str:
+    """The sites of a kernel, each with the parts of the message that it checks at once."""
+    kernel: Kernel = unit.kernels[role]
+    lines: list[str] = []
+    sites = [*(kernel.sites[number] for number in named), *([NO_ROOM] if role == "encode" else [])]
+    for number, site in enumerate(sites):
+        if site.parts:
+            lines.append(f"static const struct part {role}_parts_{number}[] = {{")
+            lines += [f"    {{{each.offset}, {each.size}, {each.step}, {literal(each.path)}}}," for each in site.parts]
+            lines += ["};", ""]
+    lines.append(f"static const struct site {role}_sites[] = {{")
+    lines += [f"    {_site(role, number, site, unit, lanes)}," for number, site in enumerate(sites)]
+    return "\n".join([*lines, "};"])
+
+
+def _site(role: Role, number: int, site: Site, unit: Unit, lanes: Lanes) -> str:
+    status = "FULL" if number == 0 else site.kind.upper()
+    scratch = -1 if site.detail_lane is None else site.detail_lane - lanes.own
+    parts = f"{len(site.parts)}, {role}_parts_{number}" if site.parts else "0, NULL"
+    return f"{{{unit.name.upper()}_{status}, {literal(site.path)}, {literal(site.detail)}, {literal(site.line)}, {scratch}, {parts}}}"

@@ -1,0 +1,322 @@
+"""Kernel statements as C statements, one a line.
+
+What a message cannot be ends a function with a negative result: `fail` notes the site, the offset and the indices.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.backends.base import Writer
+from rosetta_jit.generate.c.expressions import C_TYPES, bare, expression, location, store, written
+from rosetta_jit.generate.c.texts import comment
+from rosetta_jit.kernel.ir import (
+    Address,
+    Advance,
+    Assign,
+    Block,
+    Call,
+    Const,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    For,
+    HostCall,
+    If,
+    Let,
+    Local,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Stmt,
+    Store,
+    Switch,
+    Unary,
+    Var,
+    While,
+)
+from rosetta_jit.kernel.passes.fold import FALSE, folded
+from rosetta_jit.kernel.rewrite import ends, locals_in
+from rosetta_jit.kernel.shape import blocks_of, expressions_of
+from rosetta_jit.kernel.terms import END, add, type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Mapping, Sequence
+
+    from rosetta_jit.generate.c.expressions import Scope
+    from rosetta_jit.kernel.ir import Effect, Site
+
+
+@dataclass(frozen=True, slots=True)
+class Callable:
+    """A routine as a C function: its name, and what it takes besides its own parameters."""
+
+    name: str
+    shared: tuple[str, ...]
+    fails: bool
+
+
+@dataclass(slots=True)
+class Function:
+    """One function being printed.
+
+    ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
+    returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got.
+    """
+
+    scope: Scope
+    sites: Sequence[Site]
+    routines: Mapping[str, Callable]
+    read: frozenset[str] = frozenset()
+    finish: tuple[str, ...] = ()
+    is_routine: bool = False
+    numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
+    writer: Writer = field(default_factory=lambda: Writer(depth=1))
+
+    def line(self, text: str) -> None:
+        self.writer.line(text)
+
+    def site(self, number: int) -> int:
+        """The row of a site in the table, which has those alone that a function names."""
+        return number if self.is_routine else self.numbers.setdefault(number, len(self.numbers))
+
+    @contextmanager
+    def block(self, head: str) -> Generator[None]:
+        """Braces around what is written until the end of the `with`."""
+        with self.writer.indented(f"{head} {{"):
+            yield
+        self.line("}")
+
+
+def read_names(block: Block) -> set[str]:
+    """The locals that a block reads when it runs, and not only to compute their own next value."""
+    names: set[str] = set()
+    for stmt in block:
+        exprs = (stmt.condition,) if isinstance(stmt, While) else expressions_of(stmt)
+        found = {name for expr in exprs for name in locals_in(expr)}
+        names |= found - {stmt.name} if isinstance(stmt, Assign) else found
+        for inner in blocks_of(stmt):
+            names |= read_names(inner)
+    return names
+
+
+def leaves(block: Block) -> bool:
+    """Whether a compiler sees that nothing goes on behind a block."""
+    match block[-1] if block else None:
+        case Expect(Const(_, False), _):
+            return True
+        case If(_, then, otherwise):
+            return leaves(then) and leaves(otherwise)
+        case Switch(_, cases, default):
+            return leaves(default) and all(leaves(inner) for _, inner in cases)
+        case _:
+            return ends(block)
+
+
+def print_block(function: Function, block: Block) -> None:
+    """The statements of a block."""
+    for stmt in block:
+        _statement(function, stmt)
+
+
+def _statement(function: Function, stmt: Stmt) -> None:
+    scope = function.scope
+    match stmt:
+        case Require(at, size, failure):
+            _fail_if(function, _lacks(scope, at, size), failure)
+        case Expect(condition, failure):
+            if condition == FALSE:
+                _fail(function, failure)
+            else:
+                _fail_if(function, expression(scope, folded(Unary("not", condition))), failure)
+        case Let() | Var() | Assign():
+            _bind(function, stmt)
+        case Store() | SetField() | Copy() | Fill():
+            function.line(_effect(scope, stmt))
+        case Reserve() | Advance():
+            _rows(function, stmt)
+        case Return(position):
+            for line in function.finish:
+                function.line(line)
+            function.line(f"return {bare(expression(scope, position))};")
+        case For() | While() | If() | Switch():
+            _nested(function, stmt)
+        case Call():
+            _call(function, stmt)
+        case HostCall():
+            _host_call(function, stmt)
+        case _:
+            assert_never(stmt)
+
+
+def _bind(function: Function, stmt: Let | Var | Assign) -> None:
+    """A local, if anything reads it."""
+    if stmt.name not in function.read:
+        return
+    name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, stmt.value))
+    declared = "" if isinstance(stmt, Assign) else f"{C_TYPES[type_of(stmt.value)]} "
+    function.line(f"{'const ' if isinstance(stmt, Let) else ''}{declared}{name} = {value};")
+
+
+def _effect(scope: Scope, stmt: Effect) -> str:
+    match stmt:
+        case Store(at, value, order):
+            return store(scope, at, value, order)
+        case SetField(place, value):
+            return written(scope, place, value)
+        case Copy(target, source, size):
+            copied = (*location(scope, target), *location(scope, source), bare(expression(scope, size)))
+            return f"{scope.calls('copy_bytes')}({', '.join(copied)});"
+        case Fill(target, size, byte):
+            return _fill(scope, target, size, byte)
+        case _:
+            assert_never(stmt)
+
+
+def _lacks(scope: Scope, at: Expr, size: Expr) -> str:
+    """Whether some of ``size`` bytes from ``at`` are missing."""
+    match at, size:
+        case Const(_, start), Const(_, length) if start >= 0 and length >= 0:
+            return f"({expression(scope, END)} < {expression(scope, add(at, size))})"
+        case _:
+            given = [bare(expression(scope, each)) for each in (at, size, END)]
+            return f"{scope.calls('lacks')}({', '.join(given)})"
+
+
+def _fail_if(function: Function, condition: str, failure: Failure) -> None:
+    with function.block(f"if ({bare(condition)})"):
+        _fail(function, failure)
+
+
+def _fail(function: Function, failure: Failure) -> None:
+    _failed(
+        function, str(function.site(failure.site)), expression(function.scope, failure.at), failure.indices, function.sites[failure.site]
+    )
+
+
+def _failed(function: Function, site: str, at: str, indices: tuple[Expr, ...], about: Site | None) -> None:
+    """Leave the function. A routine leaves the indices to who calls it."""
+    function.scope.takes("failure")
+    for number, each in enumerate(indices if not function.is_routine else ()):
+        function.line(f"failure->indices[{number}] = {bare(expression(function.scope, each))};")
+    said = "" if about is None else f" {comment(_about(about))}"
+    name = "fail_here" if function.is_routine else "fail"
+    function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
+
+
+def _about(site: Site) -> str:
+    path = f" {site.path}" if site.path else ""
+    line = f" ({site.line})" if site.line else ""
+    return f"{site.kind}{path}: {site.detail}{line}"
+
+
+def _fill(scope: Scope, target: Address, size: Expr, byte: int) -> str:
+    memory, start = location(scope, target)
+    if isinstance(target, Place) and isinstance(size, Const) and start == "0" and size.value > 0:
+        return f"memset({memory}, {byte}, {int(size.value)});"
+    return f"{scope.calls('fill_bytes')}({memory}, {start}, {bare(expression(scope, size))}, {byte});"
+
+
+def _rows(function: Function, stmt: Reserve | Advance) -> None:
+    scope, lanes, count = function.scope, function.scope.lanes, bare(expression(function.scope, stmt.count))
+    used = scope.used(stmt.lane)
+    if isinstance(stmt, Advance):
+        function.line(f"{used} += {count};")
+        return
+    scope.takes("failure")
+    free = f"{scope.capacity(stmt.lane)} - {used}"
+    with function.block(f"if ({count} > {free})"):
+        missing = f"{expression(scope, stmt.count)} - ({free})"
+        if stmt.lane >= lanes.own:
+            missing = f"{scope.calls('bytes_of')}({missing}, {lanes.stride(stmt.lane)})"
+        function.line(f"return {scope.calls('full')}(failure, {stmt.lane}, {missing});")
+
+
+def _nested(function: Function, stmt: For | While | If | Switch) -> None:
+    scope = function.scope
+    match stmt:
+        case For(variable, count, body):
+            name, bound = scope.locals.identifier(variable), bare(expression(scope, count))
+            if not isinstance(count, Const | Local):
+                function.line(f"const int64_t {(before := scope.locals.identifier(f'{variable} count'))} = {bound};")
+                bound = before
+            with function.block(f"for (int64_t {name} = 0; {name} < {bound}; {name}++)"):
+                print_block(function, body)
+        case While(condition, body):
+            with function.block(f"while ({bare(expression(scope, condition))})"):
+                print_block(function, body)
+        case If(condition, then, otherwise):
+            _if(function, condition, then, otherwise)
+        case Switch(value, cases, default):
+            with function.block(f"switch ({bare(expression(scope, value))})"):
+                for number, body in cases:
+                    _case(function, f"case {expression(scope, Const(type_of(value), number))}:", body)
+                _case(function, "default:", default)
+        case _:
+            assert_never(stmt)
+
+
+def _if(function: Function, condition: Expr, then: Block, otherwise: Block) -> None:
+    if not then:
+        condition, then, otherwise = folded(Unary("not", condition)), otherwise, ()
+    with function.block(f"if ({bare(expression(function.scope, condition))})"):
+        print_block(function, then)
+    if otherwise:
+        function.writer.lines[-1] += " else {"
+        function.writer.depth += 1
+        print_block(function, otherwise)
+        function.writer.depth -= 1
+        function.line("}")
+
+
+def _case(function: Function, label: str, body: Block) -> None:
+    function.writer.depth -= 1
+    with function.block(label):
+        print_block(function, body)
+        if not leaves(body):
+            function.line("break;")
+    function.writer.depth += 1
+
+
+def _call(function: Function, call: Call) -> None:
+    """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
+    scope, routine = function.scope, function.routines[call.routine]
+    for result in call.results:
+        function.line(f"{C_TYPES[result.type]} {scope.locals.identifier(result.name)} = 0;")
+    found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)
+    for each in routine.shared:
+        scope.takes(each)
+    given = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
+    if not routine.fails:
+        function.line(f"{routine.name}({given});")
+        return
+    name = call.results[0].name if call.results else call.routine
+    problem = scope.locals.identifier(f"{name} problem")
+    function.line(f"const int64_t {problem} = {routine.name}({given});")
+    with function.block(f"if ({problem} != 0)"):
+        _failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
+
+
+def _site(problem: str, sites: tuple[int, ...]) -> str:
+    """The caller's site for that of a routine."""
+    text = str(sites[-1])
+    for own, site in reversed(list(enumerate(sites[:-1], 1))):
+        text = f"{problem} == {own} ? {site} : {text}" if text != str(site) or len(set(sites)) > 1 else text
+    return text
+
+
+def _host_call(function: Function, call: HostCall) -> None:
+    """A function that the program has which this becomes part of."""
+    scope = function.scope
+    result = scope.locals.identifier(call.result.name)
+    function.line(f"{C_TYPES[call.result.type]} {result} = 0;")
+    given = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
+    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({given}))"):
+        _fail(function, call.failure)

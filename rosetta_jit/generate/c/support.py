@@ -1,0 +1,93 @@
+"""The functions that generated C calls, of which a file has those that it needs: sections of `support.c`.
+
+A section's head names it, says for which words it is repeated (``bits: 16 32``) and which other sections it needs.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from itertools import product
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+HEAD = re.compile(r"^/\* == (.*) == \*/$", re.MULTILINE)
+C_TYPES = {
+    "bool": "bool",
+    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
+    "f32": "float",
+    "f64": "double",
+}
+REAL = {"32": "float", "64": "double"}
+DECIMALS = ("shortest_digits", "shortest_scale", "fixed_digits", "nearest", "shortest", "decimal_of", "reads_back")
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A function with all that belongs to it."""
+
+    name: str
+    needs: tuple[str, ...]
+    text: str
+
+
+@cache
+def sections() -> dict[str, Section]:
+    """All sections, in the order of the file."""
+    text = Path(__file__).with_name("support.c").read_text("utf-8")
+    _, *parts = HEAD.split(text)
+    return {each.name: each for head, body in zip(parts[::2], parts[1::2], strict=True) for each in _expanded(head, body.strip("\n"))}
+
+
+def _expanded(head: str, body: str) -> Iterator[Section]:
+    """A section for each combination of its words."""
+    name, *clauses = (part.strip() for part in head.split("|"))
+    words = {key: values.split() for key, _, values in (clause.partition(":") for clause in clauses)}
+    needs = words.pop("needs", [])
+    for chosen in product(*words.values()):
+        known = dict(zip(words, chosen, strict=True))
+        known["real"] = REAL.get(known.get("float", known.get("bits", "")), "")
+        known["ctype"] = C_TYPES.get(known.get("scalar", ""), "")
+        filled = [Template(each).substitute(known) for each in (name, *needs, body)]
+        yield Section(filled[0], tuple(filled[1:-1]), filled[-1])
+
+
+def support(called: Iterable[str]) -> str:
+    """The text of some sections, and of those that they need."""
+    known, wanted = sections(), set[str]()
+    pending = list(called)
+    while pending:
+        name = pending.pop()
+        if name not in wanted:
+            wanted.add(name)
+            pending += known[name].needs
+    ordered = [*_in_order(wanted)]
+    return "\n\n".join(known[name].text for name in ordered if known[name].text)
+
+
+def _in_order(wanted: set[str]) -> Iterator[str]:
+    """Each after those that it needs, else as in the file."""
+    known, done = sections(), set[str]()
+
+    def visit(name: str) -> Iterator[str]:
+        if name not in done:
+            done.add(name)
+            for each in known[name].needs:
+                yield from visit(each)
+            yield name
+
+    for name in known:
+        if name in wanted:
+            yield from visit(name)
+
+
+@cache
+def function_names() -> frozenset[str]:
+    """What no local variable may be called."""
+    return frozenset((*sections(), *DECIMALS, "main", "strtod", "strtoll", "snprintf"))

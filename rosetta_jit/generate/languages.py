@@ -1,0 +1,61 @@
+"""The languages that programs can be generated in: values, as frameworks are. A language prints a `Unit`; it decides nothing."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING, Protocol, cast
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.generate.unit import Unit
+
+GROUP = "rosetta_jit.languages"
+"""The entry-point group in which packages offer languages of their own: a `Language` each."""
+
+
+class Files(Protocol):
+    """A function from a unit to texts."""
+
+    def __call__(self, unit: Unit) -> dict[str, str]:
+        """The files by their names."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """One language.
+
+    Attributes
+    ----------
+    name
+        What it is asked for by.
+    summary
+        One line for who chooses.
+    printer
+        The function that prints units (`Files`), as ``module:name``.
+    """
+
+    name: str
+    summary: str
+    printer: str
+
+    def files(self, unit: Unit) -> dict[str, str]:
+        """The texts of a unit's files by their names."""
+        module, _, name = self.printer.partition(":")
+        return cast("Files", getattr(import_module(module), name))(unit)
+
+
+LANGUAGES = (Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),)
+
+
+@cache
+def installed() -> Mapping[str, Language]:
+    """Every language by name: ours, and those of installed packages."""
+    from importlib.metadata import entry_points
+
+    offered = (cast("Language", each.load()) for each in entry_points(group=GROUP))
+    return {language.name: language for language in (*LANGUAGES, *offered)}

@@ -1,0 +1,52 @@
+"""What a language prints: the kernels of one holder type, what they were made from, and how its lanes lie."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.kernel.ir import Kernel, Scalar
+    from rosetta_jit.model.layout import Layout
+
+Role = Literal["decode", "borrow", "encode", "size"]
+"""What a kernel is for; `borrow` decodes and leaves bytes in the message."""
+
+
+@dataclass(frozen=True, slots=True)
+class UserFunction:
+    """A function that the mapping declares, and that whoever uses the source must write."""
+
+    name: str
+    parameters: tuple[Scalar, ...]
+    result: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """Everything about one pair of files.
+
+    Attributes
+    ----------
+    name
+        Of the files, and what begins all names in them: a C identifier in lower case.
+    made_from
+        Lines for a person: the mapping and its rules, or the type, and the encoding.
+    layout
+        Where the holder's fields lie, structs within structs padded.
+    bounds
+        How many rows of each lane a message can need; None where nothing bounds them.
+    freestanding
+        Only headers that a compiler has without a C library are included.
+    """
+
+    name: str
+    made_from: tuple[str, ...]
+    layout: Layout
+    bounds: tuple[int | None, ...]
+    kernels: Mapping[Role, Kernel]
+    functions: tuple[UserFunction, ...] = ()
+    freestanding: bool = False

@@ -1,0 +1,42 @@
+"""A kernel for one message that begins at byte 0, in row 0 of a holder that has this row: all that is proven of any message holds of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Capacity, Local
+from rosetta_jit.kernel.passes.fold import folded
+from rosetta_jit.kernel.passes.simplify import simplify
+from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
+from rosetta_jit.kernel.terms import BEGIN, ROW, index
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Routine
+
+KNOWN = {BEGIN.name: index(0), ROW.name: index(0)}
+
+
+def alone(kernel: Kernel) -> Kernel:
+    """The kernel where `begin` and `row` are 0, and lane 0 has one row."""
+    bodies = tuple(map(_block, kernel.bodies))
+    return simplify(replace(kernel, bodies=bodies, routines=tuple(map(_routine, kernel.routines))))
+
+
+def _routine(routine: Routine) -> Routine:
+    requires, ensures = (tuple(map(_expression, some)) for some in (routine.requires, routine.ensures))
+    return replace(routine, body=_block(routine.body), requires=requires, ensures=ensures)
+
+
+def _block(body: Block) -> Block:
+    return tuple(with_blocks(with_expressions(stmt, _expression), _block) for stmt in body)
+
+
+def _expression(expr: Expr) -> Expr:
+    match expr:
+        case Local(_, name) if name in KNOWN:
+            return KNOWN[name]
+        case Capacity(0):
+            return index(1)
+        case _:
+            return folded(with_operands(expr, _expression))

@@ -1,0 +1,82 @@
+"""A program in C around a generated unit: it decodes messages, writes them again, and says what is wrong with those that are broken."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import struct
+import subprocess
+from pathlib import Path
+
+import pytest
+
+STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
+SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+MAIN = Path(__file__).with_name("driver.c")
+
+needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="generated C is compiled by gcc, which is not installed")
+
+
+def write(folder: Path, texts: dict[str, str]) -> str:
+    """The files of a unit in a folder; gives the unit's name."""
+    for name, text in texts.items():
+        (folder / name).write_text(text, newline="\n")
+    return next(name for name in texts if name.endswith(".c"))[:-2]
+
+
+def compiled(compiler: str, folder: Path, name: str, *options: str) -> Path:
+    """A unit, without a warning."""
+    made = folder / f"{name}.{compiler}.o"
+    done = subprocess.run(
+        [compiler, *STRICT, *options, "-c", f"{name}.c", "-o", made], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr
+    return made
+
+
+def driver(folder: Path, name: str, compiler: str = "gcc", options: tuple[str, ...] = SANITIZED) -> Path:
+    """The program around a unit."""
+    made = folder / f"{name}.{compiler}"
+    words = [f'-DHEADER="{name}.h"', f"-DUNIT={name}"]
+    sources = [MAIN, folder / f"{name}.c", "-lm"]
+    done = subprocess.run(
+        [compiler, "-std=c11", *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return made
+
+
+def answers(program: Path, messages: list[bytes], *runner: str) -> list[str]:
+    """What the program says of each message."""
+    given = b"".join(struct.pack("<I", len(message)) + message for message in messages)
+    done = subprocess.run([*runner, program], input=given, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
+    return done.stdout.decode().splitlines()
+
+
+def harmed(messages: list[bytes], rounds: int, seed: str) -> list[bytes]:
+    """Good messages, cut and altered."""
+    chance = random.Random(seed)
+    found = list(messages)
+    for message in messages:
+        found += [message[:cut] for cut in sorted(chance.sample(range(len(message)), min(rounds, len(message))))]
+        found.append(message + b"\0")
+        for _ in range(rounds if message else 0):
+            changed = bytearray(message)
+            for _ in range(chance.randint(1, 3)):
+                changed[chance.randrange(len(changed))] = chance.choice((0, 1, 127, 128, 255, chance.randrange(256)))
+            found.append(bytes(changed))
+    return found
+
+
+def expected(decode, encode, message: bytes) -> str:
+    """What the library says of a message, as the program writes it."""
+    from rosetta_jit.errors import DecodeError, EncodeError
+
+    try:
+        return f"ok {encode(decode(message)).hex()}"
+    except DecodeError as error:
+        return f"{error.kind} {error.offset} [{error.path}] {error.detail}"
+    except EncodeError as error:
+        return f"{error.kind} [{error.path}] {error.detail}"

@@ -1,0 +1,203 @@
+"""Generated C does what the library does, is clean, reads the same every time, and is safe from what a schema says."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import struct
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.cli import main
+from rosetta_jit.generate.build import generated
+from tests.generate.driver import STRICT, answers, compiled, driver, expected, harmed, needs_gcc, write
+from tests.golden import GOLDEN, check_golden
+
+TORSO = request_of("decode", {"encoding": "yarp3"}, mapping="yarp/icub/torso_state.mapping")
+BOTH = ("decode", "encode")
+HOSTILE = """\
+# */ #include "/etc/passwd"
+int32 linux
+float64 default
+string INT64_MAX
+bool[4] presence
+uint8[] padding_1
+Inner[] rows
+"""
+ROUNDS = 12
+
+
+def joint_states():
+    names = [b"arm", "ellenbogen\u00e9".encode(), b""]
+    head = struct.pack("<III", 7, 1_700_000_000, 5) + struct.pack("<I", 4) + b"base"
+    text = struct.pack("<I", len(names)) + b"".join(struct.pack("<I", len(each)) + each for each in names)
+    numbers = struct.pack("<I3d", 3, 0.5, -1.25, float("inf")) + struct.pack("<I", 0) + struct.pack("<Id", 1, 1e-300)
+    return [head + text + numbers, struct.pack("<IIII", 0, 0, 0, 0) + bytes(16)]
+
+
+def proto_angles():
+    packed = b"\x0a\x0c" + struct.pack("<3f", 0.5, 1.5, -2.5)
+    return [b"", packed, b"\x0d" + struct.pack("<f", 4.0) + packed, packed + b"\x12\x03abc", b"\x0a\x80\x80\x00"]
+
+
+SUBJECTS = {
+    "torso": (TORSO, [struct.pack("<ii3d", 266, 3, 10, 20, 30), struct.pack("<iiidididi"[:-1], 256, 3, 10, 1.0, 10, 2.0, 10, 3.0)]),
+    "joints": (type_request("decode", "sensor_msgs/JointState", {"encoding": "ros1"}), joint_states()),
+    "angles": (type_request("decode", "rst.kinematics.JointAngles", {"encoding": "protobuf"}), proto_angles()),
+}
+
+
+@pytest.fixture(scope="module", params=SUBJECTS)
+def unit(request, tmp_path_factory):
+    """A unit in C, the library's own programs, and messages."""
+    wanted, messages = SUBJECTS[request.param]
+    folder = tmp_path_factory.mktemp(request.param)
+    write(folder, generated(wanted, "c", BOTH, request.param))
+    options = {"encoding": wanted.encoding}
+    of = (rj.Decoder, rj.Encoder) if wanted.mapping else (rj.Decoder.of, rj.Encoder.of)
+    programs = [make(wanted.mapping or wanted.type, **options) for make in of]
+    return folder, request.param, programs, messages
+
+
+@needs_gcc
+def test_c_answers_as_the_library_does(unit):
+    folder, name, (decode, encode), good = unit
+    messages = harmed(good, ROUNDS, name)
+    found = answers(driver(folder, name), messages)
+    wanted = [expected(decode, encode, message) for message in messages]
+    assert [line for line in found if line.startswith("ok")], "no message was read"
+    assert {line.split()[0] for line in found} >= {"ok", "truncated"}
+    assert found == wanted
+
+
+@needs_gcc
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_no_compiler_complains(unit, compiler):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"{compiler} is not installed")
+    compiled(compiler, unit[0], unit[1], "-O2")
+
+
+@needs_gcc
+def test_the_header_is_one_of_c_plus_plus(unit):
+    if shutil.which("g++") is None:
+        pytest.skip("g++ is not installed")
+    options = ["-std=c++17", *STRICT[1:], "-fsyntax-only", "-x", "c++"]
+    subprocess.run(["g++", *options, unit[0] / f"{unit[1]}.h"], check=True)
+
+
+@needs_gcc
+def test_freestanding_source_needs_no_library(tmp_path):
+    name = write(tmp_path, generated(TORSO, "c", BOTH, "torso", freestanding=True))
+    made = compiled("gcc", tmp_path, name, "-O2", "-ffreestanding", "-fno-stack-protector")
+    undefined = subprocess.run(["nm", "-u", made], capture_output=True, text=True, check=True).stdout.split()
+    assert set(undefined) <= {"U", "memcpy", "memset"}
+    includes = set(re.findall(r"#include <(\w+\.h)>", "".join((tmp_path / f"{name}.{end}").read_text() for end in "hc")))
+    assert includes == {"float.h", "stdbool.h", "stddef.h", "stdint.h"}
+
+
+@needs_gcc
+def test_nothing_is_allocated_and_nothing_changes_but_the_holder(unit):
+    made = compiled("gcc", unit[0], unit[1], "-O2", "-fno-stack-protector")
+    symbols = subprocess.run(["nm", made], capture_output=True, text=True, check=True).stdout
+    assert not re.findall(r" [bBDC] ", symbols), "there is a global that can change"
+    assert set(re.findall(r" U (\w+)", symbols)) <= {"memcpy", "memset", "memmove", "strlen"}
+
+
+@pytest.mark.parametrize("end", ["h", "c"])
+def test_the_text_is_the_same_every_time(end):
+    texts = generated(TORSO, "c", BOTH, "torso_state")
+    check_golden(GOLDEN / "generate" / f"torso_state.{end}", texts[f"torso_state.{end}"])
+
+
+@needs_gcc
+def test_a_hostile_schema_stays_in_its_place(tmp_path):
+    inner = "=" * 80 + "\nMSG: evil/Inner\nfloat32 while\nstring memcpy\nuint8 holder\nint64[2] which\n"
+    request = type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": HOSTILE + inner})
+    name = write(tmp_path, generated(request, "c", BOTH, "evil"))
+    compiled("gcc", tmp_path, name, "-O1")
+    program = driver(tmp_path, name)
+    rows = struct.pack("<If", 1, 2.5) + struct.pack("<I", 2) + b"ab" + bytes([7]) + struct.pack("<2q", -1, 1)
+    message = struct.pack("<id", 5, 0.5) + struct.pack("<I", 3) + b'*/"' + bytes([1, 0, 1, 1]) + struct.pack("<I", 2) + b"\0\1" + rows
+    assert answers(program, [message]) == [f"ok {message.hex()}"]
+
+
+def test_texts_end_neither_literals_nor_comments():
+    from rosetta_jit.generate.c.texts import comment, literal
+
+    hostile = '*/ "); /* \\ \n ??/ \0 \x7f \u00e9 // %s'
+    assert re.fullmatch(r'"(?:[ !#->@-\[\]-~]|\\["\\]|\\[0-7]{3})*"', literal(hostile))
+    inside = comment(hostile)[2:-2]
+    assert not re.search(r"\*/|/\*|\?\?", inside)
+    assert inside.isprintable()
+    assert inside.isascii()
+    assert len(literal("x" * 100_000)) < 4095
+
+
+def test_the_command_writes_both_files(tmp_path, capsys):
+    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "-o", str(tmp_path), "--directions", "decode"]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"joint_state.h", "joint_state.c"}
+    assert "joint_state.c" in capsys.readouterr().out
+    text = (tmp_path / "joint_state.h").read_text()
+    assert "joint_state_decode(" in text
+    assert "joint_state_encode(" not in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind"),
+    [
+        (["sensor_msgs/JointState", "--encoding", "ros1", "--language", "basic"], "unknown-language"),
+        (["sensor_msgs/JointState", "--encoding", "ros1", "--name", "1x"], "unusable-name"),
+        (["yarp/icub/torso_state.mapping"], "ambiguous-encoding"),
+        (["no/Such", "--encoding", "ros1"], "unknown-type"),
+    ],
+)
+def test_what_cannot_be_generated_is_said(arguments, kind, capsys):
+    assert main(["generate", *arguments]) == 1
+    assert f"error[{kind}]" in capsys.readouterr().err
+
+
+def test_a_wrong_direction_is_exit_code_2(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["generate", "sensor_msgs/JointState", "--directions", "sideways"])
+    assert end.value.code == 2
+    assert "sideways" in capsys.readouterr().err
+
+
+TOY = """\
+import json
+from rosetta_jit.generate.languages import Language
+
+TOY = Language("toy", "the kernels' directions as JSON", "toy_language:files")
+
+def files(unit):
+    return {f"{unit.name}.json": json.dumps({role: kernel.name for role, kernel in unit.kernels.items()})}
+"""
+
+
+def test_a_language_from_another_package(tmp_path, monkeypatch):
+    from rosetta_jit.generate.languages import installed
+
+    (tmp_path / "toy_language.py").write_text(TOY)
+    (tmp_path / "toy-1.dist-info").mkdir()
+    (tmp_path / "toy-1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
+    (tmp_path / "toy-1.dist-info" / "entry_points.txt").write_text("[rosetta_jit.languages]\ntoy = toy_language:TOY\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    installed.cache_clear()
+    try:
+        assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "toy", "-o", str(tmp_path)]) == 0
+    finally:
+        installed.cache_clear()
+    made = json.loads((tmp_path / "joint_state.json").read_text())
+    assert made == dict.fromkeys(("decode", "encode", "size"), "sensor_msgs/JointState")
+
+
+def test_capacities_are_what_the_schema_bounds():
+    text = generated(TORSO, "c", ("decode",), "torso")["torso.h"]
+    assert "#define TORSO_ANGLES_ROWS 3 " in text
+    assert Path("torso.h").name in generated(TORSO, "c", ("decode",), "torso")
