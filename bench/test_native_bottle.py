@@ -13,12 +13,13 @@ from bench.contest import Contender
 from bench.figures import Spread
 from bench.messages import batch, joints_mapping, repeated, specialised, tagged
 from bench.peers import bottle_by_hand
+from bench.peers.generated import generated_c
 from bench.peers.yarp_native import Peers
 from bench.processes import run
 
 CHAPTER = "Native bottle parsing"
 MESSAGES, SERIES = 1_000_000, 20
-OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED = (
+OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED, GENERATED = (
     "rosetta_jit",
     "rosetta_jit, `builtin`",
     "rosetta_jit, `many`",
@@ -26,6 +27,7 @@ OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED = (
     "C++ by hand, loop",
     "C++ by hand, memcpy",
     "C++ by hand, tagged",
+    "rosetta_jit, generated C",
 )
 ONE_CALL = (
     ("one call, 24 specialised doubles, `builtin`", "24 specialised doubles", "builtin", 1.3),
@@ -106,7 +108,7 @@ def in_cpp(who, makes, timed, target, wanted, count):
     """A decoder by hand in C++, which fills a target."""
     timed(1)
     same(target, wanted)
-    return Contender(who, "peer", makes, partial(timed, count))
+    return Contender(who, "ours" if who == GENERATED else "peer", makes, partial(timed, count))
 
 
 def by_struct(effort, message, makes):
@@ -136,9 +138,10 @@ def test_one_call(tmp_path, effort, record):
         record(what, Spread.of([each[message][called] for each in found]), at_most, "x len()", f"of {count} processes")
 
 
-def test_24_specialised_doubles(decoders, effort, compare, record):
+def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
     decoder, message, peers, count = decoders[24], specialised(24), Peers(), series(effort)
-    angles, degrees = np.zeros(24, np.float32), np.zeros(24)
+    angles, degrees, in_c = np.zeros(24, np.float32), np.zeros(24), np.zeros(24, np.float32)
+    compiled = generated_c(joints_mapping(24, tmp_path), tmp_path, message, in_c)
     wanted = degrees_of(message)
     outcome = compare(
         CHAPTER,
@@ -148,11 +151,14 @@ def test_24_specialised_doubles(decoders, effort, compare, record):
             *yarp_vector(peers, message, count),
             in_cpp(LOOP, "an array of float32 radians, used again", peers.loop(message, 266, angles), angles, np.radians(wanted), count),
             in_cpp(COPY, "an array of float64 degrees, used again", peers.copy(message, 266, degrees), degrees, wanted, count),
+            in_cpp(GENERATED, HOLDER, compiled, in_c, np.radians(wanted), count),
             by_struct(effort, message, "a tuple of degrees, anew"),
         ],
         rounds=SERIES,
     )
     against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder", 1 / 30)
+    took = outcome.took(GENERATED).median
+    record("generated C against a C++ loop by hand", outcome.ratio(GENERATED, LOOP), 1.15, "x", f"{took:.1f} ns, gcc -O2", against=LOOP)
     loop, copy = (outcome.took(who).median for who in (LOOP, COPY))
     detail = f"loop {loop:.1f} ns, header check and memcpy {copy:.1f} ns"
     record("the same against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)

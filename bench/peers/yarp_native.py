@@ -63,7 +63,7 @@ class Peers:
         return lambda iterations: function(target, source, ctypes.c_int64(size), ctypes.c_int64(iterations))
 
     def _timed(self, name: str, message: bytes, *arguments: Any) -> Callable[[int], float]:
-        return partial(_nanoseconds, self._function(name), (message, ctypes.c_int64(len(message)), *arguments))
+        return partial(nanoseconds, self._function(name), (message, ctypes.c_int64(len(message)), *arguments))
 
     def _function(self, name: str) -> Any:
         function = self.library[name]
@@ -71,7 +71,8 @@ class Peers:
         return function
 
 
-def _nanoseconds(function: Any, arguments: tuple[Any, ...], iterations: int) -> float:
+def nanoseconds(function: Any, arguments: tuple[Any, ...], iterations: int) -> float:
+    """What a timed loop gives; ValueError if it refuses the message."""
     took = function(*arguments, ctypes.c_int64(iterations))
     if took < 0:
         raise ValueError(f"{function.__name__} refuses the message")
