@@ -144,7 +144,7 @@ class Encoder(_Made, EncoderBase):
     def kernel(self) -> Any:
         """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
 
-        For use in ``@njit`` code of one's own: see `rosetta_jit.backends.numba.function.data_pointer`, and a holder's ``lanes_.state``. What
+        For use in ``@njit`` code: see `rosetta_jit.backends.numba.function.data_pointer`, and a holder's ``lanes_.state``. What
         `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping calls functions, or compresses images.
         """
         from rosetta_jit.backends.numba.function import typed
