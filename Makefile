@@ -39,9 +39,9 @@ conformance: $(VENV)/.test ## protobuf's own conformance suite; CONFORMANCE_TEST
 	$(BIN)/python -m pytest tests/conformance $(ARGS)
 
 # What the report shows is in pytest-benchmark's JSON, of which each run's is kept in build/bench/runs, too.
-bench: $(VENV)/.bench native ## measure everything, write build/bench/report.html and .md; QUICK=1: a look, in minutes
+bench: $(VENV)/.bench native ## measure everything, write build/bench/report.html and the figures of the docs; QUICK=1: a look
 	mkdir -p $(dir $(RUN))
-	$(BIN)/python -m pytest bench --bench-report $(BENCH) $(ARGS); status=$$?; $(BIN)/python -m bench.report $(RUN) && exit $$status
+	$(BIN)/python -m pytest bench --bench-report $(if $(QUICK),,--bench-readme) $(BENCH) $(ARGS); status=$$?; $(BIN)/python -m bench.report $(RUN) && exit $$status
 
 bench-check: $(VENV)/.bench native ## the same, failing where a target is missed
 	mkdir -p $(dir $(RUN))

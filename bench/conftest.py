@@ -10,7 +10,7 @@ from bench import contest
 from bench.figures import Curve, Report, Row, to_json
 from bench.machine import versions
 from bench.report.markdown import targets
-from bench.report.readme import insert_in_readme
+from bench.report.readme import write_in
 from bench.turns import Call, Effort, Placed
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,7 +40,11 @@ FOUND = pytest.StashKey[dict[str, list]]()
 def pytest_addoption(parser):
     parser.addoption("--quick", action="store_true", help="few and short rounds, small curves: a look, in minutes")
     parser.addoption("--bench-report", action="store_true", help="missed targets are shown and do not fail the run")
-    parser.addoption("--bench-readme", action="store_true", help="write the table of targets into README.md")
+    parser.addoption(
+        "--bench-readme",
+        action="store_true",
+        help="write rows and their picture into README.md, and docs/benchmarks.md",
+    )
 
 
 def pytest_configure(config):
@@ -62,7 +66,7 @@ def pytest_terminal_summary(terminalreporter, config):
     terminalreporter.write_sep("=", "targets")
     terminalreporter.write(targets(report.rows))
     if config.getoption("--bench-readme"):
-        insert_in_readme(report.rows, ROOT / "README.md")
+        write_in(ROOT, report.rows)
 
 
 def _report(config):

@@ -156,12 +156,12 @@ def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
         ],
         rounds=SERIES,
     )
-    against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder", 1 / 30)
+    against_dynamic(record, outcome, peers, "24 specialised doubles, against a dynamic C++ decoder", 1 / 30)
     took = outcome.took(GENERATED).median
     record("generated C against a C++ loop by hand", outcome.ratio(GENERATED, LOOP), 1.15, "x", f"{took:.1f} ns, gcc -O2", against=LOOP)
     loop, copy = (outcome.took(who).median for who in (LOOP, COPY))
     detail = f"loop {loop:.1f} ns, header check and memcpy {copy:.1f} ns"
-    record("the same against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)
+    record("24 specialised doubles, against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)
 
 
 def test_16_tagged_doubles(decoders, effort, compare, record):
@@ -184,9 +184,9 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
         ],
         rounds=SERIES,
     )
-    against_dynamic(record, outcome, peers, "the same against a dynamic C++ decoder, tagged", None)
+    against_dynamic(record, outcome, peers, "16 tagged doubles, against a dynamic C++ decoder", None)
     loop = outcome.took(TAGGED).median
-    record("the same against a C++ loop by hand, tagged", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")
+    record("16 tagged doubles, against a C++ loop by hand", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")
 
 
 def against_dynamic(record, outcome, peers, what, at_most):

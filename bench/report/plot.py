@@ -12,12 +12,21 @@ from bench.report import words
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from bench.figures import Comparison, Curve
+    from bench.figures import Comparison, Curve, Row
 
 WIDTH, HEIGHT = 560, 320
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 12, 44
 ROW = 22
 LABEL = 250
+WIDE, WIDE_LABEL, WIDE_NOTE = 1080, 390, 290
+"""The width of a picture that stands alone, and what of it is for names and for figures."""
+
+ALONE = (
+    "svg{font:13px system-ui,sans-serif;background:#fff}text{fill:#1c2733}.name{text-anchor:end}.tick{text-anchor:middle;fill:#6d7b8a}"
+    ".grid{stroke:#d8dee6}.one{stroke:#6d7b8a}.bar{stroke-width:4}.ours{fill:#0b6bcb;stroke:#0b6bcb}.target{stroke:#2b8a3e;stroke-width:3}"
+)
+"""The style of such a picture: no page gives it one."""
+
 HUES = 8
 """Lines have this many colours, `.c0` and on, in the page's style."""
 
@@ -108,6 +117,30 @@ def bars(comparison: Comparison) -> str:
         parts.append(f'<circle class="{style}" cx="{across.at(cost.median):.1f}" cy="{y}" r="4"/>')
         parts.append(f'<text x="{across.at(cost.high) + 8:.1f}" y="{y + 4:.1f}">{words.time(cost.median)}</text>')
     return _picture(height, parts)
+
+
+def multiples(rows: Sequence[Row]) -> str:
+    """Ratios over a logarithmic axis, as a file of its own: a dot for the median, a stroke for the quartiles, a tick for the target."""
+    height = TOP + ROW * len(rows) + BOTTOM / 2
+    costs = [row.measured for row in rows]
+    wanted = [row.at_most for row in rows if row.at_most]
+    across = Scale.over([1.0, *wanted, *(each.low for each in costs), *(each.high for each in costs)], WIDE_LABEL, WIDE - WIDE_NOTE)
+    parts: list[str] = []
+    for value in across.ticks():
+        place, style = across.at(value), "one" if value == 1 else "grid"
+        parts.append(f'<line class="{style}" x1="{place:.1f}" x2="{place:.1f}" y1="{TOP}" y2="{height - BOTTOM / 2:.1f}"/>')
+        parts.append(f'<text class="tick" x="{place:.1f}" y="{height - 6:.1f}">{value:g}</text>')
+    for number, (row, cost) in enumerate(zip(rows, costs, strict=True)):
+        y = TOP + ROW * (number + 0.5)
+        parts.append(f'<text class="name" x="{WIDE_LABEL - 8}" y="{y + 4:.1f}">{escape(row.what.replace("`", ""))}</text>')
+        parts.append(f'<line class="ours bar" x1="{across.at(cost.low):.1f}" x2="{across.at(cost.high):.1f}" y1="{y}" y2="{y}"/>')
+        parts.append(f'<circle class="ours" cx="{across.at(cost.median):.1f}" cy="{y}" r="4"/>')
+        if row.at_most:
+            place = across.at(row.at_most)
+            parts.append(f'<line class="target" x1="{place:.1f}" x2="{place:.1f}" y1="{y - 7}" y2="{y + 7}"/>')
+        parts.append(f'<text x="{WIDE - WIDE_NOTE + 12}" y="{y + 4:.1f}">{escape(f"{cost.median:.3g} {row.unit}")}</text>')
+    style = f"<style>{ALONE}</style>"
+    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDE} {height:.0f}" width="{WIDE}">{style}{"".join(parts)}</svg>\n'
 
 
 def _grid(across: Scale, up: Scale, x: str, y: str) -> Iterable[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -12,9 +13,11 @@ from bench import compare
 from bench.figures import Comparison, Figure, from_json
 from bench.report import __main__ as reports
 from bench.report import plot, tables
-from bench.report.readme import BEGIN, END, insert_in_readme
+from bench.report.readme import BEGIN, END, HEADLINES, PICTURE, TABLE, write_in
 from bench.run import of
 from tests.bench import runs
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
@@ -99,14 +102,26 @@ def test_shares_add_up_to_the_whole(written):
     assert ">8 ms</text>" in page
 
 
-def test_the_readme_keeps_what_stands_around_the_table(tmp_path):
-    readme = tmp_path / "README.md"
-    readme.write_text(f"before\n{BEGIN}old\n{END}\nafter\n")
-    insert_in_readme([runs.row("fast")], readme)
-    text = readme.read_text("utf-8")
-    assert text.startswith(f"before\n{BEGIN}| what |")
-    assert text.endswith(f"met - 25 ns |\n{END}\nafter\n")
-    assert "old" not in text
+def test_the_readme_shows_the_first_rows_and_a_page_all_of_them(tmp_path):
+    (tmp_path / "docs").mkdir()
+    pages = tmp_path / "README.md", tmp_path / TABLE
+    for page in pages:
+        page.write_text(f"before\n{BEGIN}old\n{END}\nafter\n")
+    write_in(tmp_path, [runs.row("fast"), runs.row(HEADLINES[0])])
+    texts = [page.read_text("utf-8") for page in pages]
+    for text in texts:
+        assert text.startswith(f"before\n{BEGIN}| what |")
+        assert text.endswith(f"met - 25 ns |\n{END}\nafter\n")
+        assert "old" not in text
+    assert ["| fast |" in text for text in texts] == [False, True]
+    picture = ET.fromstring((tmp_path / PICTURE).read_text("utf-8"))  # noqa: S314 - written by us
+    assert len(list(picture.iter("{http://www.w3.org/2000/svg}circle"))) == 1
+
+
+def test_the_repository_has_the_marks_that_a_run_writes_between():
+    for name in ("README.md", TABLE):
+        text = (ROOT / name).read_text("utf-8")
+        assert text.index(BEGIN) < text.index(END)
 
 
 def compared(tmp_path, *rows):
