@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
+from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.shapes import is_message_like
@@ -122,10 +123,23 @@ class Program:
 
     def new(self) -> Any:
         """A holder of one's own, with room for what has been decoded until now, unless that is much."""
-        holder_type = self._loaded.holder_type
-        holder = holder_type.__new__(holder_type)
-        holder.lay_out_(max(self._plan, holder_type.family_.roomy, key=lambda plan: plan.size_bytes))
-        return holder
+        own, family, roomy, spawn, holder_type, recipe = self._latest
+        if own is self._plan and roomy is family.roomy:
+            return spawn(holder_type, recipe)
+        return self._new()
+
+    _latest: tuple[Any, ...] = (None,) * 6
+
+    def _new(self) -> Any:
+        """A new holder, when there was another plan for the last one."""
+        own, holder_type = self._plan, self._loaded.holder_type
+        family = holder_type.family_
+        plan = own if own.size_bytes > family.roomy.size_bytes else family.roomy
+        recipe = family.recipe(plan)
+        if recipe is None:
+            return family.new(plan)
+        self._latest = own, family, family.roomy, functions()["spawn"], holder_type, recipe
+        return functions()["spawn"](holder_type, recipe)
 
     def _borrow(self) -> Any:
         """An empty holder that nobody else has, until it comes back by `_give_back`."""

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 # Include/object.h, Include/typeslots.h, Include/structmember.h
-DEFAULT, VECTORCALL, BASETYPE = 1 << 18, 1 << 11, 1 << 10
+DEFAULT, METHOD_DESCRIPTOR, VECTORCALL, BASETYPE = 1 << 18, 1 << 17, 1 << 11, 1 << 10
 MP_SUBSCRIPT, SQ_LENGTH = 5, 45
 TP_CALL, TP_DEALLOC, TP_ITER, TP_ITERNEXT, TP_SETATTRO, TP_MEMBERS = 50, 52, 62, 63, 69, 72
 OBJECT, SSIZE_T, READONLY = 16, 19, 1

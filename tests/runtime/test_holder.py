@@ -445,3 +445,39 @@ def tree_of(message):
 
 def test_used_types_are_those_of_the_schema():
     assert {type(field.type) for field in FLAT.fields} >= {Array, Bytes, Float, Int, Map, Optional, Ref, String, Union}
+
+
+def test_what_is_refused_leaves_all_as_it_was():
+    """Also where half of the value was right, the lanes have moved meanwhile, or messages around were brought into being."""
+    schema = {
+        "u.proto": 'syntax = "proto2";\nmessage U { repeated string names = 1; repeated U more = 2; optional U child = 3;\n'
+        "optional int32 x = 4; map<string, U> named = 5; repeated string after = 6; }\n"
+    }
+    from rosetta_jit import Decoder
+    from rosetta_jit.runtime.holder import PLAIN
+
+    own = Decoder.of("U", schema=schema, encoding="protobuf", imports=["u.proto"]).holder_type.family_
+    made = holder_class(own.type, own.schema, PLAIN)
+    value = {"names": ["a", "bc"], "more": [{"x": 1, "names": ["d"]}, {"x": 2}], "named": {"k": {"x": 3}}, "after": ["z"]}
+    wrong = {
+        "names": ["x" * 3000, 1],
+        "more": [{"names": ["y" * 99]}, {"x": "no"}],
+        "named": {"a": {"x": 5}, "k": {"x": "no"}},
+        "child": {"child": {"names": ["q"], "x": 2.5}},
+    }
+    message = made.from_dict(value)
+    expected = message.to_dict()
+    for name, refused in wrong.items():
+        for _ in range(3):
+            with pytest.raises((ValueError, TypeError)):
+                setattr(message, name, refused)
+            assert message.to_dict() == expected
+    assert not message.has("child")
+    with pytest.raises(ValueError, match=r"x"):
+        message.child.child.more = [{"x": 1}, {"x": "no"}]
+    assert message.to_dict() == expected
+    assert not message.has("child")
+    message.child.child.more = [{"x": 1}]
+    message.names = ["new"]
+    assert message.to_dict() == expected | {"names": ["new"], "child": message.child.to_dict()}
+    assert message.child.child.more[0].x == 1

@@ -75,5 +75,13 @@ def members(family: Family) -> dict[str, Any]:
     }
 
 
-OMNIORB = Manners(Structure, np.ndarray, PLAIN.sequence, PLAIN.mapping, assigns_whole=True, members=members)
+OMNIORB = Manners(
+    Structure,
+    np.ndarray,
+    PLAIN.sequence,
+    PLAIN.mapping,
+    assigns_whole=True,
+    members=members,
+    place="rosetta_jit.frameworks.corba.manners:OMNIORB",
+)
 """The manners of omniORBpy's classes."""

@@ -106,5 +106,7 @@ LCM_GEN = Manners(
     members=members,
     serialising=("lcm", "lcm"),
     foreign=OBJECTS,
+    place="rosetta_jit.frameworks.lcm.manners:LCM_GEN",
+    methods=lambda _: {"encode": "encode", "decode": "make"},
 )
 """The manners of lcm-gen's classes."""

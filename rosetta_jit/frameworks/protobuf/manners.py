@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.holder import Family
     from rosetta_jit.runtime.holder.record import Entry, Record
-    from rosetta_jit.runtime.holder.serialising import Programs
+    from rosetta_jit.runtime.holder.serialising import Kind, Programs
 
 
 class ProtobufMessage(Holder):
@@ -236,6 +236,12 @@ def members(family: Family) -> dict[str, Any]:
     )
 
 
+def methods(family: Family) -> dict[str, Kind]:
+    """The methods that do nothing but serialise: where fields are required, one asks for these first."""
+    found: dict[str, Kind] = {"SerializePartialToString": "encode", "ParseFromString": "parse", "FromString": "make"}
+    return found if requires(family.tree.root) else {**found, "SerializeToString": "encode"}
+
+
 PROTOBUF = Manners(
     ProtobufMessage,
     NumberArray,
@@ -245,5 +251,7 @@ PROTOBUF = Manners(
     members=members,
     serialising=("protobuf", "protobuf-partial"),
     foreign=OBJECTS,
+    place="rosetta_jit.frameworks.protobuf.manners:PROTOBUF",
+    methods=methods,
 )
 """The manners of protobuf's messages."""

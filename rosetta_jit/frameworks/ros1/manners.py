@@ -185,5 +185,7 @@ GENPY = Manners(
     members=members,
     serialising=("ros1", "ros1"),
     foreign=OBJECTS,
+    place="rosetta_jit.frameworks.ros1.manners:GENPY",
+    methods=lambda _: {"serialize": "write", "deserialize": "decode"},
 )
 """The manners of genpy's classes."""

@@ -129,5 +129,6 @@ RCLPY = Manners(
     members=members,
     serialising=("ros2", "cdr"),
     foreign=OBJECTS,
+    place="rosetta_jit.frameworks.ros2.manners:RCLPY",
 )
 """The manners of rosidl's classes."""

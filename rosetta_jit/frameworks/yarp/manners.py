@@ -202,6 +202,13 @@ def _text(octets: bytes) -> str:
 
 
 BOTTLE = Manners(
-    BottleMessage, PLAIN.array_type, PLAIN.sequence, PLAIN.mapping, assigns_whole=True, members=PLAIN.members, serialising=("yarp", "yarp4")
+    BottleMessage,
+    PLAIN.array_type,
+    PLAIN.sequence,
+    PLAIN.mapping,
+    assigns_whole=True,
+    members=PLAIN.members,
+    serialising=("yarp", "yarp4"),
+    place="rosetta_jit.frameworks.yarp.manners:BOTTLE",
 )
 """The manners of messages of YARP."""

@@ -5,6 +5,7 @@
     places       what they must know of each field of a record: a table of words
     descriptors  attributes of a class that run them
     sequences    arrays that are shown by them
+    methods      methods that serialise, as calls of programs
 
 They do what is common and ask Python for everything else, so that what a field means is said once: in `rosetta_jit.runtime.holder.access`.
 Where Python is none that they know, that is all there is.

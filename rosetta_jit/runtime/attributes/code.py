@@ -21,12 +21,13 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.code.native import Library
 
-FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll")
+FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll", "methods.ll")
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
 WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
-FUNCTIONS = ("begin", "bind", "restart", "extend_texts")
+FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "extend_texts")
 SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
-SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *FUNCTIONS, *SEQUENCES)
+METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make")
+SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *FUNCTIONS, *SEQUENCES, *METHODS)
 """What the library defines."""
 
 CELLS = {"bool": "i8", "f32": "float", "f64": "double"}

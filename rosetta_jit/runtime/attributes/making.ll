@@ -8,6 +8,12 @@ define ptr @begin(ptr %module, ptr %arguments, i64 %given) {
   %arena = load ptr, ptr %arguments
   %begin = call ptr @pointer(ptr %arguments, i64 8)
   %addresses = call ptr @pointer(ptr %arguments, i64 16)
+  %state = call i64 @begun(ptr %arena, ptr %begin, ptr %addresses)
+  %object = call ptr @PyLong_FromUnsignedLongLong(i64 %state)
+  ret ptr %object
+}
+
+define internal i64 @begun(ptr %arena, ptr %begin, ptr %addresses) {
   %memory = call i64 @word(ptr %arena, i64 40)
   %above = add i64 %memory, 63
   %aligned = and i64 %above, -64
@@ -32,8 +38,7 @@ each:
   call void @put(ptr %state, i64 %place, i64 %address)
   br label %head
 done:
-  %object = call ptr @PyLong_FromUnsignedLongLong(i64 %aligned)
-  ret ptr %object
+  ret i64 %aligned
 }
 
 ; bind(message, lanes, access, parent, entry, *words) -> whether the message was new; else nothing is done. The words are those from 16 on. Then
@@ -120,4 +125,118 @@ each:
 done:
   call void @Py_IncRef(ptr @_Py_NoneStruct)
   ret ptr @_Py_NoneStruct
+}
+
+; A recipe is a tuple of what a new holder has: the class of lanes, their plan, the class of arrays, how its root is read, how the memory begins, its
+; addresses, and words: 0 bytes of the arena, 8 how many messages, 16 the first lane's words, 24 the root's table, and where in lanes lie 32 the arena,
+; 40 the plan, 48 the class of arrays, 56 the address, 64 whether they are filled, 72 the number of messages.
+declare ptr @PyByteArray_FromStringAndSize(ptr, i64)
+
+; spawn(class, recipe) -> a new holder
+define ptr @spawn(ptr %module, ptr %arguments, i64 %given) {
+  %class = load ptr, ptr %arguments
+  %recipe = call ptr @pointer(ptr %arguments, i64 8)
+  %holder = call ptr @PyType_GenericAlloc(ptr %class, i64 0)
+  %made = icmp ne ptr %holder, null
+  br i1 %made, label %fill, label %none
+fill:
+  %good = call i1 @equipped(ptr %holder, ptr %recipe)
+  br i1 %good, label %done, label %drop
+done:
+  ret ptr %holder
+drop:
+  call void @Py_DecRef(ptr %holder)
+  br label %none
+none:
+  ret ptr null
+}
+
+; equip(holder, recipe) -> whether the holder was new; else nothing is done.
+define ptr @equip(ptr %module, ptr %arguments, i64 %given) {
+  %holder = load ptr, ptr %arguments
+  %recipe = call ptr @pointer(ptr %arguments, i64 8)
+  %state = call i64 @word(ptr %holder, i64 16)
+  %is.new = icmp eq i64 %state, 0
+  br i1 %is.new, label %fill, label %old
+fill:
+  %good = call i1 @equipped(ptr %holder, ptr %recipe)
+  br i1 %good, label %done, label %failed
+done:
+  %yes = call ptr @box_bool(i8 1)
+  ret ptr %yes
+old:
+  %no = call ptr @box_bool(i8 0)
+  ret ptr %no
+failed:
+  ret ptr null
+}
+
+; Give a new holder lanes; false if there is no memory, and an error is set.
+define internal i1 @equipped(ptr %holder, ptr %recipe) {
+  %class = call ptr @pointer(ptr %recipe, i64 24)
+  %plan = call ptr @pointer(ptr %recipe, i64 32)
+  %array = call ptr @pointer(ptr %recipe, i64 40)
+  %access = call ptr @pointer(ptr %recipe, i64 48)
+  %begin = call ptr @pointer(ptr %recipe, i64 56)
+  %addresses = call ptr @pointer(ptr %recipe, i64 64)
+  %words.object = call ptr @pointer(ptr %recipe, i64 72)
+  %words = getelementptr i8, ptr %words.object, i64 32
+  %size = load i64, ptr %words
+  %lanes = call ptr @PyType_GenericAlloc(ptr %class, i64 0)
+  %has.lanes = icmp ne ptr %lanes, null
+  br i1 %has.lanes, label %take, label %failed
+take:
+  %arena = call ptr @PyByteArray_FromStringAndSize(ptr null, i64 %size)
+  %has.arena = icmp ne ptr %arena, null
+  br i1 %has.arena, label %start, label %drop
+start:
+  %memory = call ptr @pointer(ptr %arena, i64 40)
+  call void @llvm.memset.p0.i64(ptr %memory, i8 0, i64 %size, i1 false)
+  %state = call i64 @begun(ptr %arena, ptr %begin, ptr %addresses)
+  %rows = call i64 @word(ptr %words, i64 8)
+  %first = call i64 @word(ptr %words, i64 16)
+  %table = call i64 @word(ptr %words, i64 24)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 32, ptr %arena)
+  call void @Py_IncRef(ptr %plan)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 40, ptr %plan)
+  call void @Py_IncRef(ptr %array)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 48, ptr %array)
+  %address.object = call ptr @PyLong_FromUnsignedLongLong(i64 %state)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 56, ptr %address.object)
+  %filled = call ptr @box_bool(i8 1)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 64, ptr %filled)
+  %rows.object = call ptr @PyLong_FromLongLong(i64 %rows)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 72, ptr %rows.object)
+  %one = icmp ne ptr %address.object, null
+  %two = icmp ne ptr %rows.object, null
+  %whole = and i1 %one, %two
+  br i1 %whole, label %bind, label %drop
+bind:
+  call void @set_slot(ptr %holder, i64 72, ptr %access)
+  call void @set_slot(ptr %holder, i64 80, ptr @_Py_NoneStruct)
+  call void @set_slot(ptr %holder, i64 88, ptr %lanes)
+  call void @set_slot(ptr %holder, i64 96, ptr @_Py_NoneStruct)
+  call void @put(ptr %holder, i64 24, i64 0)
+  call void @put(ptr %holder, i64 32, i64 -9223372036854775808)
+  call void @put(ptr %holder, i64 40, i64 %first)
+  call void @put(ptr %holder, i64 48, i64 %table)
+  call void @put(ptr %holder, i64 56, i64 0)
+  call void @put(ptr %holder, i64 64, i64 0)
+  call void @put(ptr %holder, i64 16, i64 %state)
+  call void @Py_DecRef(ptr %lanes)
+  %full = call i32 @populate(ptr %holder)
+  %good = icmp eq i32 %full, 0
+  ret i1 %good
+drop:
+  call void @Py_DecRef(ptr %lanes)
+  br label %failed
+failed:
+  ret i1 false
+}
+
+; Put a reference that is given away where a word says.
+define internal void @fill_slot(ptr %object, ptr %words, i64 %word, ptr %value) alwaysinline {
+  %offset = call i64 @word(ptr %words, i64 %word)
+  call void @put_pointer(ptr %object, i64 %offset, ptr %value)
+  ret void
 }

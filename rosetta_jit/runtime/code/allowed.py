@@ -17,6 +17,7 @@ MATHEMATICS = (
 ALLOWED = frozenset(
     [
         "PyBuffer_Release",
+        "PyByteArray_FromStringAndSize",
         "PyByteArray_Type",
         "PyBytes_FromStringAndSize",
         "PyBytes_Type",
@@ -43,6 +44,7 @@ ALLOWED = frozenset(
         "PyObject_GenericSetAttr",
         "PyObject_GetBuffer",
         "PyObject_Vectorcall",
+        "PyObject_VectorcallMethod",
         "PySequence_GetSlice",
         "PyThread_get_thread_ident",
         "PyType_GenericAlloc",

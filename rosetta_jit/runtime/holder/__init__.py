@@ -5,6 +5,7 @@ arena       writing into lanes: spans, presence, emptiness
 coerce      what may be assigned to a field
 values      plain Python values of a field, and back
 message     what holders and views into them are
+undo        what a refused change leaves behind: nothing
 access      getters and setters
 sequence    arrays and maps that numpy cannot show
 classes     what every holder can do

@@ -6,6 +6,7 @@ Absent values are zero in memory, so presence is asked only where a default is n
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache as cached
 from typing import TYPE_CHECKING, Any, Protocol, assert_never, cast
 
 import numpy as np
@@ -14,7 +15,7 @@ from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.initial_values import MAX_BORN_BYTES
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
-from rosetta_jit.runtime.holder import arena, coerce, grid, values
+from rosetta_jit.runtime.holder import arena, coerce, grid, undo, values
 from rosetta_jit.runtime.holder.message import Message, View, beside, element, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
@@ -263,14 +264,20 @@ def _leaf_setter(entry: Entry, node: values.Leaf) -> Setter:
 
 
 def _whole_setter(entry: Entry) -> Setter:
-    """Assignment of plain values, or of another message, to what is made of parts."""
+    """Assignment of plain values, or of another message, to what is made of parts. What is refused leaves all as it was."""
+    within = cached(lambda: undo.lanes_within(entry.node))
 
     def set_(message: Message, value: Any) -> None:
         plain = raw(value)
         with message.lanes_:
-            lanes, row = writable(message)
-            arena.clear(lanes, entry, row)
-            values.write_entry(entry, lanes, row, plain)
+            before = undo.saved(message, within())
+            try:
+                lanes, row = writable(message)
+                arena.clear(lanes, entry, row)
+                values.write_entry(entry, lanes, row, plain)
+            except BaseException:
+                undo.restore(message.lanes_, before)
+                raise
 
     return set_
 

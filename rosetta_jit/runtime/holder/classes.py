@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
 import numpy as np
 
 from rosetta_jit.errors import InUse
-from rosetta_jit.kernel.state import CLEAN, VALID
+from rosetta_jit.kernel.state import CLEAN, VALID, WASTED
+from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, in_row, place
@@ -35,12 +36,22 @@ class Holder(Message):
 
     def __init__(self) -> None:
         """An empty message. A holder that is made again is emptied: compiled entries know where its lanes are."""
-        if not self.lay_out_(self.family_.plan):
+        family = self.family_
+        plan, recipe, equip = family.latest
+        if plan is family.plan and equip is not None:
+            if not equip(self, recipe):
+                clear(self, None)
+        elif not self.lay_out_(family.plan):
             clear(self, None)
 
     def lay_out_(self, plan: Plan) -> bool:
         """Give the holder lanes, unless it has some."""
         family = self.family_
+        recipe = family.recipe(plan)
+        if recipe is not None:
+            equip = functions()["equip"]
+            family.latest = plan, recipe, equip
+            return equip(self, recipe)
         return in_row(self, Lanes(plan, family.array_type), family.root, 0)
 
     def new(self) -> Self:
@@ -106,7 +117,8 @@ class Holder(Message):
             If a name or a value is not one of the type; its path says which.
         """
         holder = cast("type[Self]", cls.family_.holder)()
-        return filled(holder, raw(plain))
+        cls.family_.takers.take_plain(holder, plain)
+        return holder
 
     def materialise(self) -> None:
         """Make the holder fit to be encoded, which it is unless it borrows; give back what it does not use."""
@@ -139,7 +151,11 @@ class Holder(Message):
     def __reduce__(self) -> tuple[Any, ...]:
         from rosetta_jit.runtime.holder.family import revived
 
-        return revived, (self.family_.text, self.family_.manners, raw(self))
+        if isinstance(self, View) or self.lanes_.source[0] is not None:
+            return self.__deepcopy__({}).__reduce__()
+        family = self.family_
+        manners = family.manners.place or family.manners
+        return revived, (family.mark, family.text, manners, self.lanes_.consistent(_contents, self))
 
 
 def clear(holder: Holder, name: str | None) -> None:
@@ -175,6 +191,12 @@ def settle_lanes(holder: Holder) -> None:
     lanes, _ = place(holder)
     if lanes.words[VALID] != CLEAN or lanes.source[0] is not None:
         values.settle(holder.family_.tree.root, lanes)
+
+
+def _contents(holder: Holder) -> tuple[int, int, list[bytes]]:
+    """Two words of the state, and the bytes of each lane."""
+    lanes, _ = place(holder)
+    return lanes.words[VALID], lanes.words[WASTED], lanes.contents()
 
 
 def _copied(holder: Holder) -> Lanes:

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import json
+import sys
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
 
 import numpy as np
 
+from rosetta_jit.kernel.state import VALID, WASTED
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
 from rosetta_jit.runtime.attributes import descriptors
-from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.holder.access import Access, read_field, write_field
-from rosetta_jit.runtime.holder.classes import Holder, filled
-from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row
+from rosetta_jit.runtime.holder.classes import Holder
+from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row, recipe
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
+from rosetta_jit.runtime.holder.serialising import serialising_methods
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes, born, roomier
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.plan import plan
@@ -30,10 +34,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.runtime.attributes.methods import Kind
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
     from rosetta_jit.runtime.holder.objects.giving import Givers
     from rosetta_jit.runtime.holder.objects.taking import Takers
     from rosetta_jit.runtime.holder.record import Entry, Record
+    from rosetta_jit.runtime.plan import Plan
+
+
+def no_methods(family: Family) -> Mapping[str, Kind]:  # noqa: ARG001  a plain class has none
+    """None."""
+    return {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +68,10 @@ class Manners:
         `rosetta_jit.runtime.holder.serialising.Programs` says.
     foreign : Foreign
         What is particular about the objects of the framework's own package.
+    methods : callable
+        Which of the base's methods do nothing but serialise, and how, given the family: compiled code does so where it can.
+    place : str
+        ``module:name`` of these manners, by which pickles name them; empty if they are pickled by value.
     """
 
     base: type[Holder]
@@ -67,6 +82,13 @@ class Manners:
     members: Callable[[Family], dict[str, Any]]
     serialising: tuple[str, str] | None = None
     foreign: Foreign = ORDINARY
+    methods: Callable[[Family], Mapping[str, Kind]] = no_methods
+    place: str = ""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """By the place, where there is one."""
+        fields = tuple(getattr(self, each) for each in self.__slots__)
+        return (manners_at, (self.place,)) if self.place else (Manners, fields)
 
 
 def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class has nothing but its fields
@@ -74,10 +96,21 @@ def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class
     return {}
 
 
+MOST_RECIPES = 4
+"""Of how many plans a family keeps what makes holders."""
+
 _ONE_AT_A_TIME = shared_lock()
 """Held where a class is made: two of one type would take each other's holders for foreign."""
 
-PLAIN = Manners(Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members)
+PLAIN = Manners(
+    Holder, np.ndarray, Sequence, Dictionary, assigns_whole=True, members=no_members, place="rosetta_jit.runtime.holder.family:PLAIN"
+)
+
+
+def manners_at(place: str) -> Manners:
+    """The manners at a place."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 class Family:
@@ -96,6 +129,8 @@ class Family:
         self._accesses: dict[int, Access] = {}
         self._views: dict[str, type[View]] = {}
         self._shown_of: dict[int, frozenset[str]] = {}
+        self._recipes: dict[int, tuple[Any, ...]] = {}
+        self.latest: tuple[Any, Any, Any] = None, None, None
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
         self._kept: KeptFields | None = None
@@ -116,7 +151,10 @@ class Family:
         properties = {name: property(read_field(name), write_field(name)) for name in shown}
         members = {"family_": self, "__slots__": (self._mark, *slots), "__doc__": f"A holder of `{self.struct.name}`."}
         base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
-        made = _class(self.struct.name, (base,), {**self.manners.members(self), **properties, **members})
+        methods = {} if code is None else serialising_methods(self)
+        made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
+        for each in methods.values():
+            each.holder_type = made
         if code is not None:
             self._kept = descriptors.take_slots(made, list(entries.values()))
             descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray)
@@ -191,6 +229,35 @@ class Family:
         if found is None:
             found = self._shown_of[id(record)] = frozenset(_shown(record, self.manners.base))
         return found
+
+    def recipe(self, plan: Plan) -> tuple[Any, ...] | None:
+        """What compiled code needs to make a holder of a plan; None where there is no such code."""
+        found = self._recipes.get(id(plan))
+        if found is not None and found[1] is plan:
+            return found
+        if library() is None:
+            return None
+        if len(self._recipes) >= MOST_RECIPES:
+            self._recipes.clear()
+        found = self._recipes[id(plan)] = recipe(plan, self.array_type, self.root)
+        return found
+
+    def new(self, plan: Plan) -> Any:
+        """A holder of a plan, of which nobody's constructor runs."""
+        found = self.recipe(plan)
+        if found is not None:
+            return functions()["spawn"](self.holder, found)
+        holder = self.holder.__new__(self.holder)
+        holder.lay_out_(plan)
+        return holder
+
+    @cached_property
+    def mark(self) -> str:
+        """What tells the type, how its values lie in lanes, and the manners: what lanes with the same mark hold, these can hold."""
+        said = f"{self.text}|{self.layout}|{sys.byteorder}|{self.manners.place or id(self.manners)}"
+        mark = sha256(said.encode()).hexdigest()[:32]
+        _MARKED[mark] = self
+        return mark
 
     @cached_property
     def root(self) -> Access:
@@ -273,6 +340,24 @@ def family_of(text: str, manners: Manners) -> Family:
 _FAMILIES: WeakValueDictionary[tuple[str, Manners], Family] = WeakValueDictionary()
 
 
-def revived(text: str, manners: Manners, plain: dict[str, Any]) -> Holder:
-    """Unpickle."""
-    return filled(family_of(text, manners).holder(), plain)
+_MARKED: WeakValueDictionary[str, Family] = WeakValueDictionary()
+
+
+def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, int, list[bytes]]) -> Holder:
+    """Unpickle.
+
+    Raises
+    ------
+    ValueError
+        If another version of rosetta_jit has written this, whose lanes are others.
+    """
+    family = _MARKED.get(mark)
+    if family is None:
+        family = family_of(text, manners_at(manners) if isinstance(manners, str) else manners)
+        if family.mark != mark and isinstance(manners, str):
+            raise ValueError("another version of rosetta_jit has pickled this holder")
+    holder = family.new(family.plan)
+    with holder.lanes_ as lanes:
+        lanes.words[VALID], lanes.words[WASTED], content = contents
+        lanes.take_contents(content)
+    return holder

@@ -9,7 +9,8 @@ The attributes that a class needs for itself end with an underscore, so that the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+import struct
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosetta_jit.errors import EncodeError, InvalidHolder
 from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
@@ -17,11 +18,14 @@ from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs
 from rosetta_jit.runtime.holder.values import MAX_DEPTH
+from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.memory import ALIGNMENT
+from rosetta_jit.runtime.specs import slot_offset
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.access import Access
     from rosetta_jit.runtime.holder.record import Entry
-    from rosetta_jit.runtime.lanes import Lanes
+    from rosetta_jit.runtime.plan import Plan
 
     Base = object
 else:
@@ -76,6 +80,13 @@ def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     message.lanes_, message.access_, message.parent_, message.index_ = lanes, access, None, row
     bind_state(message, lanes.address)
     return True
+
+
+def recipe(plan: Plan, array_type: type, access: Access) -> tuple[Any, ...]:
+    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do."""
+    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows"))
+    words = struct.pack("=10q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
+    return Lanes, plan, array_type, access, plan.begin, plan.places, words
 
 
 def beside(view: _Message, message: Message, access: Access) -> _Message:
@@ -140,6 +151,27 @@ def writable(message: Message) -> tuple[Lanes, int]:
         for presence in each.access_.record.touch:
             arena.mark(lanes, presence, row)
     return lanes, row
+
+
+def known_rows(message: Message) -> list[tuple[int, int]]:
+    """Lanes and rows of a message and of those around it, as far as they are there; inside ``with message.lanes_:``.
+
+    Raises
+    ------
+    InvalidHolder
+        As `place` does.
+    """
+    lanes = message.lanes_
+    if not lanes.words[VALID]:
+        raise lanes.invalid()
+    found: list[tuple[int, int]] = []
+    row = -1
+    for each in _chain(message):
+        row = _row(each, lanes, row, make=False)
+        if row < 0:
+            break
+        found.append((each.access_.record.lane, row))
+    return found
 
 
 def _chain(message: Message) -> list[Message]:

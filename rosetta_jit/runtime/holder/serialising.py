@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from typing import Any, Protocol
+from inspect import getattr_static
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rosetta_jit.errors import RosettaError
+from rosetta_jit.runtime.attributes.methods import Kind, method
 from rosetta_jit.runtime.holder.message import View
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.holder.family import Family
 
 
 class Programs(Protocol):
@@ -52,3 +57,21 @@ def encoded(message: Any) -> bytes:
         If it cannot be written.
     """
     return programs_of(message).encode(deepcopy(message) if isinstance(message, View) else message)
+
+
+def serialising_methods(family: Family) -> dict[str, Any]:
+    """The methods of a holder class that compiled code does, by name."""
+    return {name: _method(family, name, kind) for name, kind in family.manners.methods(family).items()}
+
+
+def _method(family: Family, name: str, kind: Kind) -> Any:
+    found = getattr_static(family.manners.base, name)
+    direction = "encode" if kind in ("encode", "write") else "decode"
+
+    def bind(made: Any) -> None:
+        program: Any = getattr(family.programs, "__dict__", {}).get(direction)
+        if program is not None:
+            made.needed = "write" if kind == "write" else getattr(program, "new", None)
+            made.program = program
+
+    return method(kind, getattr(found, "__func__", found), bind)

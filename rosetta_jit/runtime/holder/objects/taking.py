@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, values
-from rosetta_jit.runtime.holder.access import assigner
+from rosetta_jit.runtime.holder.access import assigner, raw
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.objects import reading, shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
@@ -55,6 +55,15 @@ class Takers:
             self._of_root[type(value)](holder, value)
         except LEFT:
             self._take_slowly(holder, value)
+
+    def take_plain(self, holder: Any, plain: Any) -> None:
+        """The same of plain values, as `Holder.from_dict` is given them."""
+        try:
+            self._of_root[dict](holder, plain)
+        except LEFT:
+            with holder.lanes_ as lanes:
+                lanes.reset()
+                values.write_record(self._family.tree.root, lanes, 0, raw(plain))
 
     def _take_slowly(self, holder: Any, value: object) -> None:
         record = self._family.tree.root

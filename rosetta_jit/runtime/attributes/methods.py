@@ -1,0 +1,104 @@
+"""Methods that serialise in compiled code: a call of one is a call of the program behind it, without a Python function around that.
+
+Each class has methods of its own, which know its program as soon as one has been compiled. All that is not the common case goes to the
+Python function that the class would have otherwise: views, subclasses, other arguments, the first call.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from types import MethodType
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.specs import (
+    DEFAULT,
+    METHOD_DESCRIPTOR,
+    READONLY,
+    SSIZE_T,
+    TP_CALL,
+    TP_MEMBERS,
+    VECTORCALL,
+    Member,
+    address_of,
+    from_spec,
+    with_attributes,
+    write_word,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Kind = Literal["encode", "write", "decode", "parse", "make"]
+"""``x.encode()``, ``x.serialize(file)``, ``x.deserialize(message)``, ``x.ParseFromString(message)``, ``cls.FromString(message)``."""
+
+ENTRY, METHOD_BYTES = 56, 64
+
+
+class _Method:
+    """What a method refers to, in this order in memory. `holder_type`, `needed` and `program` are what compiled code reads."""
+
+    __slots__ = ("function", "holder_type", "needed", "program", "slow")
+    function: Any
+    holder_type: type
+    needed: Any
+    program: Any
+    slow: Callable[..., Any]
+
+    def __repr__(self) -> str:
+        return f"<method {self.__name__!r} of {self.holder_type.__qualname__!r} objects>"
+
+    @property
+    def __name__(self) -> str:
+        return self.function.__name__
+
+    @property
+    def __wrapped__(self) -> Any:
+        """The function that says which arguments there are."""
+        return self.function
+
+
+class _BoundMethod(_Method):  # one that is called on an object
+    __slots__ = ()
+
+    def __get__(self, instance: object, owner: type | None = None) -> Any:
+        return self if instance is None else MethodType(cast("Any", self), instance)
+
+
+@cache
+def _class_of(kind: Kind) -> type:
+    """The class of methods of a kind."""
+    base = _Method if kind == "make" else _BoundMethod
+    flags = DEFAULT | VECTORCALL | (0 if kind == "make" else METHOD_DESCRIPTOR)
+    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
+    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
+    created = from_spec("Method", base, METHOD_BYTES, flags, slots)
+    return with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+
+
+def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
+    """A method of a class whose ``holder_type`` is set later.
+
+    Parameters
+    ----------
+    function
+        What does the same in Python; of a class method, the function that is given the class.
+    bind
+        Is given the method after each call that Python has done, and sets its ``program`` and what else it needs when there is one.
+    """
+    code = library()
+    assert code is not None, "there are methods"
+    method_class: Any = _class_of(kind)
+    made = method_class.__new__(method_class)
+    write_word(id(made) + ENTRY, code[f"method_{kind}"])
+    made.function = function
+
+    def slow(*arguments: Any, **named: Any) -> Any:
+        given = (made.holder_type, *arguments) if kind == "make" else arguments
+        answer = function(*given, **named)
+        bind(made)
+        return answer
+
+    made.slow = slow
+    return made
