@@ -155,7 +155,7 @@ def test_an_object_has_every_field_and_no_other(encode):
         encode(inner)
 
 
-@pytest.mark.parametrize("wrong", [None, 1, "text", b"bytes", [1], (1,), np.zeros(3), Whole, {1}])
+@pytest.mark.parametrize("wrong", [None, 1, "text", b"bytes", [1], (1,), np.zeros(3), Whole, {1}, object()])
 def test_what_is_no_message(encode, decode, wrong):
     with pytest.raises(TypeError, match="a holder of"):
         encode(wrong)

@@ -6,6 +6,7 @@
     descriptors  attributes of a class that run them
     sequences    arrays that are shown by them
     methods      methods that serialise, as calls of programs
+    sameness     what is compared of two messages
 
 They do what is common and ask Python for everything else, so that what a field means is said once: in `rosetta_jit.runtime.holder.access`.
 Where Python is none that they know, that is all there is.

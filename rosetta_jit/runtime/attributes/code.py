@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.code.native import Library
 
-FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll", "methods.ll")
+FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll", "methods.ll", "sameness.ll")
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
 WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
-FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "extend_texts")
+FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "same", "extend_texts")
 SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
 METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make")
 SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *FUNCTIONS, *SEQUENCES, *METHODS)

@@ -21,6 +21,7 @@ from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, 
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.lanes import Lanes
 
@@ -42,7 +43,10 @@ class Family(Protocol):
     @property
     def assigns_whole(self) -> bool: ...
     def access(self, record: Record) -> Access: ...
+    @property
+    def sameness(self) -> Sameness: ...
     def view_class(self, struct: str) -> type[View]: ...
+    def of_struct(self, struct: str) -> Any: ...
     def empty_lanes(self) -> Lanes: ...
     @property
     def sequences(self) -> OfSequences: ...
@@ -54,7 +58,7 @@ class Family(Protocol):
 class Access:
     """How the fields of one record are read and written; each accessor is made when first used."""
 
-    __slots__ = ("_numbers", "_places", "bind", "family", "getters", "record", "setters", "table")
+    __slots__ = ("_kin", "_numbers", "_places", "_sameness", "bind", "family", "getters", "record", "setters", "table")
 
     def __init__(self, record: Record, family: Family) -> None:
         self.record = record
@@ -70,6 +74,22 @@ class Access:
         """Address of what compiled accessors know of the record's fields; 0 where there are none."""
         self.bind = None if library() is None else functions()["bind"]
         """What tells them where a message lies."""
+        self._sameness = 0
+        self._kin: Any = None
+
+    @property
+    def sameness(self) -> int:
+        """Address of the program that compares messages of the record."""
+        if not self._sameness:
+            self._sameness = self.family.sameness.program(self.record)
+        return self._sameness
+
+    @property
+    def kin(self) -> Any:
+        """The family of the record's own holders: messages of one type have the same, whatever they are parts of."""
+        if self._kin is None:
+            self._kin = self.family.of_struct(self.record.struct).family_
+        return self._kin
 
     def place_of(self, name: str) -> int:
         """Address of what they know of one field."""

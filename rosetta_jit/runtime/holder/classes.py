@@ -125,9 +125,14 @@ class Holder(Message):
         settle(self)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Holder) or other.access_.record.struct != self.access_.record.struct:
+        if not isinstance(other, Holder):
             return NotImplemented
-        return equal(raw(self), raw(other))
+        mine, its = self.access_, other.access_
+        if mine is not its and mine.record.struct != its.record.struct:
+            return NotImplemented
+        can = mine.bind is not None and (mine is its or mine.kin is its.kin)
+        answer = functions()["same"](self, other, mine.sameness, its.sameness) if can else None
+        return equal(raw(self), raw(other)) if answer is None else answer
 
     __hash__ = None  # pyright: ignore[reportAssignmentType]  as of every mutable object
 

@@ -16,6 +16,7 @@ from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.sameness import Sameness
 from rosetta_jit.runtime.holder.access import Access, read_field, write_field
 from rosetta_jit.runtime.holder.classes import Holder
 from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row, recipe
@@ -130,6 +131,7 @@ class Family:
         self._views: dict[str, type[View]] = {}
         self._shown_of: dict[int, frozenset[str]] = {}
         self._recipes: dict[int, tuple[Any, ...]] = {}
+        self._sameness = Sameness()
         self.latest: tuple[Any, Any, Any] = None, None, None
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
@@ -203,6 +205,11 @@ class Family:
     def learn_room(self, lanes: Lanes) -> None:
         """Give new holders the room that assignments have taken, unless that is much; more to those that programs make."""
         self.plan, self.roomy = roomier(self.plan, lanes, MOST_UNASKED), roomier(self.roomy, lanes)
+
+    @property
+    def sameness(self) -> Sameness:
+        """What tells whether two messages are the same."""
+        return self._sameness
 
     @cached_property
     def wholes(self) -> Wholes:

@@ -28,7 +28,7 @@ def is_message_like(value: object) -> bool:
 def has_messages(object_type: type[Any]) -> bool:
     """The same of all objects of a class."""
     kind: Any = object_type
-    return not issubclass(kind, (*NO_MESSAGES, type)) and not hasattr(kind, "__array_interface__")
+    return not issubclass(kind, (*NO_MESSAGES, type)) and kind is not object and not hasattr(kind, "__array_interface__")
 
 
 def declared(object_type: type) -> frozenset[str]:
