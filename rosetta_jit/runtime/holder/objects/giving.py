@@ -55,7 +55,7 @@ class Givers:
             whole.fill(value, holder)
             return
         if not shapes.is_message_like(value) or isinstance(value, Mapping):
-            raise TypeError(f"a holder or an object of a message's class is needed, not {type(value).__name__}")
+            raise TypeError(f"a holder or an object of a message's class is needed, not {type(cast('object', value)).__name__}")
         self._filler(self._family.tree.root, "")[type(value)](value, holder)
 
     def make(self, object_type: type, holder: Any) -> Any:
