@@ -83,6 +83,10 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
+def __dir__() -> list[str]:
+    return ["__doc__", "__version__", *__all__]
+
+
 def check(mapping: str, *, search_path: Iterable[str] = (), parameters: Mapping[str, object] | None = None) -> CheckedMapping:
     """Check a mapping in both directions without compiling it; returns its ``warnings`` and ``laws``.
 

@@ -48,6 +48,10 @@ class _Made:
     """How a program is made, and what it became."""
 
     _request: Request
+    if TYPE_CHECKING:
+
+        @property
+        def holder_type(self) -> type[Holder]: ...
 
     @property
     def mapping(self) -> CheckedMapping | None:
@@ -59,6 +63,11 @@ class _Made:
     def stage(self, stage: Stage) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
         return _build(self._request).stage(stage)
+
+    def __repr__(self) -> str:
+        request, holder = self._request, self.holder_type.family_.struct.name
+        what = holder if request.mapping is None else f"{request.mapping}, {'from' if request.direction == 'encode' else 'into'} {holder}"
+        return f"<{type(self).__name__} of {what}{'' if request.encoding is None else f', {request.encoding}'}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies and pickles are made anew from the request, by the cache of their process: they share code, but no holder."""
@@ -82,7 +91,7 @@ class Decoder(_Made, DecoderBase):
     """
 
     def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
-        self.make(request_of("decode", options, mapping=os.fspath(mapping)))
+        self._make(request_of("decode", options, mapping=os.fspath(mapping)))
 
     @classmethod
     def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
@@ -120,7 +129,7 @@ class Decoder(_Made, DecoderBase):
         program = Program(_sites(build.header, 0), build.header["limit"], tell, self._untell)
         return callable_kernel(build.kernels[0], self.holder_type.family_, program)
 
-    def make(self, request: Request) -> None:
+    def _make(self, request: Request) -> None:
         """Become the program that answers a request."""
         self._request = request
         self._start(_loaded(request))
@@ -133,7 +142,7 @@ class Encoder(_Made, EncoderBase):
     """
 
     def __init__(self, mapping: str | os.PathLike[str], **options: Unpack[Options]) -> None:
-        self.make(request_of("encode", options, mapping=os.fspath(mapping)))
+        self._make(request_of("encode", options, mapping=os.fspath(mapping)))
 
     @classmethod
     def of(cls, type_: str | type, **options: Unpack[Options]) -> Self:
@@ -151,7 +160,7 @@ class Encoder(_Made, EncoderBase):
 
         return typed(_build(self._request).kernels[0])
 
-    def make(self, request: Request) -> None:
+    def _make(self, request: Request) -> None:
         """Become the program that answers a request."""
         self._request = request
         self._start(_loaded(request))
@@ -348,7 +357,7 @@ def program_of(request: Request) -> Any:
 
 def _of_request(program: Any, request: Request) -> Any:
     made = program.__new__(program)
-    made.make(request)
+    made._make(request)
     return made
 
 

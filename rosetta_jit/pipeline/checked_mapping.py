@@ -33,6 +33,11 @@ class CheckedMapping:
         unpack, pack = self.checked.unpack, self.checked.pack
         return laws_of(unpack, pack, self.checked.holder, self.checked.wire) if unpack and pack else None
 
+    def __repr__(self) -> str:
+        count = len(self.warnings)
+        told = "no warnings" if not count else "1 warning" if count == 1 else f"{count} warnings"
+        return f"<mapping between {self.checked.holder.root.name} and {self.checked.wire.root.name}, {told}>"
+
     def __iter__(self) -> Iterator[Diagnostic]:
         return iter(self.warnings)
 

@@ -164,6 +164,12 @@ class Batch:
     def __repr__(self) -> str:
         return f"<Batch of {len(self)} {self.family_.struct.name}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the first messages."""
+        from rosetta_jit.runtime.looks.page import batch_page
+
+        return self.lanes.consistent(batch_page, self)
+
     def column(self, name: str) -> Any:
         """A field of all messages.
 

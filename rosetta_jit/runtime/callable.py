@@ -177,5 +177,5 @@ def _chosen(native: bool | None) -> bool:
     return is_native() if native is None else native
 
 
-def _names(base: type) -> dict[str, str]:
-    return {"__module__": base.__module__, "__qualname__": base.__qualname__}
+def _names(base: type) -> dict[str, str | None]:
+    return {"__module__": base.__module__, "__qualname__": base.__qualname__, "__doc__": base.__doc__}

@@ -35,6 +35,8 @@ class DecoderBase(Program):
     The decoder's own holder belongs to the thread that decodes first; each other thread has another one, as long as it lives.
     """
 
+    _arguments = "message", {"holder": None}
+
     if TYPE_CHECKING:  # the entry does this
 
         def __call__(self, message: Buffer, holder: Any = None) -> Any:
@@ -42,7 +44,7 @@ class DecoderBase(Program):
             ...
 
     def _start(self, loaded: Loaded) -> None:
-        self._bind(loaded, self.call_slowly)
+        self._bind(loaded, self._call_slowly)
 
     def into(self, message: Buffer, holder: Any) -> Any:
         """Decode into a holder of one's own, or into an object of another class whose attributes are called as the fields; returns it.
@@ -201,7 +203,7 @@ class DecoderBase(Program):
         error = run.decode_error(self._loaded.sites[-1 - result], lanes, begin, end)
         return DecodeError(error.kind, f"[{done}]{error.path}", error.detail, error.offset)
 
-    def call_slowly(self, *arguments: object, **named: object) -> object:
+    def _call_slowly(self, *arguments: object, **named: object) -> object:
         """Whatever the entry does not do: wrong arguments, lanes that are too small, errors, holders that borrow."""
         if named or len(arguments) not in (1, 2):
             raise TypeError("a decoder takes a message, and perhaps a holder to fill")

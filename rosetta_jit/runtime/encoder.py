@@ -30,6 +30,8 @@ _SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctype
 class EncoderBase(Program):
     """Encodes holders of one type as messages of one wire."""
 
+    _arguments = "holder", {"buffer": None, "offset": 0}
+
     if TYPE_CHECKING:  # the entry does this
 
         def __call__(self, holder: Any, buffer: Buffer | None = None, offset: int = 0) -> Any:
@@ -46,7 +48,7 @@ class EncoderBase(Program):
             ...
 
     def _start(self, loaded: Loaded) -> None:
-        self._bind(loaded, self.call_slowly)
+        self._bind(loaded, self._call_slowly)
 
     def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int:
         """Write a message into a buffer; returns the offset behind it.
@@ -165,7 +167,7 @@ class EncoderBase(Program):
             raise run.encode_error(self._loaded.size_sites[-1 - size], lanes)
         return size
 
-    def call_slowly(self, *arguments: object, **named: object) -> object:
+    def _call_slowly(self, *arguments: object, **named: object) -> object:
         """Whatever the entry does not do: wrong arguments, holders that must be put in order, a scratch lane that is too small, errors."""
         if len(arguments) == 2:
             arguments = (*arguments, 0)

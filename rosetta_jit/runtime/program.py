@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
@@ -69,8 +69,30 @@ class Loaded:
     limit: int = 0
 
 
+INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__", "__weakref__"})
+"""What programs need for themselves, besides attributes that begin with an underscore."""
+
+
+class CallSignature:
+    """``__signature__`` of programs: that of their compiled call. Their classes have that of ``__init__``."""
+
+    def __get__(self, program: Program | None, owner: Any) -> Any:
+        if program is None:
+            return None
+        from inspect import Parameter, Signature
+
+        required, optional = owner._arguments  # noqa: SLF001 - the class is ours
+        first = Parameter(required, Parameter.POSITIONAL_ONLY)
+        return Signature([first, *(Parameter(name, Parameter.POSITIONAL_ONLY, default=each) for name, each in optional.items())])
+
+
 class Program:
-    """What decoders and encoders share."""
+    """What decoders and encoders share.
+
+    ``_arguments`` are what a call takes: one argument, and others with their defaults.
+    """
+
+    _arguments: ClassVar[tuple[str, dict[str, object]]]
 
     _loaded: Loaded
     _holder: Holder
@@ -110,6 +132,12 @@ class Program:
         words, number = self._context[1], lanes.words[NUMBER]
         if self._loaded.told and words[MADE] == number + 1:
             words[MADE] = number
+
+    if not TYPE_CHECKING:  # a descriptor, which inspect asks for
+        __signature__ = CallSignature()
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in INTERNAL and (name.startswith("__") or not name.startswith("_"))]
 
     @cached_property
     def builtin(self) -> Callable[..., Any]:

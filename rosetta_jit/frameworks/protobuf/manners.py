@@ -180,6 +180,11 @@ class ProtobufMessage(Holder):
 
     __repr__ = __str__
 
+    def picture_(self) -> Any:
+        from rosetta_jit.frameworks.protobuf.pictures import picture
+
+        return picture(self)
+
     def set_fields_(self, fields: Mapping[str, Any]) -> None:
         """Set fields as the constructor does."""
         fill(self, fields)

@@ -104,6 +104,11 @@ class RosMessage(Holder):
         del numpy
         return self.deserialize(data)
 
+    def picture_(self) -> Any:
+        from rosetta_jit.frameworks.ros.pictures import picture
+
+        return picture(self)
+
     def __str__(self) -> str:
         return "\n".join(_yaml(self.to_dict()))
 

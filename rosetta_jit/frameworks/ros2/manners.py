@@ -55,6 +55,11 @@ class Ros2Message(Holder):
         """The types of all fields, as IDL has them, by name."""
         return dict(cls.fields_)
 
+    def picture_(self) -> Any:
+        from rosetta_jit.frameworks.ros.pictures import picture
+
+        return picture(self)
+
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.fields_)
         return f"{type(self).__module__}.{type(self).__name__}({values})"

@@ -7,7 +7,7 @@ What a holder shows is the bottle that it would be written as. It is made anew f
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rosetta_jit.frameworks.yarp import tree
 from rosetta_jit.frameworks.yarp.bottle import read
@@ -155,6 +155,11 @@ class BottleMessage(Holder):
     __slots__ = ()
 
     programs_: ClassVar[Programs | None] = None
+
+    def picture_(self) -> Any:
+        from rosetta_jit.frameworks.yarp.pictures import picture
+
+        return picture(self)
 
     def bottle(self) -> Bottle:
         """The bottle that YARP 4 would write.

@@ -20,6 +20,7 @@ from rosetta_jit.runtime.holder.message import Message, View, beside, element, p
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
+    from rosetta_jit.model.types import Schema
     from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
     from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.record import Entry
@@ -34,6 +35,8 @@ Setter = Callable[[Any, Any], None]
 class Family(Protocol):
     """What the accessors of one holder class share; `rosetta_jit.runtime.holder.Family` is it."""
 
+    @property
+    def schema(self) -> Schema: ...
     @property
     def array_type(self) -> type[np.ndarray[Any, Any]]: ...
     @property

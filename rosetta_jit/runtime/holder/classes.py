@@ -16,7 +16,7 @@ from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Text
 from rosetta_jit.runtime.lanes import Lanes
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from numpy.typing import NDArray
 
@@ -27,7 +27,18 @@ if TYPE_CHECKING:
 _Holder = TypeVar("_Holder", bound="Holder")
 
 
-class Holder(Message):
+class HolderClass(type):  # noqa: D101 - its __doc__ is that of its objects
+    # The class of holder classes: they list their fields and what is meant to be used, and not what they need for themselves.
+
+    @property
+    def __doc__(cls) -> str | None:  # pyright: ignore[reportIncompatibleVariableOverride]  `pydoc` would take a docstring of this class for that of a holder class
+        return type.__dict__["__doc__"].__get__(cls)
+
+    def __dir__(cls) -> list[str]:
+        return _listed(cast("type[Holder]", cls), super().__dir__())
+
+
+class Holder(Message, metaclass=HolderClass):
     """A message with lanes of its own. Subclasses are made by `holder_class`."""
 
     __slots__ = ()
@@ -35,7 +46,7 @@ class Holder(Message):
     family_: Family
 
     def __init__(self) -> None:
-        """An empty message. A holder that is made again is emptied: compiled entries know where its lanes are."""
+        """An empty message. A holder that is made again is emptied."""  # and not replaced: compiled entries know where its lanes are
         family = self.family_
         plan, recipe, equip = family.latest
         if plan is family.plan and equip is not None:
@@ -140,7 +151,22 @@ class Holder(Message):
         name = type(self).__name__
         if not self.lanes_.words[VALID]:
             return f"<{name}: {'in use' if isinstance(self.lanes_.invalid(), InUse) else 'the last decode failed'}>"
-        return f"{name}({', '.join(f'{key}={value!r}' for key, value in Holder.to_dict(self).items())})"
+        from rosetta_jit.runtime.looks.brief import brief_message
+
+        return self.lanes_.consistent(brief_message, self)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a table of the fields, and images drawn."""
+        from rosetta_jit.runtime.looks.page import page
+
+        return self.lanes_.consistent(page, self)
+
+    def picture_(self) -> NDArray[np.uint8] | bytes | None:
+        """Pixels, or a compressed image, for who looks at the message; None of what is no image."""
+        return None
+
+    def __dir__(self) -> list[str]:
+        return _listed(type(self), super().__dir__())
 
     def __copy__(self) -> Self:
         return self.__deepcopy__({})
@@ -161,6 +187,15 @@ class Holder(Message):
         family = self.family_
         manners = family.manners.place or family.manners
         return revived, (family.mark, family.text, manners, self.lanes_.consistent(_contents, self))
+
+
+def _listed(holder_type: type[Holder], names: Iterable[str]) -> list[str]:
+    """The attributes of a holder, or its class, that people see."""
+    from rosetta_jit.runtime.looks.described import is_public
+
+    family = getattr(holder_type, "family_", None)
+    fields = () if family is None else family.tree.root.entries
+    return [name for name in names if is_public(name, fields)]
 
 
 def clear(holder: Holder, name: str | None) -> None:

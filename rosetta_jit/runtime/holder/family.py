@@ -18,7 +18,7 @@ from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.sameness import Sameness
 from rosetta_jit.runtime.holder.access import Access, read_field, write_field
-from rosetta_jit.runtime.holder.classes import Holder
+from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row, recipe
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.record import Tree
@@ -26,6 +26,7 @@ from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequen
 from rosetta_jit.runtime.holder.serialising import serialising_methods
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes, born, roomier
 from rosetta_jit.runtime.locks import shared_lock
+from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
@@ -151,7 +152,7 @@ class Family:
         shown = _shown(self.tree.root, self.manners.base)
         slots = () if code is None else descriptors.slots(entries.values())
         properties = {name: property(read_field(name), write_field(name)) for name in shown}
-        members = {"family_": self, "__slots__": (self._mark, *slots), "__doc__": f"A holder of `{self.struct.name}`."}
+        members = {"family_": self, "__slots__": (self._mark, *slots), **self.described}
         base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
         methods = {} if code is None else serialising_methods(self)
         made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
@@ -161,6 +162,11 @@ class Family:
             self._kept = descriptors.take_slots(made, list(entries.values()))
             descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray)
         return made
+
+    @property
+    def described(self) -> dict[str, Any]:
+        """What `help` says of the class."""
+        return {"__doc__": Described(self), "__signature__": Constructor()}
 
     def kept_of(self, struct: str) -> KeptFields | None:
         """Where messages of a struct keep what shows their fields; None where no compiled code reads them."""
@@ -191,7 +197,7 @@ class Family:
         view = self._views.get(struct)
         if view is None:
             base = self.of_struct(struct)
-            view = _class(struct, (View, base), {"__slots__": ("_is_view",), "__doc__": base.__doc__})
+            view = _class(struct, (View, base), {"__slots__": ("_is_view",), **base.family_.described})
             self._views[struct] = view
         return view
 
@@ -316,7 +322,7 @@ def _shown(record: Record, base: type) -> list[str]:
 
 def _class(qualified: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:
     module, _, name = qualified.replace("::", ".").replace("/", ".").rpartition(".")
-    return type(name or "Message", bases, {"__module__": module, **namespace})
+    return HolderClass(name or "Message", bases, {"__module__": module, **namespace})
 
 
 def holder_class(type_: Type, schema: Schema, manners: Manners = PLAIN) -> type[Holder]:

@@ -23,7 +23,7 @@ def program(kind, schema, name, **options):
     made = kind.__new__(kind)
     plain = json.dumps(to_plain(Ref(name), schema), sort_keys=True)
     direction = "decode" if kind is Decoder else "encode"
-    made.make(Request(direction, plain=plain, framework="ros2", **options))
+    made._make(Request(direction, plain=plain, framework="ros2", **options))
     return made
 
 

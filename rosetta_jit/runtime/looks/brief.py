@@ -1,0 +1,86 @@
+"""Values in one line, which stays short whatever a message holds: the begin of long texts and arrays, and how long they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rosetta_jit.model.types import Enum
+from rosetta_jit.runtime.holder import arena
+from rosetta_jit.runtime.holder.message import Message, place
+from rosetta_jit.runtime.holder.record import Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rosetta_jit.runtime.holder.record import Entry
+
+MAX_NUMBERS, MAX_ITEMS, MAX_TEXT, MAX_BYTES, MAX_DEPTH = 12, 4, 120, 24, 6
+"""How much is shown of arrays of numbers, of other arrays and maps, of texts and of bytes; and of messages in each other."""
+
+
+def brief_message(message: Message, depth: int = 0) -> str:
+    """A message as its constructor would be called with what is present."""
+    name = type(message).__name__
+    if depth > MAX_DEPTH:
+        return f"{name}(…)"
+    return f"{name}({', '.join(f'{entry.name}={brief(value, depth + 1)}' for entry, value in present_fields(message))})"
+
+
+def present_fields(message: Message) -> Iterator[tuple[Entry, Any]]:
+    """The fields that are there and what they are read as, an enum's number as its name."""
+    lanes, row = place(message)
+    for entry in message.access_.record.entries.values():
+        if arena.present(lanes, entry.presence, row):
+            yield entry, named(entry, message.access_.getters[entry.name](message))
+
+
+class Name(str):
+    """The name of an enum's value, which is shown without quotes."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def named(entry: Entry, value: Any) -> Any:
+    """An enum's number as its name, where it has one."""
+    node = entry.node
+    if isinstance(node, Scalar) and isinstance(node.type, Enum):
+        name = next((name for name, number in node.type.values if number == value), None)
+        return value if name is None else Name(name)
+    return value
+
+
+def brief(value: Any, depth: int = 0) -> str:
+    """A value of a field in one line."""
+    match value:
+        case Message():
+            return brief_message(value, depth)
+        case np.ndarray():
+            array = cast("np.ndarray[Any, Any]", value)
+            return _listed(map(str, array.reshape(-1)[:MAX_NUMBERS]), array.size, MAX_NUMBERS)
+        case Name():
+            return repr(value)
+        case str():
+            return repr(value) if len(value) <= MAX_TEXT else f"{value[:MAX_TEXT]!r}… {len(value)} characters"
+        case bytes():
+            return repr(value) if len(value) <= MAX_BYTES else f"{value[:MAX_BYTES]!r}… {len(value)} bytes"
+        case Mapping():
+            pairs = cast("Mapping[Any, Any]", value)
+            shown = (f"{brief(key)}: {brief(each, depth + 1)}" for key, each in islice(pairs.items(), MAX_ITEMS))
+            return f"{{{_listed(shown, len(pairs), MAX_ITEMS)[1:-1]}}}"
+        case Sequence():
+            items = cast("Sequence[Any]", value)
+            return _listed((brief(each, depth + 1) for each in items[:MAX_ITEMS]), len(items), MAX_ITEMS)
+        case _:
+            return repr(value)
+
+
+def _listed(shown: Iterable[str], count: int, most: int) -> str:
+    rest = [] if count <= most else [f"… {count} in all"]
+    return f"[{', '.join((*shown, *rest))}]"

@@ -1,0 +1,57 @@
+"""What `help` and `inspect` say of a holder class: its fields with types, shapes and units; put together when somebody asks for it."""
+
+from __future__ import annotations
+
+import inspect
+import keyword
+from typing import TYPE_CHECKING
+
+from rosetta_jit.model.words import escaped, field_words
+
+if TYPE_CHECKING:
+    from collections.abc import Container
+
+    from rosetta_jit.runtime.holder import Family, Holder
+
+
+INTERNAL = frozenset({"_attributes", "_code", "_is_native", "_members", "_is_view", "__annotations__", "__signature__", "__weakref__"})
+"""Attributes of classes that are nobody's business but ours, besides those whose names end with an underscore."""
+
+
+def is_public(name: str, fields: Container[str] = ()) -> bool:
+    """Whether an attribute of a holder is listed: all fields, and what is meant to be used."""
+    if name in fields or (name.startswith("__") and name not in INTERNAL):
+        return True
+    return not (name in INTERNAL or name.endswith("_") or name.startswith(("_of_", "_kept_")))
+
+
+class _Left:
+    """The default of a field, in a signature: it is left as it is."""
+
+    def __repr__(self) -> str:
+        return "..."
+
+
+class Constructor:
+    """``__signature__`` of a holder class: its fields, where its constructor takes them."""
+
+    def __get__(self, _: object, owner: type[Holder]) -> inspect.Signature | None:
+        kinds = {each.kind for each in inspect.signature(owner.__init__).parameters.values()}
+        if inspect.Parameter.VAR_KEYWORD not in kinds:
+            return None
+        by_place = inspect.Parameter.VAR_POSITIONAL in kinds
+        kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if by_place else inspect.Parameter.KEYWORD_ONLY
+        names = (name for name in owner.family_.tree.root.entries if name.isidentifier() and not keyword.iskeyword(name))
+        return inspect.Signature([inspect.Parameter(name, kind, default=_Left()) for name in names])
+
+
+class Described:
+    """``__doc__`` of the classes of one family, and of their objects."""
+
+    def __init__(self, family: Family) -> None:
+        self._family = family
+
+    def __get__(self, _: object, owner: object = None) -> str:
+        family = self._family
+        fields = [f"{escaped(name)}: {field_words(entry.field, family.schema)}" for name, entry in family.tree.root.entries.items()]
+        return "\n".join((f"A holder of `{escaped(family.struct.name)}`.", *([""] if fields else []), *fields))

@@ -1,0 +1,139 @@
+"""Messages in a notebook: a table of their fields, arrays in short with a curve, images drawn. All that comes from messages is escaped."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from html import escape
+from itertools import islice
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rosetta_jit.kernel.state import VALID
+from rosetta_jit.model.words import field_words
+from rosetta_jit.runtime.holder.message import Message
+from rosetta_jit.runtime.looks.brief import brief, present_fields
+from rosetta_jit.runtime.looks.png import png
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from numpy.typing import NDArray
+
+    from rosetta_jit.runtime.batch import Batch
+    from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.runtime.holder.record import Entry
+
+MAX_DEPTH, MAX_MESSAGES, MAX_ROWS, MAX_FIELDS, MAX_COLUMNS = 4, 3, 5, 200, 20
+MAX_PIXELS = 640
+"""The longer side of a drawn image; larger ones are thinned out."""
+MAX_ENCODED = 4 << 20
+"""Bytes of an image that comes compressed and is shown as it is."""
+CURVE_POINTS, CURVE_WIDTH, CURVE_HEIGHT = 100, 160, 24
+CELL = "text-align:left;vertical-align:top;padding:1px 8px"
+STYLE = f"{CELL};white-space:pre-wrap;max-width:60em;overflow-wrap:anywhere"
+NAME = f"{CELL};white-space:nowrap"
+MEDIA = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
+
+
+def page(holder: Holder) -> str:
+    """A message as HTML; one line of a holder that cannot be read."""
+    if not holder.lanes_.words[VALID]:
+        return escape(repr(holder))
+    return f"<div>{''.join(_message(holder, 0))}</div>"
+
+
+def batch_page(batch: Batch) -> str:
+    """The first messages of a batch, a row each."""
+    names = list(batch.family_.tree.root.entries)[:MAX_COLUMNS]
+    head = "".join(f'<th style="{NAME}">{escape(name)}</th>' for name in names)
+    rows = [
+        "".join(f'<td style="{STYLE}">{escape(brief(message.access_.getters[name](message)))}</td>' for name in names)
+        for message in islice(batch, MAX_ROWS)
+    ]
+    lines = "".join(f"<tr>{row}</tr>" for row in rows)
+    return f"<div><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>"
+
+
+def _message(message: Message, depth: int) -> Iterator[str]:
+    yield f"<b>{escape(message.access_.record.struct)}</b>"
+    picture = cast("Holder", message).picture_()
+    if picture is not None:
+        yield _picture(picture)
+    rows = "".join(_row(message, entry, value, depth) for entry, value in islice(present_fields(message), MAX_FIELDS))
+    if rows:
+        yield f"<table>{rows}</table>"
+
+
+def _row(message: Message, entry: Entry, value: Any, depth: int) -> str:
+    words = escape(field_words(entry.field, message.access_.family.schema))
+    head = f'<th style="{NAME}">{escape(entry.name)}</th><td style="{NAME};opacity:0.6">{words}</td>'
+    return f'<tr>{head}<td style="{STYLE}">{_value(value, depth)}</td></tr>'
+
+
+def _value(value: Any, depth: int) -> str:
+    match value:
+        case Message() if depth < MAX_DEPTH:
+            return _folded(brief(value), _message(value, depth + 1))
+        case np.ndarray():
+            return _array(cast("NDArray[Any]", value))
+        case str() | bytes() | Mapping() | Message():
+            return escape(brief(cast("Any", value)))
+        case Sequence():
+            items = cast("Sequence[Any]", value)
+            if items and isinstance(items[0], Message) and depth < MAX_DEPTH:
+                inner = (part for each in items[:MAX_MESSAGES] for part in _message(each, depth + 1))
+                return _folded(f"{len(items)} messages", inner)
+            return escape(brief(items))
+        case _:
+            return escape(brief(value))
+
+
+def _folded(summary: str, parts: Iterable[str]) -> str:
+    return f"<details><summary>{escape(summary)}</summary>{''.join(parts)}</details>"
+
+
+def _array(array: NDArray[Any]) -> str:
+    """Its begin, and of long ones the least, the greatest and the mean, with a curve."""
+    text = escape(brief(array))
+    if array.size <= 8 or array.dtype == np.bool_:
+        return text
+    numbers = array.reshape(-1).astype(np.float64)
+    finite = numbers[np.isfinite(numbers)]
+    if not finite.size:
+        return f"{text}<br>no finite number"
+    others = "" if finite.size == numbers.size else f", {numbers.size - finite.size} not finite"
+    summary = f"{finite.min():.6g} … {finite.max():.6g}, mean {finite.mean():.6g}{others}"
+    return f"{text}<br>{summary} {_curve(numbers)}"
+
+
+def _curve(numbers: NDArray[np.float64]) -> str:
+    """A line through some of the numbers."""
+    some = numbers[np.linspace(0, numbers.size - 1, min(numbers.size, CURVE_POINTS)).astype(int)]
+    some = some[np.isfinite(some)]
+    if some.size < 2:
+        return ""
+    extent = float(some.max()) / 2 - float(some.min()) / 2 or 1.0  # halved: the difference of two floats may be none
+    heights = CURVE_HEIGHT - 1 - (some / 2 - float(some.min()) / 2) / extent * (CURVE_HEIGHT - 2)
+    steps = np.linspace(0, CURVE_WIDTH, some.size)
+    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(steps.tolist(), heights.tolist(), strict=True))
+    line = f'<polyline points="{points}" fill="none" stroke="currentColor"/>'
+    return f'<svg width="{CURVE_WIDTH}" height="{CURVE_HEIGHT}" style="vertical-align:middle">{line}</svg>'
+
+
+def _picture(picture: NDArray[np.uint8] | bytes) -> str:
+    """Pixels as PNG; what comes compressed as it came, if a browser knows it."""
+    if isinstance(picture, bytes):
+        media = next((media for magic, media in MEDIA.items() if picture.startswith(magic)), None)
+        if media is None or len(picture) > MAX_ENCODED:
+            return ""
+        return _inline(media, picture, "")
+    height, width = picture.shape[:2]
+    step = max(1, -(-max(height, width) // MAX_PIXELS))
+    return _inline("image/png", png(picture[::step, ::step]), f"{width} by {height}")
+
+
+def _inline(media: str, data: bytes, title: str) -> str:
+    source = f"data:{media};base64,{base64.b64encode(data).decode('ascii')}"
+    return f'<div><img src="{source}" title="{title}" style="max-width:{MAX_PIXELS}px"></div>'

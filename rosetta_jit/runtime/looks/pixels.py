@@ -1,0 +1,59 @@
+"""Pixels out of the bytes of an image, as frameworks describe them: rows with padding, channels in some order, planes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosetta_jit.runtime.looks.png import eight_bits
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike, NDArray
+
+MAX_SIDE = 1 << 16
+
+
+def interleaved(data: bytes, shape: tuple[int, int, int], row_bytes: int, dtype: DTypeLike, order: tuple[int, ...] = ()) -> Any:
+    """Rows of so many bytes, of pixels whose channels are taken in an order; None where the bytes are too few, or the size makes no sense.
+
+    Parameters
+    ----------
+    shape
+        Height, width and channels.
+
+    Returns
+    -------
+    ndarray of uint8 or None
+        Shape (height, width) for one channel, (height, width, channels) otherwise; numbers of other types become grey values.
+    """
+    height, width, channels = shape
+    type_ = np.dtype(dtype)
+    used = width * channels * type_.itemsize
+    if not (0 < height <= MAX_SIDE and 0 < width <= MAX_SIDE and 0 < channels <= 4 and used <= row_bytes):
+        return None
+    if len(data) < (height - 1) * row_bytes + used:
+        return None
+    rows = np.ndarray((height, used), np.uint8, data, strides=(row_bytes, 1))
+    return shown(np.ascontiguousarray(rows).view(type_).reshape(height, width, channels), order)
+
+
+def planar(data: bytes, shape: tuple[int, int, int], dtype: DTypeLike, order: tuple[int, ...] = ()) -> Any:
+    """The same of planes, one for each channel, without padding."""
+    height, width, channels = shape
+    type_ = np.dtype(dtype)
+    if not (0 < height <= MAX_SIDE and 0 < width <= MAX_SIDE and 0 < channels <= 4):
+        return None
+    if len(data) < height * width * channels * type_.itemsize:
+        return None
+    planes = np.frombuffer(data, type_, height * width * channels).reshape(channels, height, width)
+    return shown(planes.transpose(1, 2, 0), order)
+
+
+def shown(pixels: NDArray[Any], order: tuple[int, ...]) -> Any:
+    """Channels in their order, 8 bits each; two channels are shown as the first of them."""
+    taken = pixels[:, :, list(order)] if order else pixels
+    if taken.shape[2] not in (1, 3, 4):
+        taken = taken[:, :, :1]
+    taken = taken if taken.dtype == np.uint8 else eight_bits(taken)
+    return taken[:, :, 0] if taken.shape[2] == 1 else taken
