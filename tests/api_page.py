@@ -19,8 +19,8 @@ from rosetta_jit.startup.cached import cached_property
 HEAD = """\
 # API reference
 
-Made from the docstrings; `UPDATE_GOLDENS=1 pytest tests/test_api_page.py` writes it again. `help()` says the same in Python. The command line is described by
-`rosetta-jit --help`.
+Made from the docstrings; `UPDATE_GOLDENS=1 pytest tests/test_api_page.py` writes it again. `help()` says the same in Python. The command
+line is described by `rosetta-jit --help`.
 
     import rosetta_jit as rj
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
-import keyword
 from typing import TYPE_CHECKING
 
-from rosetta_jit.model.words import escaped, field_words
-
 if TYPE_CHECKING:
+    import inspect
     from collections.abc import Container
 
     from rosetta_jit.runtime.holder import Family, Holder
@@ -36,6 +33,9 @@ class Constructor:
     """``__signature__`` of a holder class: its fields, where its constructor takes them."""
 
     def __get__(self, _: object, owner: type[Holder]) -> inspect.Signature | None:
+        import inspect  # slow, as most of what only people need
+        import keyword
+
         kinds = {each.kind for each in inspect.signature(owner.__init__).parameters.values()}
         if inspect.Parameter.VAR_KEYWORD not in kinds:
             return None
@@ -52,6 +52,8 @@ class Described:
         self._family = family
 
     def __get__(self, _: object, owner: object = None) -> str:
+        from rosetta_jit.model.words import escaped, field_words
+
         family = self._family
         fields = [f"{escaped(name)}: {field_words(entry.field, family.schema)}" for name, entry in family.tree.root.entries.items()]
         return "\n".join((f"A holder of `{escaped(family.struct.name)}`.", *([""] if fields else []), *fields))
