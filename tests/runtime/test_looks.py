@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 import rosetta_jit as rj
+from rosetta_jit.runtime.looks.brief import brief_message
 
 HOSTILE = "<script>alert(1)</script>\"'&<img src=x onerror=alert(1)>"
 Y, X = np.mgrid[0:12, 0:16]
@@ -110,6 +111,20 @@ def test_a_holder_that_cannot_be_read_says_so(decoder):
     with pytest.raises(rj.DecodeError):
         decoder(b"", holder)
     assert holder._repr_html_() == "&lt;Imu: the last decode failed&gt;"
+
+
+def test_pages_of_hostile_types_stay_small():
+    fields = " ".join(f"int32 f{number} = {number + 2};" for number in range(300))
+    schema = {"w.proto": f'syntax = "proto3"; package w; message N {{ repeated N kids = 1; {fields} }}'}
+    holder = rj.Decoder.of("w.N", imports=["w.proto"], schema=schema, backend="python").new()
+    node = holder
+    for _ in range(10):
+        node.kids.add()
+        node = node.kids.add()
+    assert len(repr(holder._repr_html_())) < 300_000
+    plain = brief_message(holder)
+    assert len(plain) < 50_000
+    assert plain.endswith("…)")
 
 
 def drawn(holder):

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.holder.record import Entry
 
-MAX_NUMBERS, MAX_ITEMS, MAX_TEXT, MAX_BYTES, MAX_DEPTH = 12, 4, 120, 24, 6
-"""How much is shown of arrays of numbers, of other arrays and maps, of texts and of bytes; and of messages in each other."""
+MAX_NUMBERS, MAX_ITEMS, MAX_TEXT, MAX_BYTES, MAX_FIELDS, MAX_DEPTH = 12, 4, 120, 24, 50, 6
+"""How much is shown of arrays of numbers, of other arrays and maps, of texts, bytes and messages; and how deep these lie in each other."""
 
 
 def brief_message(message: Message, depth: int = 0) -> str:
@@ -27,7 +27,9 @@ def brief_message(message: Message, depth: int = 0) -> str:
     name = type(message).__name__
     if depth > MAX_DEPTH:
         return f"{name}(…)"
-    return f"{name}({', '.join(f'{entry.name}={brief(value, depth + 1)}' for entry, value in present_fields(message))})"
+    shown = [f"{entry.name}={brief(value, depth + 1)}" for entry, value in islice(present_fields(message), MAX_FIELDS)]
+    rest = ["…"] if len(shown) == MAX_FIELDS < len(message.access_.record.entries) else []
+    return f"{name}({', '.join((*shown, *rest))})"
 
 
 def present_fields(message: Message) -> Iterator[tuple[Entry, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping, Sequence
 from html import escape
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -15,6 +15,7 @@ from rosetta_jit.model.words import field_words
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.looks.brief import brief, present_fields
 from rosetta_jit.runtime.looks.png import png
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
-    from rosetta_jit.runtime.holder.record import Entry
 
 MAX_DEPTH, MAX_MESSAGES, MAX_ROWS, MAX_FIELDS, MAX_COLUMNS = 4, 3, 5, 200, 20
 MAX_PIXELS = 640
@@ -41,7 +41,7 @@ def page(holder: Holder) -> str:
     """A message as HTML; one line of a holder that cannot be read."""
     if not holder.lanes_.words[VALID]:
         return escape(repr(holder))
-    return f"<div>{''.join(_message(holder, 0))}</div>"
+    return f"<div>{''.join(_Page().message(holder, 0))}</div>"
 
 
 def batch_page(batch: Batch) -> str:
@@ -56,38 +56,48 @@ def batch_page(batch: Batch) -> str:
     return f"<div><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>"
 
 
-def _message(message: Message, depth: int) -> Iterator[str]:
-    yield f"<b>{escape(message.access_.record.struct)}</b>"
-    picture = cast("Holder", message).picture_()
-    if picture is not None:
-        yield _picture(picture)
-    rows = "".join(_row(message, entry, value, depth) for entry, value in islice(present_fields(message), MAX_FIELDS))
-    if rows:
-        yield f"<table>{rows}</table>"
+@dataclass(slots=True)
+class _Page:
+    """The rows of one page; of a type of very many fields, or of messages in messages, the first are shown."""
 
+    rows_left: int = MAX_FIELDS
 
-def _row(message: Message, entry: Entry, value: Any, depth: int) -> str:
-    words = escape(field_words(entry.field, message.access_.family.schema))
-    head = f'<th style="{NAME}">{escape(entry.name)}</th><td style="{NAME};opacity:0.6">{words}</td>'
-    return f'<tr>{head}<td style="{STYLE}">{_value(value, depth)}</td></tr>'
+    def message(self, message: Message, depth: int) -> Iterator[str]:
+        yield f"<b>{escape(message.access_.record.struct)}</b>"
+        picture = cast("Holder", message).picture_()
+        if picture is not None:
+            yield _picture(picture)
+        rows = "".join(self.rows(message, depth))
+        if rows:
+            yield f"<table>{rows}</table>"
 
+    def rows(self, message: Message, depth: int) -> Iterator[str]:
+        for entry, value in present_fields(message):
+            if not self.rows_left:
+                yield f'<tr><td style="{NAME}">…</td></tr>'
+                return
+            self.rows_left -= 1
+            words = escape(field_words(entry.field, message.access_.family.schema))
+            head = f'<th style="{NAME}">{escape(entry.name)}</th><td style="{NAME};opacity:0.6">{words}</td>'
+            yield f'<tr>{head}<td style="{STYLE}">{self.value(value, depth)}</td></tr>'
 
-def _value(value: Any, depth: int) -> str:
-    match value:
-        case Message() if depth < MAX_DEPTH:
-            return _folded(brief(value), _message(value, depth + 1))
-        case np.ndarray():
-            return _array(cast("NDArray[Any]", value))
-        case str() | bytes() | Mapping() | Message():
-            return escape(brief(cast("Any", value)))
-        case Sequence():
-            items = cast("Sequence[Any]", value)
-            if items and isinstance(items[0], Message) and depth < MAX_DEPTH:
-                inner = (part for each in items[:MAX_MESSAGES] for part in _message(each, depth + 1))
-                return _folded(f"{len(items)} messages", inner)
-            return escape(brief(items))
-        case _:
-            return escape(brief(value))
+    def value(self, value: Any, depth: int) -> str:
+        match value:
+            case Message() if depth < MAX_DEPTH:
+                return _folded(brief(value), self.message(value, depth + 1))
+            case np.ndarray():
+                return _array(cast("NDArray[Any]", value))
+            case str() | bytes() | Mapping() | Message():
+                return escape(brief(cast("Any", value)))
+            case Sequence():
+                items = cast("Sequence[Any]", value)
+                if items and isinstance(items[0], Message) and depth < MAX_DEPTH:
+                    return _folded(
+                        f"{len(items)} messages", chain.from_iterable(self.message(each, depth + 1) for each in items[:MAX_MESSAGES])
+                    )
+                return escape(brief(items))
+            case _:
+                return escape(brief(value))
 
 
 def _folded(summary: str, parts: Iterable[str]) -> str:
