@@ -49,7 +49,7 @@ def batch_page(batch: Batch) -> str:
     names = list(batch.family_.tree.root.entries)[:MAX_COLUMNS]
     head = "".join(f'<th style="{NAME}">{escape(name)}</th>' for name in names)
     rows = [
-        "".join(f'<td style="{STYLE}">{escape(brief(message.access_.getters[name](message)))}</td>' for name in names)
+        "".join(f'<td style="{STYLE};min-width:10em">{escape(brief(message.access_.getters[name](message)))}</td>' for name in names)
         for message in islice(batch, MAX_ROWS)
     ]
     lines = "".join(f"<tr>{row}</tr>" for row in rows)
