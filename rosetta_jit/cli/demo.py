@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +23,10 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the table and the names of the pictures."""
+    missing = [name for name in ("matplotlib", "PIL") if find_spec(name) is None]
+    if missing:
+        print(f"error: the demo draws with {' and '.join(missing)}: pip install 'rosetta-jit[demo]'", file=sys.stderr)
+        return 1
     from rosetta_jit.demo.play import play
     from rosetta_jit.demo.table import table
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from rosetta_jit.cli import demo, main
 from rosetta_jit.demo.dynamic import dynamic_reader
 from rosetta_jit.demo.pictures import draw_frame, draw_joints
 from rosetta_jit.demo.play import Played, Report
@@ -15,6 +16,13 @@ from rosetta_jit.demo.streams import load_streams
 from rosetta_jit.demo.table import table
 
 PIXELS = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
+
+
+def test_what_it_draws_with_is_asked_for(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(demo, "find_spec", lambda name: None if name == "matplotlib" else name)
+    assert main(["demo", "--output", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == "error: the demo draws with matplotlib: pip install 'rosetta-jit[demo]'\n"
+    assert not any(tmp_path.iterdir())
 
 
 def test_every_bundled_message_is_a_bottle():
