@@ -30,9 +30,7 @@ _Holder = TypeVar("_Holder", bound="Holder")
 class HolderClass(type):  # noqa: D101 - its __doc__ is that of its objects
     # The class of holder classes: they list their fields and what is meant to be used, and not what they need for themselves.
 
-    @property
-    def __doc__(cls) -> str | None:  # pyright: ignore[reportIncompatibleVariableOverride]  `pydoc` would take a docstring of this class for that of a holder class
-        return type.__dict__["__doc__"].__get__(cls)
+    __doc__ = cast("str | None", type.__dict__["__doc__"])  # else `pydoc` takes a docstring of this class for that of a holder class
 
     def __dir__(cls) -> list[str]:
         return _listed(cast("type[Holder]", cls), super().__dir__())
