@@ -203,3 +203,19 @@ def unnamed_file(name: str, file: str) -> Diagnostic:
 def bad_line(name: str, at: int, why: str) -> Diagnostic:
     """A line that is no message."""
     return Diagnostic("warning", "log-message", f"{name}: the line at byte {at} is no message: {why}")
+
+
+def not_of_ros1(name: str, topic: str, encoding: str) -> Diagnostic:
+    """Messages that cannot become those of ROS 2."""
+    wrong = f"{name}: the messages of `{topic}` are encoded as `{encoding}`, and those of ROS 1 alone become those of ROS 2"
+    return Diagnostic("error", "log-encoding", wrong, help="--topic names the others")
+
+
+def no_successor(name: str, topic: str, type_: str) -> Diagnostic:
+    """A type of ROS 1 that ROS 2 does not have."""
+    return Diagnostic(
+        "error",
+        "log-no-type",
+        f"{name}: there is no definition of {type_}, which the messages of `{topic}` would be",
+        help="--search-path names the folder of its `.msg` file",
+    )

@@ -31,6 +31,7 @@ def add(commands: Commands) -> None:
         required=True,
         help="a table of one topic (.parquet, .arrow, .csv, .npz), or a log (.mcap, .bag, .lcmlog)",
     )
+    command.add_argument("--to", choices=("ros2",), help="of a log of ROS 1: write its messages as those of ROS 2")
     command.add_argument("--columns", metavar="A,B.C", help="these fields alone, with dots those of nested messages")
     command.add_argument("--flatten", action="store_true", help="each field of a nested message is a column, named with dots")
     command.add_argument("--header-time", action="store_true", help="a further column with the time of `header.stamp`")
@@ -74,11 +75,16 @@ def _table(log: Log, channel: Channel, output: Path, arguments: argparse.Namespa
 def _log(log: Log, output: Path, arguments: argparse.Namespace) -> int:
     from rosetta_jit.logs.base import Wanted
     from rosetta_jit.logs.converting import copy_log
+    from rosetta_jit.logs.translating import translate_log
 
     topics = topics_of(arguments)
     channels = log.channels if topics is None else tuple(log[each] for each in topics)
     numbers = None if topics is None else frozenset(one.number for each in channels for one in each.connections)
     counts = [each.count for each in channels]
     with progress(None if None in counts else sum(each or 0 for each in counts)) as advance:
-        copy_log(log, channels, output, Wanted(numbers, arguments.start, arguments.end), advance)
+        wanted = Wanted(numbers, arguments.start, arguments.end)
+        if arguments.to == "ros2":
+            translate_log(log, channels, output, wanted, folders=arguments.search_path, advance=advance)
+        else:
+            copy_log(log, channels, output, wanted, advance)
     return int(bool(log.problems))
