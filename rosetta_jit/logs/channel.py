@@ -10,8 +10,9 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import DecodeError, LogError
 from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
-from rosetta_jit.logs.moments import nanoseconds
+from rosetta_jit.logs.moments import nanoseconds, shown
 from rosetta_jit.logs.staging import Staged, Staging
+from rosetta_jit.logs.walking import gathered
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.base import Block, Connection
     from rosetta_jit.logs.log import Log
     from rosetta_jit.logs.moments import Moment
+    from rosetta_jit.logs.walking import Rows
     from rosetta_jit.runtime.batch import Batch
 
 OnError: TypeAlias = Literal["raise", "skip", "mask"]
@@ -119,6 +121,16 @@ class Channel:
             kept = batch.kept
             yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first, staged)
             first += len(staged.log_ns)
+
+    def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
+        """Messages of a block, in a batch of their own; an error says of which topic and time the message is."""
+        data, offsets = gathered(block.data, rows.begins, rows.ends)
+        try:
+            return self.decoder.many(data.data, offsets, on_error=on_error)
+        except DecodeError as error:
+            number, _, path = error.path.removeprefix("[").partition("]")
+            when = shown(int(rows.log_ns[int(number)]))
+            raise DecodeError(error.kind, path, f"{error.detail} (a message of {self.topic}, logged {when})", error.offset) from None
 
     def _blocks(self, start: Moment | None, end: Moment | None) -> Iterator[Block]:
         numbers = frozenset(each.number for each in self.connections)

@@ -9,7 +9,6 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import ReportError
-from rosetta_jit.logs.walking import gathered
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -57,8 +56,7 @@ class Examination:
         seen.early += int((np.diff(times) < 0).sum())
         channel = self._channel(number)
         if channel is not None and self.decode:
-            data, offsets = gathered(block.data, rows.begins, rows.ends)
-            errors = channel.decoder.many(data.data, offsets, on_error="skip").errors
+            errors = channel.decoded(block, rows, "skip").errors
             seen.undecodable += len(errors)
             if errors and seen.first_error is None:
                 index, error = next(iter(errors.items()))

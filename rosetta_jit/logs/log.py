@@ -15,7 +15,6 @@ from rosetta_jit.logs.base import Wanted, formats
 from rosetta_jit.logs.channel import Channel, OnError
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
 from rosetta_jit.logs.storage import open_storage
-from rosetta_jit.logs.walking import gathered
 
 if TYPE_CHECKING:
     import os
@@ -233,9 +232,7 @@ def _decoded(block: Block, channels: dict[int, Channel], on_error: OnError) -> d
     for channel in set(channels.values()):
         chosen = np.flatnonzero(np.isin(block.rows.channels, [each.number for each in channel.connections]))
         if len(chosen):
-            rows = block.rows.only(chosen)
-            data, offsets = gathered(block.data, rows.begins, rows.ends)
-            batch = channel.decoder.many(data.data, offsets, on_error=on_error)
+            batch = channel.decoded(block, block.rows.only(chosen), on_error)
             found |= dict(zip(chosen[batch.kept].tolist(), batch, strict=True))
     return found
 

@@ -15,7 +15,6 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.frameworks.ros2.successors import DROPPED, definition, predecessor, successor
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.walking import gathered
 from rosetta_jit.logs.writing import written
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -47,9 +46,7 @@ class Stream:
         chosen = np.flatnonzero(np.isin(block.rows.channels, [each.number for each in self.channel.connections]))
         if not len(chosen):
             return {}
-        rows = block.rows.only(chosen)
-        data, offsets = gathered(block.data, rows.begins, rows.ends)
-        table = self.channel.decoder.many(data.data, offsets).to_arrow()
+        table = self.channel.decoded(block, block.rows.only(chosen)).to_arrow()
         buffer, places = self.encode.many(renamed(table, self.schema, predecessor, DROPPED))
         octets, ends = buffer.tobytes(), places.tolist()
         return {row: octets[ends[index] : ends[index + 1]] for index, row in enumerate(chosen.tolist())}

@@ -128,6 +128,8 @@ def test_a_message_that_its_type_does_not_allow(folder):
     log = rj.open(path)
     with pytest.raises(DecodeError, match=r"`\[1\]"):
         log["/x"].to_arrow()
+    with pytest.raises(DecodeError, match=r"a message of /x, logged 1970-01-01T00:00:00.000000001Z"):
+        list(log.messages())
     assert log["/x"].to_arrow(on_error="skip")["x"].to_pylist() == [1, 3]
     assert [each.time for each in log.messages(on_error="skip")] == [0, 2]
 
