@@ -127,7 +127,7 @@ def out_of_order(name: str, topic: str, count: int) -> Diagnostic:
 
 def undecodable(name: str, topic: str, index: int, why: str, count: int) -> Diagnostic:
     """Messages that are not of their type."""
-    more = f"; so have {count - 1} more" if count > 1 else ""
+    more = f" ({count} such messages in all)" if count > 1 else ""
     return Diagnostic("warning", "log-message", f"{name}: message {index} of `{topic}` has bytes that its type does not have: {why}{more}")
 
 
@@ -180,11 +180,6 @@ def which_topic(name: str, topics: Iterable[str]) -> Diagnostic:
     return Diagnostic("error", "log-topic", f"{name} has several topics: {', '.join(topics)}", help="name one: --topic")
 
 
-def no_definition(name: str, topic: str, type_: str) -> Diagnostic:
-    """A type of which the log has no definition."""
-    return Diagnostic("warning", "log-definition", f"{name} has no definition of {type_ or 'the type'} of `{topic}`")
-
-
 def stopped(name: str, why: str) -> Diagnostic:
     """A database that breaks off."""
     return Diagnostic("warning", "log-damaged", f"{name} cannot be read on: {why}", help="what lies before it is read")
@@ -219,3 +214,8 @@ def no_successor(name: str, topic: str, type_: str) -> Diagnostic:
         f"{name}: there is no definition of {type_}, which the messages of `{topic}` would be",
         help="--search-path names the folder of its `.msg` file",
     )
+
+
+def no_time(name: str, time_ns: int) -> Diagnostic:
+    """A time that a bag cannot have."""
+    return Diagnostic("error", "log-time", f"{name}: bags have no time {time_ns} ns: it is before 1970 or after 2106")

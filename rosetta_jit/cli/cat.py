@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command
 from rosetta_jit.cli.logs import add_decoding, add_log, add_selection, log_of, one_topic, target_of, topics_of
+from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -48,4 +49,4 @@ def _text(message: Message, *, as_json: bool) -> str:
     if as_json:
         return dump({"time": message.time, "topic": message.topic, "message": message.message.to_dict()})
     text = message.message.hex(" ") if isinstance(message.message, bytes) else str(message.message)
-    return f"{shown(message.time)} {message.topic}\n{text}"
+    return f"{shown(message.time)} {printable(message.topic)}\n{text}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command
 from rosetta_jit.cli.logs import add_log, log_of
+from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -47,4 +48,4 @@ def _text(log: Log) -> str:
     rows += [(each.topic, "?" if each.count is None else str(each.count), each.type or "?", each.encoding) for each in log.channels]
     widths = [max(len(row[column]) for row in rows) for column in range(4)]
     lines = [f"{row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:<{widths[2]}}  {row[3]}".rstrip() for row in rows]
-    return "\n".join([log.name, *(f"{name + ':':<13}{value}" for name, value in facts.items()), "", *lines])
+    return "\n".join(printable(line) for line in [log.name, *(f"{name + ':':<13}{value}" for name, value in facts.items()), "", *lines])

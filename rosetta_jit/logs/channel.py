@@ -264,6 +264,8 @@ def _decoder(log: Log, connection: Connection, target: str | None, options: Opti
     if target is not None and target.endswith(".mapping"):
         return Decoder(target, **chosen)
     type_ = target or connection.type
+    if not type_ and "fingerprint" in connection.details and "imports" not in chosen:
+        type_, chosen["imports"] = _of_fingerprint(connection, chosen)
     if not type_:
         details = "".join(f" ({name} {text})" for name, text in connection.details.items())
         raise LogError((words.no_type(log.name, connection.topic, details),))
@@ -271,3 +273,13 @@ def _decoder(log: Log, connection: Connection, target: str | None, options: Opti
         chosen.pop("imports", None)  # they are for types that the log does not define
         chosen["schema"] = connection.schema if connection.schema_encoding == "protobuf" else connection.schema.decode("utf-8", "replace")
     return Decoder.of(type_, **chosen)
+
+
+def _of_fingerprint(connection: Connection, options: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
+    """The type of LCM's messages, and the file on the search path that declares it; empty if none has their fingerprint."""
+    from rosetta_jit.frameworks.lcm.known import type_of
+    from rosetta_jit.language.imports.search import Reading, SearchPath
+
+    search = SearchPath.of(options.get("search_path", ()))
+    found = type_of(int(connection.details["fingerprint"], 16), search.folders, search.loader(Reading()))
+    return ("", ()) if found is None else (found[0], (found[1],))

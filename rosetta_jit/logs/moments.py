@@ -44,7 +44,9 @@ def _integer(moment: object) -> int:
 
 
 def shown(time_ns: int) -> str:
-    """A moment as ISO 8601 with nanoseconds."""
+    """A moment as ISO 8601 with nanoseconds; one that is out of range, as damaged logs have them, as it is."""
+    if not -(1 << 63) < time_ns < 1 << 63:
+        return f"{time_ns} ns"
     return f"{np.datetime64(time_ns, 'ns')}Z"
 
 

@@ -58,6 +58,11 @@ def test_lcm(folder):
     with pytest.raises(LogError, match=r"does not say of which type.*fingerprint 0x"):
         log["/a"].to_arrow()
     assert log.channel("/a", "t.point_t", schema=LCM_TYPES)["x"].tolist() == [number / 4 for number in range(COUNT)]
+    (folder / "definitions").mkdir()
+    (folder / "definitions" / "others.lcm").write_text("package t;\nstruct other_t { double x; }\n")
+    (folder / "definitions" / "types.lcm").write_text(LCM_TYPES)
+    found = rj.open(folder / "a.log", search_path=[folder / "definitions"])
+    assert found["/b"].to_arrow()["data"][1].as_py() == "text 5"  # whose fingerprint is found there
     assert [(each.time, each.topic) for each in log.messages(raw=True)] == [
         (time // 1000 * 1000, topic) for time, topic, _ in expected(COUNT)
     ]
@@ -167,3 +172,12 @@ def test_many_messages_in_small_memory(tmp_path):
     assert sum(sizes) == 40_000
     assert max(sizes) <= 16_384
     assert np.array_equal(log["/a"]["x"], np.arange(40_000) / 4)
+
+
+def test_a_url(log):
+    import fsspec
+
+    fsspec.filesystem("memory").pipe("/drive/whole.mcap", log.path.read_bytes())
+    assert rj.open("memory://drive/whole.mcap")["/a"].to_arrow().num_rows == COUNT
+    with pytest.raises(LogError, match="log-unreadable"):
+        rj.open("memory://drive/nothing.mcap")

@@ -17,6 +17,8 @@ HEADER_SIZE = 4096
 """The first record is filled up with blanks to this size, so that it can be written again."""
 
 CHUNK_SIZE = 768 * 1024
+END_NS = 10**9 << 32
+"""From here on, in 2106, seconds have more than 32 bits."""
 
 
 def record(data: bytes, **fields: bytes) -> bytes:
@@ -70,6 +72,8 @@ class BagWriter:
 
     def write(self, number: int, log_ns: int, publish_ns: int, data: bytes) -> None:
         del publish_ns
+        if not 0 <= log_ns < END_NS:
+            raise LogError((words.no_time(self._name, log_ns),))
         if number not in self._introduced:
             self._introduced.add(number)
             self._chunk += self._connections[number]

@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.base import Connection
 
 
+TIME = (1 << 64) - 1
+"""Times are unsigned."""
+
+
 class McapWriter:
     """An MCAP file. A type without a definition is written without one."""
 
@@ -37,7 +41,7 @@ class McapWriter:
         return int(number)
 
     def write(self, number: int, log_ns: int, publish_ns: int, data: bytes) -> None:
-        self._writer.add_message(number, log_ns, data, publish_ns, self._sequences[number])
+        self._writer.add_message(number, log_ns & TIME, data, publish_ns & TIME, self._sequences[number])
         self._sequences[number] += 1
 
     def finish(self) -> None:

@@ -85,7 +85,7 @@ class Rosbag2Reader:
                 data = view[begin:end]
                 found, wrong = decompressed(str(self._folder), "zstd", data, zstd_size(data), scratch)
                 if wrong:
-                    self._tell(words.bad_line(str(self._folder), begin, wrong))
+                    self._tell(words.chunk_damaged(str(self._folder), begin, wrong))
                 yield channel, log_ns, publish_ns, found.tobytes()
 
     def _metadata(self) -> dict[str, Any]:
