@@ -115,9 +115,11 @@ def no_schema(name: str, topic: str, schema: int) -> Diagnostic:
     return Diagnostic("warning", "log-definition", f"{name}: `{topic}` is of schema {schema}, which the log does not have")
 
 
-def unknown_channel(name: str, channel: int, count: int) -> Diagnostic:
+def unknown_channel(name: str, channel: int) -> Diagnostic:
     """Messages of a channel that is not defined."""
-    return Diagnostic("warning", "log-channel", f"{name}: {count} messages are of channel {channel}, which the log does not define")
+    return Diagnostic(
+        "warning", "log-channel", f"{name}: messages are of channel {channel}, which the log does not define", help="they are left out"
+    )
 
 
 def out_of_order(name: str, topic: str, count: int) -> Diagnostic:

@@ -82,7 +82,7 @@ class Examination:
         known = {each.number: each for each in self.log.connections}
         for number, seen in self.seen.items():
             if number not in known:
-                found.append(words.unknown_channel(name, number, seen.count))
+                found.append(words.unknown_channel(name, number))
                 continue
             topic, promised = known[number].topic, known[number].count
             if promised is not None and promised != seen.count:

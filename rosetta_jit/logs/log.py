@@ -190,7 +190,9 @@ class Log:
         by_number = {each.number: channel for channel in channels for each in channel.connections}
         numbers = frozenset(by_number) if topics is not None else None
         for block in self.blocks(Wanted(numbers, nanoseconds(start), nanoseconds(end))):
-            by_number |= self._later(by_number) if topics is None else {}
+            if topics is None:
+                by_number |= self._later(by_number)
+                self._tell_unknown(block, by_number)
             order = np.argsort(block.rows.log_ns, kind="stable")
             found = _decoded(block, by_number, on_error) if not raw else _bytes(block)
             for row in order.tolist():
@@ -202,6 +204,12 @@ class Log:
         if all(each.number in known for each in self.connections):
             return {}
         return {each.number: channel for channel in self.channels for each in channel.connections if each.number not in known}
+
+    def _tell_unknown(self, block: Block, known: dict[int, Channel]) -> None:
+        """Say which channels have messages, but no definition."""
+        for number in np.unique(block.rows.channels).tolist():
+            if number not in known:
+                self._tell(words.unknown_channel(self.name, number))
 
     def close(self) -> None:
         """Close the file."""

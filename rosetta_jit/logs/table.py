@@ -16,5 +16,5 @@ FORMATS = (
     Format("recording", (".rec", ".rec.xz"), f"{_HERE}.recordings.reader:RecordingReader"),
     Format("tide", (".tide",), f"{_HERE}.tide.reader:TideReader", b"TIDE"),
     Format("delimited", (".delimited", ".pbd", ".binpb.delimited"), f"{_HERE}.delimited.reader:DelimitedReader"),
-    Format("lcm", (".lcmlog", ".lcm"), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
+    Format("lcm", (".lcmlog",), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
 )

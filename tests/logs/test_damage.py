@@ -220,3 +220,17 @@ def test_what_cannot_be_opened(tmp_path):
     for path in (tmp_path, tmp_path / "nothing", "/dev/zero", "x\0y", "nothing://at-all"):
         with pytest.raises(LogError, match="log-"):
             rj.open(path)
+
+
+def test_messages_of_a_channel_that_is_not_defined(logs, tmp_path):
+    whole = bytearray(logs["loose.mcap"])
+    at = 8
+    while whole[at] != 5:
+        at += 9 + int.from_bytes(whole[at + 1 : at + 9], "little")
+    everything, _ = read(tmp_path / "a.mcap", bytes(whole))
+    whole[at + 9] = 77
+    messages, found = read(tmp_path / "a.mcap", bytes(whole))
+    assert messages == everything[1:]
+    assert [each.message for each in found if each.code == "log-channel"] == [
+        f"{tmp_path / 'a.mcap'}: messages are of channel 77, which the log does not define"
+    ]

@@ -141,7 +141,7 @@ class TideReader:
                 if channel in self._connections:
                     yield channel, min(time_ns, (1 << 63) - 1), at + ENTRY_HEAD.size, size
                 else:
-                    self._tell(words.unknown_channel(self._storage.name, channel, 1))
+                    self._tell(words.unknown_channel(self._storage.name, channel))
                 at += ENTRY_HEAD.size + size
 
     def _messages(self, wanted: Wanted) -> Iterator[tuple[int, int, int, bytes]]:
