@@ -25,7 +25,7 @@ def test_the_example_in_c_runs(tmp_path, monkeypatch):
     from rosetta_jit.cli import main
 
     text = (ROOT / "docs" / "c.md").read_text()
-    (generate, build), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "c", "text"))
+    (generate, build, _), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "c", "text"))
     monkeypatch.chdir(tmp_path)
     assert main(generate.split()[1:]) == 0
     Path("main.c").write_text(source)

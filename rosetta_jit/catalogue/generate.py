@@ -36,6 +36,19 @@ def needs_c_library(name: str, what: str) -> Diagnostic:
     return Diagnostic("error", "not-freestanding", f"{name} needs {what} of the C library", help="generate it without --freestanding")
 
 
-def nothing_to_borrow(name: str) -> Diagnostic:
-    """A decoder that was asked to leave bytes in the message, of a type without any."""
-    return Diagnostic("error", "nothing-to-borrow", f"{name} has no bytes field that could stay in the message", help="ask for `decode`")
+def no_target(triple: str, why: str) -> Diagnostic:
+    """A machine for which no object can be made."""
+    help_ = "name it as LLVM does, as thumbv7em-none-eabihf; source in C runs on any"
+    return Diagnostic("error", "no-target", f"there are no objects for `{triple}`: {why}", help=help_)
+
+
+def not_in_object(function: str) -> Diagnostic:
+    """A mapping that calls a function of its user's, whose code an object cannot have."""
+    return Diagnostic(
+        "error", "not-in-object", f"the mapping calls `{function}`, which an object does not have", help="generate source instead"
+    )
+
+
+def no_object(language: str) -> Diagnostic:
+    """A language without headers for objects."""
+    return Diagnostic("error", "no-object", f"objects have no header in `{language}`", help="use --language c")

@@ -11,6 +11,7 @@ from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping
 
     from rosetta_jit.api.options import Options
     from rosetta_jit.pipeline.request import Request
@@ -32,6 +33,9 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("-o", "--output", metavar="FOLDER", default=".", help="where the files go (default: here)")
     command.add_argument("--name", help="of the files, and what their names begin with (default: that of the mapping or type)")
+    command.add_argument("--emit", choices=("source", "object"), default="source", help="source, or LLVM's object file and a header for C")
+    command.add_argument("--target", metavar="TRIPLE", help="of an object: the machine as LLVM names it (default: this one)")
+    command.add_argument("--cpu", default="", help="of an object: one of the machine's, as cortex-m7 (default: any)")
     command.add_argument("--freestanding", action="store_true", help="use nothing of a C library but memcpy and memset")
     command.add_argument("--framework", help="the type's, where its name does not tell")
     add_encoding(command)
@@ -49,22 +53,34 @@ def _directions(text: str) -> tuple[str, ...]:
 
 def run(arguments: argparse.Namespace) -> int:
     """All files are made before any is written; one line says what each is."""
-    from rosetta_jit.generate.build import generated
-
-    texts = generated(
-        _request(arguments),
-        arguments.language,
-        arguments.directions,
-        arguments.name or _name(arguments.subject),
-        freestanding=arguments.freestanding,
-    )
+    texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
     folder = Path(cast("str", arguments.output))
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         with named(folder / name) as path:
-            path.write_text(text, "utf-8", newline="\n")
+            path.write_bytes(text if isinstance(text, bytes) else text.encode())
         print(f"wrote {folder / name}")
     return 0
+
+
+def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
+    from rosetta_jit.generate.build import generated
+
+    name = arguments.name or _name(arguments.subject)
+    return generated(_request(arguments), arguments.language, arguments.directions, name, freestanding=arguments.freestanding)
+
+
+def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
+    from llvmlite import binding
+
+    from rosetta_jit.catalogue.generate import no_object
+    from rosetta_jit.errors import SchemaError
+    from rosetta_jit.generate.build import object_of
+
+    if arguments.language != "c":
+        raise SchemaError((no_object(arguments.language),))
+    name, triple = arguments.name or _name(arguments.subject), arguments.target or binding.get_default_triple()
+    return object_of(_request(arguments), arguments.directions, name, triple, arguments.cpu)
 
 
 def _request(arguments: argparse.Namespace) -> Request:

@@ -17,11 +17,11 @@ MAIN = Path(__file__).with_name("driver.c")
 needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="generated C is compiled by gcc, which is not installed")
 
 
-def write(folder: Path, texts: dict[str, str]) -> str:
+def write(folder: Path, texts: dict[str, str] | dict[str, str | bytes]) -> str:
     """The files of a unit in a folder; gives the unit's name."""
     for name, text in texts.items():
-        (folder / name).write_text(text, newline="\n")
-    return next(name for name in texts if name.endswith(".c"))[:-2]
+        (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    return next(name for name in texts if name.endswith(".h"))[:-2]
 
 
 def compiled(compiler: str, folder: Path, name: str, *options: str) -> Path:
@@ -40,6 +40,21 @@ def driver(folder: Path, name: str, compiler: str = "gcc", options: tuple[str, .
     made = folder / f"{name}.{compiler}"
     words = [f'-DHEADER="{name}.h"', f"-DUNIT={name}"]
     sources = [MAIN, folder / f"{name}.c", "-lm"]
+    done = subprocess.run(
+        [compiler, "-std=c11", *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return made
+
+
+def driver_of_object(folder: Path, name: str, compiler: str = "gcc", options: tuple[str, ...] = SANITIZED) -> Path:
+    """The program around a unit's object file."""
+    calls = folder / f"{name}_calls.c"
+    calls.write_text(f'#define {name.upper()}_IMPLEMENTATION\n#include "{name}.h"\n')
+    compiled(compiler, folder, calls.stem)
+    made = folder / f"{name}.program"
+    words = [f'-DHEADER="{name}.h"', f"-DUNIT={name}"]
+    sources = [MAIN, calls, folder / f"{name}.o", "-lm"]
     done = subprocess.run(
         [compiler, "-std=c11", *options, f"-I{folder}", *words, "-o", made, *sources], capture_output=True, text=True, check=False
     )

@@ -25,7 +25,7 @@ def memory(unit: Unit, lanes: Lanes, hidden: int) -> str:
     lines = [*_constants(unit, lanes, rooms, hidden), ""]
     lines += ["/* Room for the lanes of one holder, where it need not grow. */", f"typedef struct {name}_memory {{"]
     lines += [f"    {lanes.type(lane)} {lanes.rows(lane)}[{_constant(unit, lanes, lane)}];" for lane in rooms]
-    lines += [f"    unsigned char scratch_{number}[{name.upper()}_SCRATCH_{number}_BYTES];" for number in range(hidden)]
+    lines += [f"    int64_t scratch_{number}[({name.upper()}_SCRATCH_{number}_BYTES + 7) / 8];" for number in range(hidden)]
     lines += [] if rooms or hidden else ["    unsigned char nothing;"]
     lines += [f"}} {name}_memory;", "", "/* Makes a holder an empty message with that memory. */"]
     lines += [f"static inline void {name}_use({name}_holder *holder, {name}_memory *memory)", "{"]
@@ -34,7 +34,7 @@ def memory(unit: Unit, lanes: Lanes, hidden: int) -> str:
         lines.append(f"    {member}.rows = {f'memory->{lanes.rows(lane)}' if lane in rooms else 'NULL'};")
         lines.append(f"    {member}.capacity = {_constant(unit, lanes, lane) if lane in rooms else 0};")
     for number in range(hidden):
-        lines.append(f"    holder->scratch[{number}].bytes = memory->scratch_{number};")
+        lines.append(f"    holder->scratch[{number}].bytes = (unsigned char *)memory->scratch_{number};")
         lines.append(f"    holder->scratch[{number}].size = {name.upper()}_SCRATCH_{number}_BYTES;")
     lines += ["    holder->now = 0;", "    holder->number = 0;", f"    {name}_clear(holder);"]
     return "\n".join([*lines, *([] if rooms or hidden else ["    (void)memory;"]), "}"])

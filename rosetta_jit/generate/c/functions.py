@@ -20,6 +20,7 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Direction, Kernel, Routine
 
 SHARED = ("holder", "bytes", "end", "failure")
@@ -45,7 +46,7 @@ class Printed:
     hidden: frozenset[int]
 
 
-def print_kernel(kernel: Kernel, lanes: Lanes, role: str) -> Printed:
+def print_kernel(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
     """The functions of a kernel that is for a message alone (`kernel.passes.alone`); their names begin with its role."""
     writer, support, hidden, routines = Writer(), set[str](), set[int](), dict[str, Callable]()
     words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}

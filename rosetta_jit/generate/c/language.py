@@ -16,12 +16,20 @@ from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.model.layout import UNKNOWN
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosetta_jit.generate.c.functions import Printed
     from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.kernel.ir import Kernel
 
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
+    return as_c(unit, print_kernel)
+
+
+def as_c(unit: Unit, print_function: Callable[[Kernel, Lanes, Role], Printed]) -> dict[str, str]:
+    """Header and source around functions that a printer makes for each kernel."""
     layout = unit.layout
     structs = Structs(unit.name, Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS}), {})
     named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in layout.lanes])
@@ -29,7 +37,7 @@ def files(unit: Unit) -> dict[str, str]:
     own = [Lane(*names, lane.stride, element) for names, lane, element in zip(named, layout.lanes, elements, strict=True)]
     lanes = Lanes(unit.name, tuple(own), len(own))
     printed: dict[Role, Printed] = {
-        role: print_kernel(kernel, replace(lanes, all=(*own, *hidden_lanes(kernel.strides[len(own) :]))), role)
+        role: print_function(kernel, replace(lanes, all=(*own, *hidden_lanes(kernel.strides[len(own) :]))), role)
         for role, kernel in unit.kernels.items()
     }
     hidden = 1 + max((number for each in printed.values() for number in each.hidden), default=-1)

@@ -1,0 +1,68 @@
+"""Objects for other machines, and the header through which C calls them."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+
+import pytest
+from llvmlite import binding
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.cli import main
+from rosetta_jit.generate.build import object_of
+from tests.generate.driver import answers, driver_of_object, expected, harmed, needs_gcc, write
+from tests.generate.test_c import BOTH, TORSO, joint_states, proto_angles
+
+SUBJECTS = {
+    "joints": ("sensor_msgs/JointState", "ros1", joint_states()),
+    "angles": ("rst.kinematics.JointAngles", "protobuf", proto_angles()),
+}
+MACHINES = ["aarch64-linux-gnu", "armv7-linux-gnueabihf", "thumbv7em-none-eabihf", "riscv64-linux-gnu", "wasm32-unknown-unknown"]
+
+
+@needs_gcc
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_an_object_answers_as_the_library_does(name, tmp_path):
+    type_, encoding, good = SUBJECTS[name]
+    options = {"encoding": encoding}
+    write(tmp_path, object_of(type_request("decode", type_, options), BOTH, name, binding.get_default_triple()))
+    decode, encode = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+    messages = harmed(good, 8, name)
+    found = answers(driver_of_object(tmp_path, name), messages)
+    assert found == [expected(decode, encode, message) for message in messages]
+
+
+@pytest.mark.parametrize("triple", MACHINES)
+def test_objects_of_other_machines_need_nothing_of_cpython(triple):
+    texts = object_of(TORSO, ("decode",), "torso", triple)
+    code = texts["torso.o"]
+    assert len(code) > 500
+    assert b"torso_decode_kernel" in code
+    assert not re.search(rb"_?Py[A-Z_]", code)
+    assert "torso_decode_kernel(" in texts["torso.h"]
+
+
+def test_a_small_machine_needs_little(tmp_path):
+    """Of the mapping's own code on a Cortex-M7: at most 3 KB."""
+    if shutil.which("size") is None:
+        pytest.skip("binutils are not installed")
+    path = tmp_path / "torso.o"
+    path.write_bytes(object_of(TORSO, BOTH, "torso", "thumbv7em-none-eabihf", "cortex-m7")["torso.o"])
+    text = subprocess.run(["size", path], capture_output=True, text=True, check=True).stdout.splitlines()[1].split()[0]
+    assert 0 < int(text) <= 3072
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind"),
+    [
+        (["--target", "s390x-linux-gnu"], "no-target"),
+        (["--target", "abacus"], "no-target"),
+        (["--language", "cobol"], "no-object"),
+    ],
+)
+def test_what_has_no_object_is_said(arguments, kind, capsys):
+    assert main(["generate", "yarp/icub/torso_state.mapping", "--encoding", "yarp3", "--emit", "object", *arguments]) == 1
+    assert f"error[{kind}]" in capsys.readouterr().err
