@@ -5,8 +5,10 @@ from __future__ import annotations
 import shutil
 
 import pytest
+from rosetta_jit.kernel.passes.order.alone import as_proven
 
-from rosetta_jit.generate.build import generated
+from rosetta_jit.generate.build import generated, unit_of
+from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from tests.generate.corpora import corpora
 from tests.generate.driver import SANITIZED, answers, driver, expected, harmed, needs_gcc, write
 
@@ -31,6 +33,14 @@ def roomy(folder, name):
     """Options that give a lane, which nothing bounds, the room for any of the messages."""
     header = (folder / f"{name}.h").read_text()
     return [f"-D{line.split()[1]}=40000" for line in header.splitlines() if line.startswith("#ifndef UNIT_") and not line.endswith("_H")]
+
+
+@pytest.mark.parametrize("corpus", [each for each in corpora() if each.name in FEW], ids=lambda each: each.name)
+def test_kernels_for_one_message_are_proven_as_such(corpus):
+    for kernel in unit_of(corpus.request, ("decode", "encode"), "unit").kernels.values():
+        verify(as_proven(kernel))
+        with pytest.raises(VerificationError):
+            verify(kernel)  # which speaks of any row of lane 0
 
 
 @needs_gcc

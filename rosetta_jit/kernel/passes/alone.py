@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Capacity, Local
-from rosetta_jit.kernel.passes.fold import folded
-from rosetta_jit.kernel.passes.simplify import simplify
+from rosetta_jit.kernel.ir import Binary, Capacity, Compare, Expect, Failure, Local
+from rosetta_jit.kernel.passes.fold import TRUE, folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
 from rosetta_jit.kernel.terms import BEGIN, ROW, index
 
@@ -18,9 +17,11 @@ KNOWN = {BEGIN.name: index(0), ROW.name: index(0)}
 
 
 def alone(kernel: Kernel) -> Kernel:
-    """The kernel where `begin` and `row` are 0, and lane 0 has one row."""
-    bodies = tuple(map(_block, kernel.bodies))
-    return simplify(replace(kernel, bodies=bodies, routines=tuple(map(_routine, kernel.routines))))
+    """The kernel where `begin` and `row` are 0, and lane 0 has one row.
+
+    Nothing but that is put in place, and computed: what was proven of the kernel for all messages needs no other proof for these.
+    """
+    return replace(kernel, bodies=tuple(map(_block, kernel.bodies)), routines=tuple(map(_routine, kernel.routines)))
 
 
 def _routine(routine: Routine) -> Routine:
@@ -29,7 +30,8 @@ def _routine(routine: Routine) -> Routine:
 
 
 def _block(body: Block) -> Block:
-    return tuple(with_blocks(with_expressions(stmt, _expression), _block) for stmt in body)
+    known = (with_blocks(with_expressions(stmt, _expression), _block) for stmt in body)
+    return tuple(stmt for stmt in known if not (isinstance(stmt, Expect) and stmt.condition == TRUE))
 
 
 def _expression(expr: Expr) -> Expr:
@@ -40,3 +42,11 @@ def _expression(expr: Expr) -> Expr:
             return index(1)
         case _:
             return folded(with_operands(expr, _expression))
+
+
+def as_proven(kernel: Kernel) -> Kernel:
+    """What `verify` must prove of such a kernel: it is safe wherever the message begins at 0 and lane 0 has a row."""
+    at_0 = Compare("eq", BEGIN, index(0))
+    given = Expect(Binary("and", at_0, Compare("gt", Capacity(0), index(0))), Failure(1, BEGIN))
+    routines = tuple(replace(each, requires=(at_0, *each.requires)) for each in kernel.routines)
+    return replace(kernel, bodies=tuple((given, *body) for body in kernel.bodies), routines=routines)
