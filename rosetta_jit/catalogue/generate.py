@@ -17,8 +17,9 @@ def unknown_language(name: str, known: Sequence[str]) -> Diagnostic:
 
 def unusable_name(name: str) -> Diagnostic:
     """A name that files and identifiers cannot begin with."""
+    help_ = "letters, digits and underscores, of which a letter comes first, up to 40; and not the name of a header of C"
     message = f"`{name}` cannot begin the names of functions"
-    return Diagnostic("error", "unusable-name", message, help="letters, digits and underscores, of which a letter comes first, up to 40")
+    return Diagnostic("error", "unusable-name", message, help=help_)
 
 
 def needs_library(name: str, what: str) -> Diagnostic:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, encoding_of, parameters_of
@@ -98,6 +98,12 @@ def _is_mapping(subject: str) -> bool:
 
 
 def _name(subject: str) -> str:
-    """``yarp/icub/torso_state.mapping`` and ``sensor_msgs/JointState`` give ``torso_state`` and ``joint_state``."""
-    last = PurePath(subject).stem if _is_mapping(subject) else re.split(r"[./:]+", subject)[-1]
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", last).lower()
+    """``yarp/icub/torso_state.mapping`` and ``sensor_msgs/JointState`` give ``torso_state`` and ``joint_state``.
+
+    A name that a header of C has, as that of ``std_msgs/String``, is preceded by what stands before it: ``std_msgs_string``.
+    """
+    from rosetta_jit.generate.build import HEADERS
+
+    parts = re.split(r"[./:]+", subject.removesuffix(".mapping"))
+    names = [re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", part).lower() for part in parts]
+    return "_".join(names[-2:]) if names[-1] in HEADERS else names[-1]

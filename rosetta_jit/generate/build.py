@@ -31,6 +31,12 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline.request import Request
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
+HEADERS = frozenset(
+    """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbool stddef
+    stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype""".split()  # noqa: SIM905 - nobody reads 29 quoted words
+)
+"""Headers of C11, 7.1.2: who includes one of these must not find ours."""
+
 MAX_LINES = 200
 """Rules that the head of a file shows."""
 
@@ -53,7 +59,7 @@ def unit_of(request: Request, roles: tuple[Role, ...], name: str, *, freestandin
     MappingError, SchemaError
         The mapping or type has mistakes, or needs what generated source cannot have.
     """
-    if not NAME.fullmatch(name):
+    if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
     builds: dict[Role, AheadOfTime] = {role: AheadOfTime(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}

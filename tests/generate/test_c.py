@@ -153,6 +153,7 @@ def test_the_command_writes_both_files(tmp_path, capsys):
     [
         (["sensor_msgs/JointState", "--encoding", "ros1", "--language", "basic"], "unknown-language"),
         (["sensor_msgs/JointState", "--encoding", "ros1", "--name", "1x"], "unusable-name"),
+        (["sensor_msgs/JointState", "--encoding", "ros1", "--name", "string"], "unusable-name"),
         (["yarp/icub/torso_state.mapping"], "ambiguous-encoding"),
         (["no/Such", "--encoding", "ros1"], "unknown-type"),
     ],
@@ -167,6 +168,95 @@ def test_a_wrong_direction_is_exit_code_2(capsys):
         main(["generate", "sensor_msgs/JointState", "--directions", "sideways"])
     assert end.value.code == 2
     assert "sideways" in capsys.readouterr().err
+
+
+def test_a_header_of_c_is_not_hidden(tmp_path):
+    assert main(["generate", "std_msgs/String", "--encoding", "ros1", "-o", str(tmp_path)]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"std_msgs_string.h", "std_msgs_string.c"}
+
+
+CALLING = """\
+import "rst/kinematics/JointAngles.proto"
+import "yarp/icub/torso_state.bottle-schema"
+
+function halved(float64): float64
+
+data-holder: rst.kinematics.JointAngles
+wire-schema: yarp.icub.torso.state
+
+unpack-rules:
+  len(.angles) = 1
+  .angles[0] = float32(halved(radians(.yaw)))
+  ignore .roll
+  ignore .pitch
+"""
+HALVED = """\
+#include "calling.h"
+#include <stdio.h>
+
+bool calling_halved(double number, double *result)
+{
+    *result = number / 2.0;
+    return number >= 0.0;
+}
+
+static double decoded(double degrees)
+{
+    static calling_memory memory;
+    calling_holder holder;
+    struct { int tag, count; double numbers[3]; } message = {266, 3, {degrees, 0.0, 0.0}};
+    calling_use(&holder, &memory);
+    if (calling_decode(&holder, &message, sizeof message, NULL) == CALLING_REJECTED) {
+        return -1.0;
+    }
+    return (double)holder.angles.rows[holder.message.angles.start];
+}
+
+int main(void)
+{
+    printf("%.3f %.3f", decoded(90.0), decoded(-90.0));
+    return 0;
+}
+"""
+
+
+@needs_gcc
+def test_functions_of_the_mapping_are_the_programs_own(tmp_path):
+    (tmp_path / "calling.mapping").write_text(CALLING)
+    request = request_of("decode", {"encoding": "yarp3"}, mapping=str(tmp_path / "calling.mapping"))
+    write(tmp_path, generated(request, "c", ("decode",), "calling"))
+    (tmp_path / "main.c").write_text(HALVED)
+    subprocess.run(["gcc", *STRICT, "main.c", "calling.c", "-o", "main"], cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout == "0.785 -1.000"
+
+
+BORROWING = """\
+#include "image.h"
+#include <stdio.h>
+
+int main(void)
+{
+    static const unsigned char message[] = {2, 0, 0, 0, 'h', 'i', 3, 0, 0, 0, 7, 8, 9};
+    static image_memory memory;
+    image_holder holder;
+    image_use(&holder, &memory);
+    if (image_borrow(&holder, message, sizeof message, NULL) != IMAGE_OK) {
+        return 1;
+    }
+    const image_span data = holder.message.data;
+    printf("%d bytes from %d, the last is %d", (int)(-1 - data.count), (int)data.start, message[data.start + (-1 - data.count) - 1]);
+    return 0;
+}
+"""
+
+
+@needs_gcc
+def test_borrowed_bytes_stay_in_the_message(tmp_path):
+    request = type_request("decode", "a/Image", {"encoding": "ros1", "schema": "string name\nuint8[] data\n"})
+    write(tmp_path, generated(request, "c", ("borrow",), "image"))
+    (tmp_path / "main.c").write_text(BORROWING)
+    subprocess.run(["gcc", *STRICT, "main.c", "image.c", "-o", "main"], cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout == "3 bytes from 10, the last is 9"
 
 
 TOY = """\

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -46,17 +47,12 @@ if TYPE_CHECKING:
     from rosetta_jit.backends.base import Namespace
     from rosetta_jit.generate.c.lanes import Lanes
 
-C_TYPES: dict[str, str] = {
-    "bool": "bool",
-    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
-    "f32": "float",
-    "f64": "double",
-}
 OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
 LOGICAL = {"and": "&&", "or": "||", "xor": "!="}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 OF_FLOATS = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor", "ceil": "ceil", "trunc": "trunc", "rint": "rint"}
 """Functions of `math.h`; those of single precision end in ``f``."""
+FMOD = {"rem": "fmod"}
 
 
 @dataclass(slots=True)
@@ -215,8 +211,8 @@ def _binary(scope: Scope, op: str, left: Expr, right: Expr) -> str:
     if op in ("min", "max"):
         return f"{scope.calls(f'{op}_{type_}')}({expression(scope, left)}, {expression(scope, right)})"
     if type_ in FLOATS and op in ("rem", "atan2"):
-        name = scope.calls("math") and {"rem": "fmod", "atan2": "atan2"}[op]
-        return f"{name}{'f' if type_ == 'f32' else ''}({expression(scope, left)}, {expression(scope, right)})"
+        scope.calls("math")
+        return f"{FMOD.get(op, op)}{'f' if type_ == 'f32' else ''}({expression(scope, left)}, {expression(scope, right)})"
     if op in ("shl", "shr"):
         return _shifted(op, type_, _wide(scope, left), expression(scope, right))
     return _narrowed(type_, f"({' '.join(_operands(scope, left, OPERATORS[op], right))})")

@@ -11,9 +11,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
-from rosetta_jit.generate.c.expressions import C_TYPES, Scope, bare, expression
+from rosetta_jit.generate.c.expressions import Scope, bare, expression
 from rosetta_jit.generate.c.statements import Callable, Function, leaves, print_block, read_names
 from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.ir import Advance
 from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass

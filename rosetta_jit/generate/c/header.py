@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, get_args
 
 from rosetta_jit.errors import Kind
 from rosetta_jit.generate.c.accessors import accessors, memory
-from rosetta_jit.generate.c.expressions import C_TYPES
 from rosetta_jit.generate.c.lanes import C_ROWS, row_type
 from rosetta_jit.generate.c.rows import SpanType, Struct
 from rosetta_jit.generate.c.texts import comment
+from rosetta_jit.generate.c.words import C_TYPES
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes

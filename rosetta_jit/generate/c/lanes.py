@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.rows import SpanType, Struct, path_to
-from rosetta_jit.generate.c.words import RESERVED
-from rosetta_jit.kernel.ir import WIDTH
+from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -24,12 +23,7 @@ if TYPE_CHECKING:
 OWN_WORDS = frozenset({"message", "now", "number", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem"})
 """What the functions call their parameters, and the holder its other members."""
 
-C_ROWS: dict[str, str] = {
-    "bool": "uint8_t",
-    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
-    "f32": "float",
-    "f64": "double",
-}
+C_ROWS = {**C_TYPES, "bool": "uint8_t"}
 """Types of scalars in rows."""
 
 
@@ -122,14 +116,3 @@ def _unique(names: Sequence[str], number: int) -> str:
     """The name of a lane; those that share one, as the rows of recursive structs may, are numbered."""
     name = names[number] or "rows"
     return name if names.count(names[number]) == 1 else f"{name}_{number}"
-
-
-def bytes_of(element: Element) -> int:
-    """Bytes of a row."""
-    match element:
-        case str():
-            return WIDTH[element]
-        case SpanType():
-            return 16
-        case Struct():
-            return element.size

@@ -10,8 +10,9 @@ from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Writer
-from rosetta_jit.generate.c.expressions import C_TYPES, bare, expression, location, store, written
+from rosetta_jit.generate.c.expressions import bare, expression, location, store, written
 from rosetta_jit.generate.c.texts import comment
+from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.ir import (
     Address,
     Advance,

@@ -12,18 +12,13 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 HEAD = re.compile(r"^/\* == (.*) == \*/$", re.MULTILINE)
-C_TYPES = {
-    "bool": "bool",
-    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
-    "f32": "float",
-    "f64": "double",
-}
 REAL = {"32": "float", "64": "double"}
 DECIMALS = ("shortest_digits", "shortest_scale", "fixed_digits", "nearest", "shortest", "decimal_of", "reads_back")
 

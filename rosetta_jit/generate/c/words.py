@@ -1,6 +1,14 @@
-"""Words that no identifier from a schema may be: those of C and C++, macros of the headers that are included, and of compilers."""
+"""The words of C: its types, and those that no identifier from a schema may be (also of C++, of headers, and of compilers)."""
 
 from __future__ import annotations
+
+C_TYPES: dict[str, str] = {
+    "bool": "bool",
+    **{f"{kind[0]}{bits}": f"{kind}{bits}_t" for kind in ("int", "uint") for bits in (8, 16, 32, 64)},
+    "f32": "float",
+    "f64": "double",
+}
+"""By the kernel's names."""
 
 _LANGUAGE = """
 alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const consteval
