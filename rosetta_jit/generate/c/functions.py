@@ -71,7 +71,7 @@ def _attempt(writer: Writer, role: str, kernel: Kernel, number: int, function: F
     body, scope = kernel.bodies[number], function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
     finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted_lanes(kernel, body) if lane < scope.lanes.own}
-    function.read = frozenset(read_names(body))
+    function.read = read_names(body)
     function.finish = tuple(f"{scope.takes('holder')}->{scope.lanes.rows(lane)}.used = {used};" for lane, used in finish.items())
     print_block(function, body)
     if not leaves(body):
@@ -97,7 +97,7 @@ def _used_at_start(kernel: Kernel, lanes: Lanes, lane: int) -> str:
 def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, function: Function) -> Callable:
     scope = function.scope
     own = {each.name: scope.locals.identifier(each.name) for each in routine.parameters}
-    function.read = frozenset(read_names(routine.body) | {each.name for each in routine.results})
+    function.read = read_names(routine.body, (each.name for each in routine.results))
     print_block(function, routine.body)
     for each in routine.results:
         function.line(f"*found_{scope.locals.identifier(each.name)} = {bare(expression(scope, each))};")

@@ -44,12 +44,12 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.rewrite import ends, locals_in
-from rosetta_jit.kernel.shape import blocks_of, expressions_of
+from rosetta_jit.kernel.shape import expressions_of, statements
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping, Sequence
+    from collections.abc import Generator, Iterable, Mapping, Sequence
 
     from rosetta_jit.generate.c.expressions import Scope
     from rosetta_jit.kernel.ir import Effect, Site
@@ -96,16 +96,23 @@ class Function:
         self.line("}")
 
 
-def read_names(block: Block) -> set[str]:
-    """The locals that a block reads when it runs, and not only to compute their own next value."""
-    names: set[str] = set()
-    for stmt in block:
+def read_names(block: Block, results: Iterable[str] = ()) -> frozenset[str]:
+    """The locals whose values anything needs that a block does, or its ``results``: not those that only others need which nothing does."""
+    pending, values = list(results), dict[str, set[str]]()
+    for stmt, _ in statements(block):
         exprs = (stmt.condition,) if isinstance(stmt, While) else expressions_of(stmt)
         found = {name for expr in exprs for name in locals_in(expr)}
-        names |= found - {stmt.name} if isinstance(stmt, Assign) else found
-        for inner in blocks_of(stmt):
-            names |= read_names(inner)
-    return names
+        if isinstance(stmt, Let | Var | Assign):
+            values.setdefault(stmt.name, set()).update(found)
+        else:
+            pending += found
+    read = set[str]()
+    while pending:
+        name = pending.pop()
+        if name not in read:
+            read.add(name)
+            pending += values.get(name, ())
+    return frozenset(read)
 
 
 def leaves(block: Block) -> bool:

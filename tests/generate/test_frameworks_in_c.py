@@ -1,0 +1,26 @@
+"""The tests of all frameworks, and of the nine operations, with every decoder and encoder in generated C."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.generate.driver import needs_gcc
+
+ROOT = Path(__file__).resolve().parents[2]
+FRAMEWORKS = ("yarp", "protobuf", "ros", "omg", "lcm", "orocos")
+FOLDERS = [*(f"frameworks/{name}" for name in FRAMEWORKS), "operations"]
+
+
+@pytest.mark.campaign
+@needs_gcc
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_they_pass(folder):
+    command = [sys.executable, "-m", "pytest", "-q", "-m", "not campaign", "-p", "tests.generate.through_c", f"tests/{folder}"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-5000:]
+    assert int(re.search(r"'in C': (\d+)", done.stdout)[1]) > 0
