@@ -102,6 +102,17 @@ def test_freestanding_source_needs_no_library(tmp_path):
 
 
 @needs_gcc
+def test_compilers_that_do_not_tell_their_byte_order(tmp_path):
+    """Numbers are then put together byte by byte."""
+    texts = generated(SUBJECTS["joints"][0], "c", BOTH, "joints")
+    texts["joints.c"] = re.sub(r"#(el)?if defined\(__GNUC__\).*", r"#\1if 0", texts["joints.c"])
+    assert "#if 0" in texts["joints.c"]
+    name = write(tmp_path, texts)
+    compiled("gcc", tmp_path, name, "-O2")
+    assert answers(driver(tmp_path, name), joint_states()) == [f"ok {message.hex()}" for message in joint_states()]
+
+
+@needs_gcc
 def test_nothing_is_allocated_and_nothing_changes_but_the_holder(unit):
     made = compiled("gcc", unit[0], unit[1], "-O2", "-fno-stack-protector")
     symbols = subprocess.run(["nm", made], capture_output=True, text=True, check=True).stdout

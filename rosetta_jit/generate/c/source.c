@@ -5,6 +5,7 @@ $includes
 
 _Static_assert((unsigned char)-1 == 255 && sizeof(int) >= 4, "bytes of eight bits, and an int of 32 at least, are needed");
 _Static_assert(sizeof(float) == 4 && sizeof(double) == 8, "floating-point numbers of IEEE 754 are needed");
+_Static_assert(FLT_EVAL_METHOD != 2, "floating-point numbers must not be computed with more digits: use SSE, not x87");
 _Static_assert(-1 >> 1 == -1 && (int8_t)255u == -1, "integers must be two's complement throughout");
 $asserts
 
