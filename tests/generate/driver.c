@@ -9,11 +9,16 @@
 #define JOINED(unit, word) PASTED(unit, word)
 #define OF(word) JOINED(UNIT, word)
 
-static void show(const OF(error) *error)
+/* A message that cannot be written has no byte that is wrong. */
+static void show(const OF(error) *error, int is_read)
 {
     char path[4096];
     OF(error_path)(error, path, sizeof path);
-    printf("%s %lld [%s] %.*s", OF(status_text)(error->status), (long long)error->offset, path, (int)error->detail_size, error->detail);
+    printf("%s ", OF(status_text)(error->status));
+    if (is_read) {
+        printf("%lld ", (long long)error->offset);
+    }
+    printf("[%s] %.*s", path, (int)error->detail_size, error->detail);
     printf(error->line[0] != 0 ? " (%s)\n" : "\n", error->line);
 }
 
@@ -31,15 +36,15 @@ int main(void)
             return 1;
         }
         if (OF(decode)(&holder, message, size, &error) != 0) {
-            show(&error);
+            show(&error, 1);
         } else {
             size_t needed = 0, written = 0;
             if (OF(size)(&holder, &needed, &error) != 0) {
-                show(&error);
+                show(&error, 0);
             } else {
                 unsigned char *copy = malloc(needed);
                 if (OF(encode)(&holder, copy, needed, &written, &error) != 0 || written != needed) {
-                    show(&error);
+                    show(&error, 0);
                 } else {
                     printf("ok ");
                     for (size_t at = 0; at < written; at++) {
