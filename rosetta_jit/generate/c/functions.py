@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.expressions import Scope, bare, expression
-from rosetta_jit.generate.c.statements import Callable, Function, leaves, print_block, read_names
+from rosetta_jit.generate.c.statements import Callable, Function, leaves, print_block, reached, read_names
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.ir import Advance
@@ -68,7 +68,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
 
 
 def _attempt(writer: Writer, role: str, kernel: Kernel, number: int, function: Function) -> Attempt:
-    body, scope = kernel.bodies[number], function.scope
+    body, scope = reached(kernel.bodies[number]), function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
     finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted_lanes(kernel, body) if lane < scope.lanes.own}
     function.read = read_names(body)

@@ -43,7 +43,7 @@ from rosetta_jit.kernel.ir import (
     While,
 )
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.rewrite import ends, locals_in
+from rosetta_jit.kernel.rewrite import ends, locals_in, with_blocks
 from rosetta_jit.kernel.shape import expressions_of, statements
 from rosetta_jit.kernel.terms import END, add, type_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -126,6 +126,16 @@ def leaves(block: Block) -> bool:
             return leaves(default) and all(leaves(inner) for _, inner in cases)
         case _:
             return ends(block)
+
+
+def reached(block: Block) -> Block:
+    """A block without the statements that are never reached: compilers look at them, too."""
+    found: list[Stmt] = []
+    for stmt in block:
+        found.append(with_blocks(stmt, reached))
+        if leaves((stmt,)):
+            break
+    return tuple(found)
 
 
 def print_block(function: Function, block: Block) -> None:
