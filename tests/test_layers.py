@@ -74,9 +74,21 @@ MAY_IMPORT = {
     "api.options": REPORTS | {"model", "frameworks", "runtime.functions", "pipeline.request"},
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
-    "logs": REPORTS | {"api", "api.options", "file_errors", "recording", "frameworks", "runtime", "runtime.cache", "runtime.code"},
+    "logs": REPORTS
+    | {"api", "api.options", "file_errors", "recording", "language.imports", "frameworks", "runtime", "runtime.cache", "runtime.code"},
     "generate": REPORTS
-    | {"model", "kernel", "kernel.passes", "lowering", "lowering.rules", "backends", "frameworks", "pipeline", "pipeline.request"},
+    | {
+        "model",
+        "kernel",
+        "kernel.passes",
+        "lowering",
+        "lowering.rules",
+        "backends",
+        "backends.entry",
+        "frameworks",
+        "pipeline",
+        "pipeline.request",
+    },
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,

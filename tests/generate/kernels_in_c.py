@@ -6,7 +6,6 @@ import ctypes
 from functools import cache
 
 import numpy as np
-from rosetta_jit.kernel.passes.order.alone import alone
 
 from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.header import STATUSES, header
@@ -14,6 +13,7 @@ from rosetta_jit.generate.c.lanes import Lane, Lanes
 from rosetta_jit.generate.c.rows import Member, Struct
 from rosetta_jit.generate.c.source import source
 from rosetta_jit.generate.unit import Unit
+from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.state import USED, lane_word
 from rosetta_jit.model.layout import Lane as LayoutLane
 from rosetta_jit.model.layout import Layout, Number

@@ -5,9 +5,9 @@ from __future__ import annotations
 from random import Random
 
 import pytest
-from rosetta_jit.kernel.passes.order.alone import alone
 
 from rosetta_jit.kernel.ir import Advance
+from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.shape import statements
 from tests.backends import engines, kernels, test_agreement
 from tests.backends.holders import rows

@@ -5,9 +5,9 @@ from __future__ import annotations
 import shutil
 
 import pytest
-from rosetta_jit.kernel.passes.order.alone import as_proven
 
 from rosetta_jit.generate.build import generated, unit_of
+from rosetta_jit.kernel.passes.alone import as_proven
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from tests.generate.corpora import corpora
 from tests.generate.driver import SANITIZED, answers, driver, expected, harmed, needs_gcc, write

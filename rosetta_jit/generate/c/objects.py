@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.ahead import TargetError, object_for
 from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.entry.ahead import TargetError, object_for
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Attempt, Printed
