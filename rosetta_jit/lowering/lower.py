@@ -20,11 +20,12 @@ from rosetta_jit.lowering.codec.ending import end
 from rosetta_jit.lowering.codec.fields import root_fields
 from rosetta_jit.lowering.codec.walk import walk
 from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireFields
+from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
 from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
-from rosetta_jit.lowering.rules.sides import HolderSide, WireSide
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
+from rosetta_jit.lowering.rules.wire_side import WireSide
 from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.initial_values import Births

@@ -33,12 +33,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.functions.user_functions import Signature
     from rosetta_jit.language.imports.declarations import Imported
-    from rosetta_jit.language.imports.mappings import Others, Use
     from rosetta_jit.language.imports.search import SearchPath
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.uses import Others, Signature, Use
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.parsing.idl import FrontEnds
 
