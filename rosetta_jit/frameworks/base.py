@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 ByteOrder = Literal["little", "big"]
 
+ANY_BYTE = "every byte but 0 is true"
+"""What several frameworks forgive in a bool."""
+
 
 @dataclass(frozen=True, slots=True)
 class Choices:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.frameworks.table import FRAMEWORKS
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.entry_points import may_be_offered
+from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -20,10 +20,20 @@ GROUP = "rosetta_jit.frameworks"
 """The entry-point group in which packages offer frameworks of their own: a `Framework` each."""
 
 
+OURS = ("yarp", "protobuf", "ros1", "corba", "ros2", "lcm", "orocos")
+"""Folders beside this file with a `framework.FRAMEWORK`. Of several that read files of a suffix, the first does if nothing else decides."""
+
+
+@cache
+def shipped() -> tuple[Framework, ...]:
+    """The frameworks that come with rosetta_jit."""
+    return tuple(imported(f"rosetta_jit.frameworks.{name}.framework").FRAMEWORK for name in OURS)
+
+
 @cache
 def installed() -> Mapping[str, Framework]:
     """Every framework by name: ours, and those of installed packages."""
-    frameworks = (*FRAMEWORKS, *_offered()) if may_be_offered(GROUP) else FRAMEWORKS
+    frameworks = (*shipped(), *_offered()) if may_be_offered(GROUP) else shipped()
     return {framework.name: framework for framework in frameworks}
 
 
