@@ -27,7 +27,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
 
-    from rosetta_jit.language.check.discriminators import Told
+    from rosetta_jit.language.check.discriminators import Discriminator
     from rosetta_jit.lowering.codec.fields import HolderElements, HolderFields
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.writer import Writer
@@ -51,7 +51,7 @@ class HolderSide:
     root: HolderFields
     births: Births | None = None
     opened: frozenset[int] = frozenset()
-    unions: Mapping[tuple[str, ...], Told] = field(default_factory=dict[tuple[str, ...], "Told"])
+    unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
     arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
 
     @property
@@ -157,40 +157,42 @@ class HolderSide:
 
     def set_number(self, place: typed.Place, value: Expr, values: Evaluation) -> None:
         fields, path, _ = self.descend(place, values)
-        told = self.unions.get(field_names(place))
-        if told is None:
+        discriminator = self.unions.get(field_names(place))
+        if discriminator is None:
             fields.put(path, value)
             return
         value = self.writer.once(value)
         fields.put(path, value)
-        path, case = (*path[:-1], told.name), chosen_case(told.union, value, self.writer)
+        path, case = (*path[:-1], discriminator.name), chosen_case(discriminator.union, value, self.writer)
         self.writer.emit(SetField(_case_word(fields, path), case))
-        for number in range(1, len(told.union.cases) + 1):
-            self.bear_case(fields, path, told, number, Compare("eq", case, index(number)))
+        for number in range(1, len(discriminator.union.cases) + 1):
+            self.bear_case(fields, path, discriminator, number, Compare("eq", case, index(number)))
 
     def choose(self, place: typed.Place, values: Evaluation) -> None:
-        """The unions that a place is in a case of have that case: their discriminators say so, or are told so."""
+        """The unions that a place is in a case of have that case: their discriminators say so, or are made to."""
         for steps in range(1, len(place.steps)):
             names, case = discriminator_of(place, steps), place.steps[steps]
             if names is None or not isinstance(case, FieldStep):
                 continue
-            told = self.unions[names]
+            discriminator = self.unions[names]
             fields, path, _ = self.descend(_prefix(place, steps), values)
-            if told.by_rule:
-                self.expect_case(fields, path, index(told.number(case.field.name)), values)
+            if discriminator.by_rule:
+                self.expect_case(fields, path, index(discriminator.number(case.field.name)), values)
             else:
-                number = told.number(case.field.name)
-                fields.put((*path[:-1], names[-1]), index(told.label(case.field.name)))
+                number = discriminator.number(case.field.name)
+                fields.put((*path[:-1], names[-1]), index(discriminator.label(case.field.name)))
                 word = _case_word(fields, path)
-                self.bear_case(fields, path, told, number, Compare("ne", Get("i64", word), index(number)))
+                self.bear_case(fields, path, discriminator, number, Compare("ne", Get("i64", word), index(number)))
                 self.writer.emit(SetField(word, index(number)))
 
-    def bear_case(self, fields: HolderFields, path: Path, told: Told, number: int, when: Expr) -> None:
+    def bear_case(self, fields: HolderFields, path: Path, discriminator: Discriminator, number: int, when: Expr) -> None:
         """Give a case that comes what it is born with."""
         cell = fields.find(path)
         assert isinstance(cell.slot, Variant)
         births = (
-            () if self.births is None else self.births.of(told.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
+            ()
+            if self.births is None
+            else self.births.of(discriminator.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
         )
         with self.writer.nested() as body:
             bear(fields, births, cell.row, self.opened)
