@@ -1,7 +1,7 @@
 """Rules of a mapping as statements of the kernel, the same in both directions: read one side, write the other.
 
 To unpack, the walk has found the wire's fields, and the rules fill the holder. To pack, the walk asks for numbers and sizes while it
-lays out the message (`supplies`), and the rules then fill the elements into their places.
+lays out the message (`packed_values`), and the rules then fill the elements into their places.
 """
 
 from __future__ import annotations
