@@ -30,7 +30,7 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Gaps are no failure: they are what is asked for."""
-    from rosetta_jit.frameworks.base import installed
+    from rosetta_jit.frameworks.installed import installed
 
     every = installed()
     unknown = [name for name in arguments.names if name not in every]

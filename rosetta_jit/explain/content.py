@@ -17,7 +17,7 @@ from rosetta_jit.explain.cost import Cost, cost_of
 from rosetta_jit.explain.lines import MAX_LINES, Line, Lines
 from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.left_out import unread, unset
 from rosetta_jit.language.check.mapping import Checked, check

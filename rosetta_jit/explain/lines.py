@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.explain.nodes import Key
-    from rosetta_jit.language.imports.mappings import Use
     from rosetta_jit.language.typed import Place, Rule
+    from rosetta_jit.language.uses import Use
     from rosetta_jit.model.expr import Expr, Path, Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.mapping import Rule as Untyped

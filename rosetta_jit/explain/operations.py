@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING, Literal, get_args
 
 from rosetta_jit.explain.nodes import names_of, nodes, places
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.imports.search import SearchPath

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import field
 from fnmatch import fnmatch
-from functools import cache
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 from rosetta_jit.model.types import name_parts
@@ -14,16 +13,16 @@ from rosetta_jit.startup.garbage import imported
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosetta_jit.frameworks.features import Probes
+    from rosetta_jit.frameworks.probe import Probes
     from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.parsing.idl import FrontEnd
     from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
 
-GROUP = "rosetta_jit.frameworks"
-"""The entry-point group in which packages offer frameworks of their own: a `Framework` each."""
-
 ByteOrder = Literal["little", "big"]
+
+ANY_BYTE = "every byte but 0 is true"
+"""What several frameworks forgive in a bool."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,62 +135,6 @@ class Framework:
         return _lazy(next(place for suffix, place in self.idl.items() if file.endswith(suffix)))
 
 
-@dataclass(frozen=True, slots=True)
-class Readers:
-    """Finds the front end of a file among frameworks, of which a request may name one, or one of its encodings."""
-
-    frameworks: Mapping[str, Framework]
-    framework: str | None = None
-    encoding: str | None = None
-
-    def owner(self, file: str) -> Framework | None:
-        """The framework whose IDL a file is; None if no front end reads it.
-
-        Of several that read such files, it is the one that the request names, or that has its encoding, or whose ``files`` the name
-        matches, or the first.
-        """
-        readers = [each for each in self.frameworks.values() if each.reads(file)]
-        named = [each for each in readers if each.name == self.framework]
-        encoding = [each for each in readers if self.encoding in each.encodings]
-        matching = [each for each in readers if each.claims(file)]
-        return next(iter([*named, *encoding, *matching, *readers]), None)
-
-    def find(self, file: str) -> FrontEnd | None:
-        """The front end of a file, or None."""
-        owner = self.owner(file)
-        return None if owner is None else owner.front_end(file)
-
-    def guesses(self, type_: str) -> Iterator[str]:
-        """The files in which a type of that name is likely declared."""
-        return self._files(type_, self.likely)
-
-    def homes(self, type_: str) -> Iterator[str]:
-        """The same, whichever framework the request means: a mapping has types of two."""
-        return self._files(type_, tuple(self.frameworks.values()))
-
-    @staticmethod
-    def _files(type_: str, frameworks: tuple[Framework, ...]) -> Iterator[str]:
-        parts = name_parts(type_)
-        if not parts:
-            return
-        names = ("/".join((*parts[:-1], "msg", parts[-1])), "/".join(parts)) if len(parts) > 1 else parts
-        for framework in sorted(frameworks, key=lambda each: not any(each.claims(type_ + suffix) for suffix in each.idl)):
-            for folder in ("", f"{framework.name}/"):
-                yield from (folder + name + suffix for name in names for suffix in framework.idl if suffix not in framework.several)
-            yield from framework.files_of(parts)
-
-    @property
-    def likely(self) -> tuple[Framework, ...]:
-        """All frameworks, or the one that the request means."""
-        every = tuple(self.frameworks.values())
-        return tuple(each for each in every if each.name == self.framework or self.encoding in each.encodings) or every
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """All suffixes that are read; those of the framework that the request means come first."""
-        return tuple(dict.fromkeys(suffix for each in (*self.likely, *self.frameworks.values()) for suffix in each.idl))
-
-
 def manners_of(place: str) -> Manners:
     """The manners at a place, plain ones for none."""
     if not place:
@@ -199,22 +142,6 @@ def manners_of(place: str) -> Manners:
 
         return PLAIN
     return cast("Manners", _found(place))
-
-
-@cache
-def installed() -> Mapping[str, Framework]:
-    """Every framework by name: ours, and those of installed packages."""
-    from rosetta_jit.frameworks.table import FRAMEWORKS
-    from rosetta_jit.startup.entry_points import may_be_offered
-
-    frameworks = (*FRAMEWORKS, *_offered()) if may_be_offered(GROUP) else FRAMEWORKS
-    return {framework.name: framework for framework in frameworks}
-
-
-def _offered() -> list[Framework]:
-    from importlib.metadata import entry_points  # slow to import
-
-    return [cast("Framework", each.load()) for each in entry_points(group=GROUP)]
 
 
 def _lazy(place: str) -> FrontEnd:

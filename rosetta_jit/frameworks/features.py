@@ -8,13 +8,13 @@ Whatever fails on that way is a gap, with what stood in the way. What the framew
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import Choices
 from rosetta_jit.frameworks.feature_list import FEATURES
+from rosetta_jit.frameworks.probe import Probe
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.types import Ref, Schema, Struct, name_parts
 from rosetta_jit.source import Source
@@ -22,26 +22,9 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.base import Framework
+    from rosetta_jit.frameworks.probe import Probes
 
 State = Literal["yes", "read", "gap", "none"]
-
-
-@dataclass(frozen=True, slots=True)
-class Probe:
-    """A text in some IDL. ``files`` are what it imports; ``file`` is what it is called; ``declares`` is the last part of the type's name.
-
-    ``without`` are the encodings of the framework that have nothing of the kind, and rightly refuse it.
-    """
-
-    text: str
-    files: Mapping[str, str] = field(default_factory=dict[str, str])
-    file: str = ""
-    without: tuple[str, ...] = ()
-    declares: str = "Probe"
-
-
-Probes = Mapping[str, Mapping[str, str | Probe]]
-"""For each suffix of an IDL, and each of its features, a probe."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,1 @@
-"""The kernel IR: its grammar and meaning, its printer, its interpreter, and the proof that a kernel is safe."""
+"""The kernel IR: its grammar and meaning on one page (`ir`), its printer, and the interpreter that defines what kernels do."""

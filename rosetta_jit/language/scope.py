@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.functions.user_functions import Signature
-    from rosetta_jit.language.imports.mappings import Others
     from rosetta_jit.language.typed import Expr, Step
+    from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
     from rosetta_jit.model.types import Field, Schema, Type

@@ -1,1 +1,1 @@
-"""From a codec and a mapping to a kernel: resolve, check, lower, and the passes."""
+"""From a codec and the typed rules of a mapping to a kernel. `lower` is where it begins, `writer` what all of it writes to."""

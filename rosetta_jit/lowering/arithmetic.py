@@ -123,3 +123,8 @@ def align(writer: Writer, number: Expr, quantum: Expr, where: Where, line: str =
     writer.expect(Fits("sub", step, over), "range", where, "a size cannot be aligned so", line=line)  # true anyway; said for the proof
     missing = writer.let("missing", Select(Compare("eq", over, index(0)), index(0), Binary("sub", step, over)))
     return writer.checked("add", number, missing, where, line=line)
+
+
+def inside(number: Expr, count: Expr) -> Expr:
+    """Whether an index is one of so many."""
+    return Binary("and", Compare("ge", number, index(0)), Compare("lt", number, count))

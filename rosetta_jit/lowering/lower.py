@@ -13,18 +13,19 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import Block, Capacity, Compare, Direction, Fill, Kernel, Return
 from rosetta_jit.kernel.ir import Place as KernelPlace
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index
-from rosetta_jit.language.check.discriminators import told_unions
+from rosetta_jit.language.check.discriminators import discriminators_of
 from rosetta_jit.language.resolve.defaults import has_array
 from rosetta_jit.language.scope import Message
 from rosetta_jit.lowering.codec.ending import end
 from rosetta_jit.lowering.codec.fields import root_fields
 from rosetta_jit.lowering.codec.walk import walk
 from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireFields
+from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
 from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
-from rosetta_jit.lowering.rules.sides import HolderSide, WireSide
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
+from rosetta_jit.lowering.rules.wire_side import WireSide
 from rosetta_jit.lowering.staging import staged_fields
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.initial_values import Births
@@ -35,7 +36,7 @@ from rosetta_jit.wire.codec import Tagged
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.language.check.discriminators import Told
+    from rosetta_jit.language.check.discriminators import Discriminator
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.model.expr import Side
@@ -85,7 +86,7 @@ class Mapped:
     holder: Type
     wire: Type
     wire_layout: Layout
-    unions: Mapping[tuple[str, ...], Told] = field(default_factory=dict[tuple[str, ...], "Told"])
+    unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
 
     def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
         """A message in lanes; where rules fill it, with what it is born with."""
@@ -101,7 +102,7 @@ def _in_order(mapped: Mapped, target: Type) -> Mapped:
     """With the rules in an order in which unions can be filled."""
     root = mapped.schema.resolve(target)
     assert isinstance(root, Struct)
-    unions = told_unions(mapped.rules, Message(root, mapped.schema))
+    unions = discriminators_of(mapped.rules, Message(root, mapped.schema))
     if not unions:
         return mapped
     from rosetta_jit.language.check.discriminator_order import discriminators_first

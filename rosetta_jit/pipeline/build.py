@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.bind import needless
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.frameworks.base import Choices, Framework, Readers, installed
+from rosetta_jit.frameworks.base import Choices, Framework
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
@@ -44,8 +45,8 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
-    from rosetta_jit.language.functions.user_functions import Signature
     from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.uses import Signature
     from rosetta_jit.pipeline.request import GivenFunction, Request
     from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Encoding

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.ir import Kernel, Scalar
-    from rosetta_jit.language.functions.user_functions import Signature
+    from rosetta_jit.language.uses import Signature
     from rosetta_jit.pipeline.request import Request
 
 

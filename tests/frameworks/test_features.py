@@ -9,15 +9,16 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.cli import main
-from rosetta_jit.frameworks.base import Framework, installed
+from rosetta_jit.frameworks.base import Framework
 from rosetta_jit.frameworks.feature_list import FEATURES
-from rosetta_jit.frameworks.features import Finding, Probe, findings
-from rosetta_jit.frameworks.table import FRAMEWORKS
+from rosetta_jit.frameworks.features import Finding, findings
+from rosetta_jit.frameworks.installed import installed, shipped
+from rosetta_jit.frameworks.probe import Probe
 from rosetta_jit.model.types import Field, Int, Schema, Struct, name_parts
 from rosetta_jit.source import Source
 from tests.golden import GOLDEN, check_golden
 
-NAMES = [each.name for each in FRAMEWORKS]
+NAMES = [each.name for each in shipped()]
 
 
 @cache

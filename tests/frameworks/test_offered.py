@@ -58,5 +58,7 @@ def test_archives_and_other_finders_might_offer_it(folder, monkeypatch):
 
 
 def test_a_first_compile_does_without_importlib_metadata():
-    program = "import sys; from rosetta_jit.frameworks.base import installed; installed(); assert 'importlib.metadata' not in sys.modules"
+    program = (
+        "import sys; from rosetta_jit.frameworks.installed import installed; installed(); assert 'importlib.metadata' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-c", program], check=True)

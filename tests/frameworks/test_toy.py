@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import rosetta_jit
-from rosetta_jit.frameworks.table import FRAMEWORKS
+from rosetta_jit.frameworks.installed import shipped
 
 FOLDER = {
     "toy/__init__.py": """
@@ -161,8 +161,13 @@ def test_is_listed_with_what_it_can_describe(toys):
     assert table["enum, open"] == {".toy": {"state": "none"}, "toy": {"state": "none"}}
 
 
+def test_each_of_our_frameworks_is_declared_in_its_folder():
+    folders = {path.parent.name for path in (Path(rosetta_jit.__file__).parent / "frameworks").glob("*/framework.py")}
+    assert folders == {each.name for each in shipped()}
+
+
 def test_nobody_else_knows_it():
     """Not one of our frameworks, and not a word about it outside its folder."""
-    assert "toy" not in {each.name for each in FRAMEWORKS}
+    assert "toy" not in {each.name for each in shipped()}
     package = Path(rosetta_jit.__file__).parent
     assert not [path for path in package.rglob("*.py") if "toy" in path.read_text(encoding="utf-8").lower().split()]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set
 from rosetta_jit.language.imports.search import Reading, SearchPath, shipped_folders
 from rosetta_jit.model.serial import from_plain, to_plain

@@ -23,7 +23,7 @@ from rosetta_jit.catalogue import unit_files as unit_files_words
 from rosetta_jit.catalogue import units as units_words
 from rosetta_jit.diagnostics import MAX_LINE, render, render_all, to_json
 from rosetta_jit.errors import MappingError
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse

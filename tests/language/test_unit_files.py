@@ -9,7 +9,7 @@ import pint
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.unit_file import parse
 from rosetta_jit.language.units.side_files import annotated

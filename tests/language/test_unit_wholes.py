@@ -8,7 +8,7 @@ import pint
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.check.mapping import check
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse

@@ -13,7 +13,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.cli import main
-from rosetta_jit.frameworks.base import Readers, installed
+from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.frameworks.protobuf.descriptors import from_file_descriptor_set
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.yarp import sexpr

@@ -1,1 +1,1 @@
-"""The entries from CPython around kernels, and the object code of both."""
+"""The entries from CPython around kernels, in LLVM's language, and the object code of both."""

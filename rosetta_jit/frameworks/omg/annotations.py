@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
-from rosetta_jit.frameworks.omg.scopes import LookupProblem
+from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.model.types import Array, Bytes, Float, String
 from rosetta_jit.startup.dataclass import dataclass
 

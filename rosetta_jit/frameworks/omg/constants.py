@@ -11,7 +11,7 @@ from typing import Literal as OneOf
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.expressions import Binary, Expr, Literal, ScopedName, Unary
 from rosetta_jit.frameworks.omg.literals import LiteralError, number, unescape
-from rosetta_jit.frameworks.omg.scopes import LookupProblem
+from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.model.types import Bool, Float, Int, Ref, String
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -11,7 +11,8 @@ from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
 from rosetta_jit.frameworks.omg.members import MemberMaker
-from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
+from rosetta_jit.frameworks.omg.problems import LookupProblem
+from rosetta_jit.frameworks.omg.scopes import Entry, Scope
 from rosetta_jit.frameworks.omg.types import TypeMaker, enum_entry, value_of
 from rosetta_jit.model.types import Bool, Declaration, Enum, Field, Float, Int, NamedConstant, Ref, String, Struct, Type
 from rosetta_jit.source import Source, Span

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import evaluate, fit, word_of
-from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
+from rosetta_jit.frameworks.omg.problems import LookupProblem
+from rosetta_jit.frameworks.omg.scopes import Entry, Scope
 from rosetta_jit.frameworks.omg.types import value_of
 from rosetta_jit.model.types import Bool, Enum, Field, Int, Optional, Ref, Type, Union
 from rosetta_jit.model.units import with_unit

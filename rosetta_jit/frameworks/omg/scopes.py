@@ -6,10 +6,10 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.frameworks.omg import diagnostics as say
+from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.omg.constants import Value
     from rosetta_jit.frameworks.omg.expressions import ScopedName
     from rosetta_jit.frameworks.omg.tree import Name
@@ -44,14 +44,6 @@ class Entry:
     type: Type | None = None
     value: Value | None = None
     target: Entry | None = None
-
-
-class LookupProblem(Exception):  # noqa: N818  it is caught by the declaration around it, and is no error of ours
-    """A name does not mean what is wanted; ``problem`` says why."""
-
-    def __init__(self, problem: Diagnostic) -> None:
-        super().__init__(problem.message)
-        self.problem = problem
 
 
 @dataclass(slots=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.constants import evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
-from rosetta_jit.frameworks.omg.scopes import Entry, LookupProblem, Scope
+from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.frameworks.omg.tree import Aggregate, Basic, Declarator, Enum, MapOf, Sequence, Text, TypeSpec, Unsupported
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Ref, String, Type
 from rosetta_jit.startup.dataclass import dataclass
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.frameworks.omg.constants import Value
+    from rosetta_jit.frameworks.omg.scopes import Entry, Scope
     from rosetta_jit.source import Span
 
 MAX_DEPTH = 32

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
-from rosetta_jit.frameworks.protobuf.proto.files import file_set
+from rosetta_jit.frameworks.protobuf.proto.file_set import file_set
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
 from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 

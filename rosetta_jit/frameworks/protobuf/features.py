@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.frameworks.features import Probe
+from rosetta_jit.frameworks.probe import Probe
 
 
 def message(fields: str, *, syntax: str = "proto3", more: str = "") -> str:

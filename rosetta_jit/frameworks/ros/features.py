@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.features import Probe
+from rosetta_jit.frameworks.probe import Probe
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

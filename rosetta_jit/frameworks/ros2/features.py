@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rosetta_jit.frameworks.features import Probe
 from rosetta_jit.frameworks.omg.features import PROBES as IDL
 from rosetta_jit.frameworks.omg.features import struct
+from rosetta_jit.frameworks.probe import Probe
 from rosetta_jit.frameworks.ros.features import PROBES as SHARED
 from rosetta_jit.frameworks.ros.features import first_part
 

@@ -1,1 +1,1 @@
-"""Rules about whole arrays, and elements that are known by a key."""
+"""Rules about whole arrays: their layouts, and the loops over their elements."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.discriminators import Names, Told
+    from rosetta_jit.language.check.discriminators import Discriminator, Names
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.source import Span
 
@@ -35,43 +35,43 @@ MAX_LABELS = 5_000
 """Labels that all values of discriminators together are compared with."""
 
 
-def discriminators_first(rules: tuple[Rule, ...], unions: Mapping[Names, Told], problems: list[Diagnostic]) -> tuple[Rule, ...]:
+def discriminators_first(rules: tuple[Rule, ...], unions: Mapping[Names, Discriminator], problems: list[Diagnostic]) -> tuple[Rule, ...]:
     """The rules in an order in which each discriminator is set before a case of its union.
 
     A problem where there is no such order, or where labels are too many.
     """
-    told = {names: each for names, each in unions.items() if each.by_rule}
-    if not told:
+    by_rule = {names: each for names, each in unions.items() if each.by_rule}
+    if not by_rule:
         return rules
     computed = (rule for rule in rules_within(rules) if isinstance(rule, Assign) and not isinstance(rule.value, Const))
-    labels = sum(sum(map(len, told[names].union.labels)) for rule in computed if (names := field_names(rule.place)) in told)
+    labels = sum(sum(map(len, by_rule[names].union.labels)) for rule in computed if (names := field_names(rule.place)) in by_rule)
     if labels > MAX_LABELS:
         problems.append(words.many_labels(rules[0].span, MAX_LABELS))
-    return _ordered(rules, told, problems)
+    return _ordered(rules, by_rule, problems)
 
 
-def _ordered(rules: tuple[Rule, ...], told: Mapping[Names, Told], problems: list[Diagnostic]) -> tuple[Rule, ...]:
-    rules = tuple(_inside(rule, told, problems) for rule in rules)
-    telling = [_telling(rule, told) for rule in rules]
-    if not any(telling):
+def _ordered(rules: tuple[Rule, ...], by_rule: Mapping[Names, Discriminator], problems: list[Diagnostic]) -> tuple[Rule, ...]:
+    rules = tuple(_inside(rule, by_rule, problems) for rule in rules)
+    setting = [_set_by(rule, by_rule) for rule in rules]
+    if not any(setting):
         return rules
     try:
-        return tuple(rules[number] for number in _sorted(_before(rules, telling, told)))
+        return tuple(rules[number] for number in _sorted(_before(rules, setting, by_rule)))
     except CycleError as error:
-        late = next(number for number in error.args[1] if isinstance(number, int) and telling[number])
-        problems.append(_late(telling[late][0]))
+        late = next(number for number in error.args[1] if isinstance(number, int) and setting[number])
+        problems.append(_late(setting[late][0]))
         return rules
 
 
-def _inside(rule: Rule, told: Mapping[Names, Told], problems: list[Diagnostic]) -> Rule:
+def _inside(rule: Rule, by_rule: Mapping[Names, Discriminator], problems: list[Diagnostic]) -> Rule:
     match rule:
         case For(variable, body=body):
-            found = _ordered(body, told, problems)
-            problems += [_late(place) for place in _told_in_other_rounds(found, variable, told)]
+            found = _ordered(body, by_rule, problems)
+            problems += [_late(place) for place in _set_in_other_rounds(found, variable, by_rule)]
             return replace(rule, body=found)
         case When(_, then, otherwise):
-            return replace(rule, then=_ordered(then, told, problems), otherwise=_ordered(otherwise, told, problems))
-        case Default(place, span) if field_names(place) in told:
+            return replace(rule, then=_ordered(then, by_rule, problems), otherwise=_ordered(otherwise, by_rule, problems))
+        case Default(place, span) if field_names(place) in by_rule:
             return Assign(place, _zero(place, span), span)
         case _:
             return rule
@@ -85,23 +85,23 @@ def _late(place: Place) -> Diagnostic:
     return words.late_discriminator(place.span, shown_fields(place.steps))
 
 
-def _before(rules: tuple[Rule, ...], telling: list[list[Place]], told: Mapping[Names, Told]) -> TopologicalSorter[Node]:
+def _before(rules: tuple[Rule, ...], setting: list[list[Place]], by_rule: Mapping[Names, Discriminator]) -> TopologicalSorter[Node]:
     """What comes before what. Between rules, by number, stand nodes for all that set one thing: the graph grows as the rules do."""
     found: TopologicalSorter[Node] = TopologicalSorter()
-    tellers: dict[Node, set[int]] = {}
-    for number, places in enumerate(telling):
+    setters: dict[Node, set[int]] = {}
+    for number, places in enumerate(setting):
         for place in places:
             names = field_names(place)
             spot = _spot(place, len(place.steps), names)
             for node in (spot if _is_constant(spot) else (names, COMPUTED), (names, ANY)):
-                tellers.setdefault(node, set()).add(number)
-    for node, numbers in tellers.items():
+                setters.setdefault(node, set()).add(number)
+    for node, numbers in setters.items():
         found.add(node, *numbers)
     lengths: dict[Names, int] = {}
     for number, rule in enumerate(rules):
-        needed = {node for spot in _untold((rule,), told) for node in _tellers_of(spot)}
+        needed = {node for spot in _unset((rule,), by_rule) for node in _setters_of(spot)}
         arrays = {array for each in _settings(rule) for array in _arrays(each.place) if array in lengths}
-        alone = (node for node in needed if tellers.get(node, set()) - {number})
+        alone = (node for node in needed if setters.get(node, set()) - {number})
         found.add(number, *alone, *((array, lengths[array]) for array in arrays))
         for array in {field_names(each.place) for each in _settings(rule) if isinstance(each.place.type, Array | Map)}:
             before = lengths.get(array, -1)
@@ -110,7 +110,7 @@ def _before(rules: tuple[Rule, ...], telling: list[list[Place]], told: Mapping[N
     return found
 
 
-def _tellers_of(spot: Spot) -> tuple[Node, ...]:
+def _setters_of(spot: Spot) -> tuple[Node, ...]:
     """The nodes of those that may set the discriminator of a union."""
     return (spot, (spot[0], COMPUTED)) if _is_constant(spot) else ((spot[0], ANY),)
 
@@ -141,18 +141,18 @@ def _sorted(before: TopologicalSorter[Node]) -> Iterator[int]:
             before.done(number)
 
 
-def _told_in_other_rounds(body: tuple[Rule, ...], variable: Local, told: Mapping[Names, Told]) -> Iterator[Place]:
+def _set_in_other_rounds(body: tuple[Rule, ...], variable: Local, by_rule: Mapping[Names, Discriminator]) -> Iterator[Place]:
     """Discriminators that one round of a loop may set after another round has filled a case.
 
     Rounds are apart where all that they set is in the element of the loop's own number.
     """
-    untold = _untold(body, told)
-    for names in {names for names, _ in untold}:
-        telling = [place for rule in body for place in _telling(rule, told) if field_names(place) == names]
-        spots = [*(spot for spot in untold if spot[0] == names), *(_spot(place, len(place.steps), names) for place in telling)]
+    unset = _unset(body, by_rule)
+    for names in {names for names, _ in unset}:
+        setting = [place for rule in body for place in _set_by(rule, by_rule) if field_names(place) == names]
+        spots = [*(spot for spot in unset if spot[0] == names), *(_spot(place, len(place.steps), names) for place in setting)]
         apart = any(all(index == variable for index in indices) for indices in zip(*(indices for _, indices in spots), strict=True))
-        if telling and not apart:
-            yield telling[0]
+        if setting and not apart:
+            yield setting[0]
 
 
 # --- spots ---------------------------------------------------------------------------------------------------------------
@@ -162,38 +162,38 @@ def _settings(rule: Rule) -> list[Assign | SetLength | Default]:
     return [each for each in rules_within((rule,)) if isinstance(each, Assign | SetLength | Default)]
 
 
-def _telling(rule: Rule, told: Mapping[Names, Told]) -> list[Place]:
+def _set_by(rule: Rule, by_rule: Mapping[Names, Discriminator]) -> list[Place]:
     """The discriminators that a rule sets."""
-    return [each.place for each in _settings(rule) if field_names(each.place) in told]
+    return [each.place for each in _settings(rule) if field_names(each.place) in by_rule]
 
 
-def _untold(rules: tuple[Rule, ...], told: Mapping[Names, Told]) -> list[Spot]:
+def _unset(rules: tuple[Rule, ...], by_rule: Mapping[Names, Discriminator]) -> list[Spot]:
     """The unions that rules fill without setting their discriminators on each way there."""
     found: list[Spot] = []
     for rule in rules:
         match rule:
             case For(body=body):
-                found += _untold(body, told)
+                found += _unset(body, by_rule)
             case When(_, then, otherwise):
-                found += [*_untold(then, told), *_untold(otherwise, told)]
+                found += [*_unset(then, by_rule), *_unset(otherwise, by_rule)]
             case Assign(place) | SetLength(place) | Default(place):
-                found += [spot for spot in _filled(place) if spot[0] in told]
+                found += [spot for spot in _filled(place) if spot[0] in by_rule]
             case _:
                 pass
-    known = _always_told(rules, told) if found else set[object]()
+    known = _always_set(rules, by_rule) if found else set[object]()
     return [spot for spot in found if spot not in known]
 
 
-def _always_told(rules: tuple[Rule, ...], told: Mapping[Names, Told]) -> set[Spot]:
+def _always_set(rules: tuple[Rule, ...], by_rule: Mapping[Names, Discriminator]) -> set[Spot]:
     """The unions whose discriminators a block sets, whatever its conditions are."""
     found: set[Spot] = set()
     for rule in rules:
         match rule:
             case For(body=body):
-                found |= _always_told(body, told)
+                found |= _always_set(body, by_rule)
             case When(_, then, otherwise):
-                found |= _always_told(then, told) & _always_told(otherwise, told)
-            case Assign(place) | Default(place) if (names := field_names(place)) in told:
+                found |= _always_set(then, by_rule) & _always_set(otherwise, by_rule)
+            case Assign(place) | Default(place) if (names := field_names(place)) in by_rule:
                 found.add(_spot(place, len(place.steps), names))
             case _:
                 pass

@@ -20,8 +20,11 @@ Names = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """A union, the field that it is, and the type of its discriminator: ``by_rule`` if a rule sets that."""
+class Discriminator:
+    """The field that selects the case of a union: set by a rule (``by_rule``), or implied by the case that rules fill.
+
+    ``name`` and ``union`` are the field and the type of the union, ``type`` is that of the discriminator.
+    """
 
     name: str
     union: Union
@@ -37,33 +40,33 @@ class Told:
         return 1 + next(number for number, each in enumerate(self.union.cases) if each.name == case)
 
 
-def told_unions(rules: tuple[Rule, ...], message: Message) -> dict[Names, Told]:
-    """The unions with a discriminator that rules fill, by the names of their discriminators' places."""
+def discriminators_of(rules: tuple[Rule, ...], message: Message) -> dict[Names, Discriminator]:
+    """The discriminators of the unions that rules fill, by the names of their places."""
     places = places_in(rules)
     named = {field_names(place) for place in places}
-    found: dict[Names, Told] = {}
+    found: dict[Names, Discriminator] = {}
     for place in places:
         type_: Type = message.root
         names: Names = ()
         for step in place.steps:
             if isinstance(step, FieldStep):
                 if isinstance(type_, Struct):
-                    found |= {(*names, each): told for each, told in _unions(type_, step.field, message, names, named)}
+                    found |= {(*names, each): discriminator for each, discriminator in _unions(type_, step.field, message, names, named)}
                 names, type_ = (*names, step.field.name), message.value_type(step.field.type)
             elif isinstance(type_, Array | Bytes | Map):
                 type_ = message.value_type(element_type(type_))
     return found
 
 
-def _unions(struct: Struct, touched: Field, message: Message, names: Names, named: set[Names]) -> list[tuple[str, Told]]:
+def _unions(struct: Struct, touched: Field, message: Message, names: Names, named: set[Names]) -> list[tuple[str, Discriminator]]:
     """The union with a discriminator in a struct, if it is ``touched`` or its discriminator is."""
-    found: list[tuple[str, Told]] = []
+    found: list[tuple[str, Discriminator]] = []
     for each in struct.fields:
         if isinstance(each.type, Union) and touched.name in (each.name, each.type.discriminator or each.name):
-            teller = next((field for field in struct.fields if field.name == each.type.discriminator), None)
-            if teller is not None:
-                told = Told(each.name, each.type, message.value_type(teller.type), (*names, teller.name) in named)
-                found.append((teller.name, told))
+            selector = next((field for field in struct.fields if field.name == each.type.discriminator), None)
+            if selector is not None:
+                discriminator = Discriminator(each.name, each.type, message.value_type(selector.type), (*names, selector.name) in named)
+                found.append((selector.name, discriminator))
     return found
 
 

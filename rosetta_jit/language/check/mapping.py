@@ -13,7 +13,7 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.check.completeness import check_complete
 from rosetta_jit.language.check.default_counts import defaulted_counts
-from rosetta_jit.language.check.discriminators import told_unions
+from rosetta_jit.language.check.discriminators import discriminators_of
 from rosetta_jit.language.check.file_name import misnamed
 from rosetta_jit.language.check.left_out import left_out
 from rosetta_jit.language.check.rounding import rounded
@@ -33,12 +33,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.functions.user_functions import Signature
     from rosetta_jit.language.imports.declarations import Imported
-    from rosetta_jit.language.imports.mappings import Others, Use
     from rosetta_jit.language.imports.search import SearchPath
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.uses import Others, Signature, Use
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.parsing.idl import FrontEnds
 
@@ -144,7 +143,7 @@ def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Di
 
 def _check_order(rules: tuple[Rule, ...], target: Message, problems: list[Diagnostic]) -> None:
     """Each discriminator can be set before a case of its union."""
-    unions = told_unions(rules, target)
+    unions = discriminators_of(rules, target)
     if unions:
         from rosetta_jit.language.check.discriminator_order import discriminators_first
 

@@ -12,7 +12,7 @@ from rosetta_jit.language.conversions import convert, describe, word_for
 from rosetta_jit.language.functions.calls import FLOATS, FUNCTIONS, INTEGERS, named_type
 from rosetta_jit.language.functions.images import IMAGE_FUNCTIONS
 from rosetta_jit.language.typed import HostCall
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.language.uses import Signature
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -23,23 +23,12 @@ if TYPE_CHECKING:
     from rosetta_jit.model import expr as model
     from rosetta_jit.model.mapping import Function, Mapping, TypeName
     from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 SCALARS = (*INTEGERS, *FLOATS, "bool")
 TAKEN = frozenset((*FUNCTIONS, *IMAGE_FUNCTIONS, *SCALARS))
 MAX_PARAMETERS = 32
-
-
-@dataclass(frozen=True, slots=True)
-class Signature:
-    """The types of a declared function."""
-
-    name: str
-    parameters: tuple[Type, ...]
-    result: Type
-    span: Span | None
 
 
 def signatures(mappings: Iterable[Mapping], problems: list[Diagnostic]) -> dict[str, Signature]:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.language.conversions import describe
-from rosetta_jit.language.imports.mappings import MAX_COPIED, MAX_USES, EnoughError, Use
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
 from rosetta_jit.language.typed import (
@@ -31,6 +30,7 @@ from rosetta_jit.language.typed import (
     SetLength,
     When,
 )
+from rosetta_jit.language.uses import MAX_COPIED, MAX_USES, EnoughError, Use
 from rosetta_jit.model.expr import Path
 from rosetta_jit.model.types import Array, Optional, Struct, same_name
 

@@ -20,7 +20,6 @@ from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.images import is_bytes
 from rosetta_jit.language.functions.texts import is_textual, type_pieces
 from rosetta_jit.language.functions.user_functions import signatures
-from rosetta_jit.language.imports.mappings import EnoughError
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.resolve.defaults import MAX_DEFAULTS, ManyDefaultsError, default_rules, has_array
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
@@ -50,6 +49,7 @@ from rosetta_jit.language.typed import (
 )
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.language.units.wholes import change_within
+from rosetta_jit.language.uses import EnoughError
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expansion import excess
@@ -60,9 +60,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.functions.user_functions import Signature
-    from rosetta_jit.language.imports.mappings import Others
     from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span

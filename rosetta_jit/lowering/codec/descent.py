@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Expr, Get, If, Local, SetField, Switch, Used, While
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import Cell, HolderElements, HolderFields
-from rosetta_jit.lowering.codec.recursion import MAX_DEPTH, link
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk
+from rosetta_jit.lowering.codec.work_list import MAX_DEPTH, link
 from rosetta_jit.lowering.codec.xcdr2_members import store_size
 from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
 from rosetta_jit.model.layout import LINK_WORDS

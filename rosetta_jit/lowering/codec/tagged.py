@@ -23,14 +23,12 @@ from rosetta_jit.kernel.ir import (
     Expr,
     Fill,
     For,
-    Get,
     If,
     IsText,
     Load,
     Local,
     Place,
     Reserve,
-    Select,
     SetField,
     Used,
     While,
@@ -39,13 +37,22 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.terms import BEGIN, add, index, mul
 from rosetta_jit.lowering.codec.field_order import NONE, Case, read_cases
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields, converted, scalar_name, span_of
+from rosetta_jit.lowering.codec.tagged_message import (
+    Message,
+    array_starts,
+    clear_other_case,
+    lane_of,
+    mark,
+    presence_words,
+    row_of,
+    set_number,
+)
 from rosetta_jit.lowering.codec.unknown_fields import skip_unknown
-from rosetta_jit.lowering.codec.varint import from_varint, read_size, read_tag, read_varint, varint_bytes
+from rosetta_jit.lowering.codec.varint import from_varint, read_length, read_tag, read_varint, varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
-from rosetta_jit.model.layout import UNKNOWN, Row, Slot, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
-from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import Blob, Entry, Number, Path, Recursion, Tagged, Varint
+from rosetta_jit.model.layout import Slot, Span
+from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,26 +62,13 @@ if TYPE_CHECKING:
 BYTES, GROUP, END_GROUP = 2, 3, 4
 
 
-@dataclass(frozen=True, slots=True)
-class Message:
-    """A message that is being read: its fields, where it stops, its presence words, and where its arrays start."""
-
-    writer: Writer
-    fields: HolderFields
-    tagged: Tagged
-    stop: Expr
-    presence: tuple[Local, ...]
-    starts: dict[Path, Local]
-    depth: Expr
-
-
 def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Expr, *, fresh: bool, depth: Expr) -> None:
     """Read fields up to ``stop`` (or the end of the group) into a row; a ``fresh`` row holds nothing yet, another is merged into.
 
     ``depth`` is how many messages of recursive structs there are around it.
     """
-    presence = _presence_words(writer, fields, fresh=fresh)
-    message = Message(writer, fields, tagged, stop, presence, _array_starts(writer, fields, tagged, fresh=fresh), depth)
+    presence = presence_words(writer, fields, fresh=fresh)
+    message = Message(writer, fields, tagged, stop, presence, array_starts(writer, fields, tagged, fresh=fresh), depth)
     at = writer.var("at", writer.position)
     ended = writer.var("ended", Const("bool", value=False)) if tagged.group is not None else None
     with writer.nested() as body:
@@ -87,7 +81,7 @@ def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Exp
         goes_on = Binary("and", goes_on, Compare("eq", ended, Const("bool", value=False)))
     invariant = [Compare("ge", at, BEGIN), Compare("le", at, stop)]
     for path, start in message.starts.items():
-        invariant += [Compare("ge", start, index(0)), Compare("le", start, Used(_lane(fields, path)))]
+        invariant += [Compare("ge", start, index(0)), Compare("le", start, Used(lane_of(fields, path)))]
     writer.emit(While(goes_on, block(body), tuple(invariant), at))
     writer.position = at
     if ended is not None:
@@ -95,33 +89,9 @@ def read_message(writer: Writer, fields: HolderFields, tagged: Tagged, stop: Exp
     _finish(message)
 
 
-def _presence_words(writer: Writer, fields: HolderFields, *, fresh: bool) -> tuple[Local, ...]:
-    row = _row(fields)
-    zero = Const("u64", 0)
-    words = [fields.cell.place(row.offset + 8 * number) for number in range(row.presence_words)]
-    return tuple(writer.var("present", zero if fresh else Get("u64", word)) for word in words)
-
-
-def _array_starts(writer: Writer, fields: HolderFields, tagged: Tagged, *, fresh: bool) -> dict[Path, Local]:
-    starts: dict[Path, Local] = {}
-    kept = [(UNKNOWN,)] if _row(fields).unknown is not None else []
-    for path in (*kept, *(entry.path for entry in tagged.entries if entry.label != "single")):
-        if path not in starts:
-            span = span_of(fields.find(path))
-            used = Used(span.lane)
-            start: Expr = used
-            if not fresh:
-                known = writer.let("start", Get("i64", fields.cell.place(span.offset)))
-                sane = Binary("and", Compare("ge", known, index(0)), Compare("le", known, used))
-                writer.expect(sane, "length", fields.shown(path), "the holder is damaged")
-                start = Select(Compare("eq", Get("i64", fields.cell.place(span.offset + 8)), index(0)), used, known)
-            starts[path] = writer.let("first", start)
-    return starts
-
-
 def _finish(message: Message) -> None:
     """Write down what was kept in locals, and see that what must come has come."""
-    writer, fields, row = message.writer, message.fields, _row(message.fields)
+    writer, fields, row = message.writer, message.fields, row_of(message.fields)
     for path, start in message.starts.items():
         cell = fields.find(path)
         fields.set_span(cell, start, Binary("sub", Used(span_of(cell).lane), start))
@@ -186,7 +156,7 @@ def _read_entry(message: Message, entry: Entry, *, packed: bool) -> None:
 
 def _keep(message: Message, begin: Expr, tag: bytes = b"") -> None:
     """Append what was read since then to the unknown fields of the message, behind a tag if it had none of its own."""
-    unknown = _row(message.fields).unknown
+    unknown = row_of(message.fields).unknown
     if unknown is None:
         return
     writer = message.writer
@@ -207,28 +177,28 @@ def _read_single(message: Message, entry: Entry) -> None:
     match entry.value:
         case Number(_, scalar, order):
             value = writer.let("value", writer.load(scalar_name(scalar), where, order))
-            _mark(message, entry.path)
-            _set(fields, entry.path, value)
+            mark(message, entry.path)
+            set_number(fields, entry.path, value)
         case Varint() as varint:
             value = _varint_value(message, varint, fields.find(entry.path).slot, where)
             with writer.nested() as known:
-                _mark(message, entry.path)
-                _set(fields, entry.path, value)
+                mark(message, entry.path)
+                set_number(fields, entry.path, value)
             _if_allowed(message, entry, value, known, begin)
         case Blob(_, _, text, _):
             start, size = _read_bytes(message, fields, span_of(fields.find(entry.path)), where, text=text)
-            _mark(message, entry.path)
+            mark(message, entry.path)
             fields.set_span(fields.find(entry.path), start, size)
         case Tagged() as tagged:
             stop = _stop(message, tagged, where)
-            _clear_other_case(message, entry.path)
-            _mark(message, entry.path)
+            clear_other_case(message, entry.path)
+            mark(message, entry.path)
             inner = HolderFields(writer, fields.layout, fields.find(entry.path), where, fields.borrow)
             read_message(writer, inner, tagged, stop, fresh=False, depth=message.depth)
         case Recursion() as recursion:
-            from rosetta_jit.lowering.codec.recursion import read_recursive
+            from rosetta_jit.lowering.codec.work_list import read_recursive
 
-            _mark(message, entry.path)
+            mark(message, entry.path)
             read_recursive(message, entry, recursion, where)
         case _:
             raise AssertionError(entry)
@@ -274,16 +244,6 @@ def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where
     return start, size
 
 
-def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
-    """A length of bytes that follow, and are there."""
-    size = writer.let("length", Convert("i64", read_size(writer, where)))
-    here = writer.position
-    fits = Binary("and", Compare("ge", size, index(0)), Compare("le", size, Binary("sub", stop, here)))
-    writer.expect(fits, "truncated", where, "longer than what is left of the message")
-    writer.require(size, where)
-    return size
-
-
 def _stop(message: Message, tagged: Tagged, where: Where) -> Expr:
     """Where an inner message stops: behind its length, or with what is around it if it is a group."""
     if tagged.group is not None:
@@ -293,55 +253,13 @@ def _stop(message: Message, tagged: Tagged, where: Where) -> Expr:
     return message.writer.let("stop", Binary("add", message.writer.position, size))
 
 
-def _mark(message: Message, path: Path) -> None:
-    """The field is there: its presence bit, or the case of its union."""
-    fields, row = message.fields, _row(message.fields)
-    member = row.member(path[0])
-    if member.presence is not None:
-        word = message.presence[member.presence // 64]
-        message.writer.assign(word, Binary("or", word, Const("u64", 1 << member.presence % 64)))
-    if isinstance(member.slot, Variant) and len(path) > 1:
-        number = next(n for n, case in enumerate(member.slot.members, 1) if case.name == path[1])
-        message.writer.emit(SetField(fields.cell.place(member.slot.offset), index(number)))
-
-
-def _clear_other_case(message: Message, path: Path) -> None:
-    """A message that becomes the case of a union starts empty; one that is the case already is merged into."""
-    member = _row(message.fields).member(path[0])
-    if isinstance(member.slot, Variant) and len(path) > 1:
-        number = next(n for n, case in enumerate(member.slot.members, 1) if case.name == path[1])
-        slot = member.slot.members[number - 1].slot
-        other = Compare("ne", Get("i64", message.fields.cell.place(member.slot.offset)), index(number))
-        empty = Fill(message.fields.cell.place(slot.offset), index(slot_end(slot) - slot.offset))
-        message.writer.emit(If(other, (empty,)))
-
-
-def slot_end(slot: Slot) -> int:
-    """The offset behind a slot."""
-    match slot:
-        case NumberSlot(offset, scalar):
-            return offset + WIDTH[scalar]
-        case Span(offset, _):
-            return offset + 16
-        case Row(offset, _, _, members):
-            return max([offset + slot.head_bytes, *(slot_end(member.slot) for member in members)])
-        case Variant(offset, members):
-            return max([offset + 8, *(slot_end(member.slot) for member in members)])
-
-
-def _set(fields: HolderFields, path: Path, value: Local) -> None:
-    cell = fields.find(path)
-    assert isinstance(cell.slot, NumberSlot)
-    fields.writer.emit(SetField(cell.place(cell.slot.offset), converted(value, cell.slot.scalar)))
-
-
 # --- arrays ------------------------------------------------------------------------------------------------------------------
 
 
 def _read_element(message: Message, entry: Entry) -> None:
     """One more element at the end of its lane."""
     writer, fields, begin = message.writer, message.fields, message.writer.position
-    lane = _lane(fields, entry.path)
+    lane = lane_of(fields, entry.path)
     where = fields.shown(entry.path).element(Binary("sub", Used(lane), message.starts[entry.path]))
     match entry.value:
         case Number(_, scalar, order):
@@ -365,7 +283,7 @@ def _read_element(message: Message, entry: Entry) -> None:
             inner = HolderFields(writer, fields.layout, Cell(lane, row, fields.layout.lanes[lane].element), where, fields.borrow)
             read_message(writer, inner, tagged, stop, fresh=True, depth=message.depth)
         case Recursion() as recursion:
-            from rosetta_jit.lowering.codec.recursion import read_recursive
+            from rosetta_jit.lowering.codec.work_list import read_recursive
 
             read_recursive(message, entry, recursion, where)
         case _:
@@ -383,7 +301,7 @@ def _append(message: Message, lane: int, value: Local) -> None:
 def _read_packed(message: Message, entry: Entry) -> None:
     """Numbers without tags, as many as fill the length."""
     writer, fields = message.writer, message.fields
-    where, lane = fields.shown(entry.path), _lane(fields, entry.path)
+    where, lane = fields.shown(entry.path), lane_of(fields, entry.path)
     size = read_length(writer, where, message.stop)
     match entry.value:
         case Number(_, scalar, order):
@@ -433,12 +351,3 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
 
 
 # --- where things are -----------------------------------------------------------------------------------------------------------
-
-
-def _row(fields: HolderFields) -> Row:
-    assert isinstance(fields.cell.slot, Row)
-    return fields.cell.slot
-
-
-def _lane(fields: HolderFields, path: Path) -> int:
-    return span_of(fields.find(path)).lane

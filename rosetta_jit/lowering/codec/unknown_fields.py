@@ -24,7 +24,7 @@ from rosetta_jit.kernel.ir import (
     While,
 )
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
-from rosetta_jit.lowering.codec.varint import read_tag, read_varint
+from rosetta_jit.lowering.codec.varint import read_length, read_tag, read_varint
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 
 if TYPE_CHECKING:
@@ -50,8 +50,6 @@ def _expect_tag(writer: Writer, tag: Expr, where: Where) -> None:
 
 def _scalar_cases(writer: Writer, after: Local, stop: Expr, where: Where) -> tuple[tuple[int, Block], ...]:
     """Values that are not groups, by wire type. What goes beyond ``stop`` is noticed by the caller."""
-    from rosetta_jit.lowering.codec.tagged import read_length
-
     cases: list[tuple[int, Block]] = []
     for wire in (VARINT, FIXED64, DELIMITED, FIXED32):
         with writer.nested() as body:

@@ -42,6 +42,16 @@ def read_size(writer: Writer, where: Where) -> Local:
     return value
 
 
+def read_length(writer: Writer, where: Where, stop: Expr) -> Local:
+    """A length of bytes that follow, and are there."""
+    size = writer.let("length", Convert("i64", read_size(writer, where)))
+    here = writer.position
+    fits = Binary("and", Compare("ge", size, index(0)), Compare("le", size, Binary("sub", stop, here)))
+    writer.expect(fits, "truncated", where, "longer than what is left of the message")
+    writer.require(size, where)
+    return size
+
+
 def _read_size(writer: Writer) -> Contract:
     return _first_byte(writer, lambda _, at: writer.call("read_long_size", _read_long_size, (at,), MESSAGE))
 

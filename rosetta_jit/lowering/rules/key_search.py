@@ -10,20 +10,19 @@ from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.algebra.normal_form import rebuilt
 from rosetta_jit.language.places import shown_fields
-from rosetta_jit.lowering.texts.values import forgetting
 from rosetta_jit.lowering.writer import block
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 NONE, SEVERAL = -1, -2
 """What is found instead of a number."""
 
 
-def number_in(search: typed.Search, values: Values) -> Expr:
+def number_in(search: typed.Search, values: Evaluation) -> Expr:
     """The number of the element; an error of kind ``index`` unless there is one, where that is required."""
     if not search.required:
         return _looked_for(search, values)
@@ -35,12 +34,12 @@ def number_in(search: typed.Search, values: Values) -> Expr:
     return found
 
 
-def _looked_for(search: typed.Search, values: Values) -> Local:
+def _looked_for(search: typed.Search, values: Evaluation) -> Local:
     writer = values.writer
     count = values.source.count(search.place, values)
     found, number = writer.var("found", index(NONE)), Local("i64", writer.fresh("element"))
-    with forgetting(values.source), writer.nested() as body:
-        inner = replace(values, variables={**values.variables, search.variable.name: number})
+    with values.source.forgetting(), writer.nested() as body:
+        inner = values.with_local(search.variable.name, number)
         holds = inner.of(search.condition)
         with writer.nested() as hit:
             writer.assign(found, Select(Compare("eq", found, index(NONE)), number, index(SEVERAL)))
@@ -49,7 +48,7 @@ def _looked_for(search: typed.Search, values: Values) -> Local:
     return found
 
 
-def look_ahead(rules: tuple[typed.Rule, ...], values: Values) -> None:
+def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:
     """Search before a loop for what its rules search for in each round, where that is the same and cannot fail."""
     for search in _in_rules(rules):
         if _cannot_fail(search) and all(name in values.variables for name in _variables(search)):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Convert, Expr, Unary
@@ -12,15 +11,15 @@ from rosetta_jit.model.layout import scalar_of
 
 if TYPE_CHECKING:
     from rosetta_jit.language import typed
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 
-def nearest(value: typed.Nearest, values: Values) -> Expr:
+def nearest(value: typed.Nearest, values: Evaluation) -> Expr:
     """The integer, of the type of its field; what no integer of that type unpacks to is refused."""
     writer, target = values.writer, scalar_name(scalar_of(value.type))
     whole = writer.let("whole", Unary("rint", values.of(value.operand)))
     values.in_range(whole, target)
     made = writer.let("nearest", Convert(target, whole))
-    inner = replace(values, variables={**values.variables, value.variable.name: made}, decided={})
+    inner = values.with_local(value.variable.name, made, afresh=True)
     writer.expect(inner.of(value.check), "range", values.where, f"no {describe(value.type)} unpacks to the value", line=values.line)
     return made

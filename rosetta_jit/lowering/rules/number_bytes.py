@@ -15,11 +15,11 @@ from rosetta_jit.model.types import Float, Int
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Scalar
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.model.types import Type
 
 
-def of_bytes(value: typed.BytesCall, values: Values) -> Expr:
+def of_bytes(value: typed.BytesCall, values: Evaluation) -> Expr:
     """What a function of bytes gives."""
     match value.arguments:
         case (typed.Access(place), at, big):
@@ -30,7 +30,7 @@ def of_bytes(value: typed.BytesCall, values: Values) -> Expr:
             raise AssertionError(value)
 
 
-def _number_at(place: typed.Place, place_in_it: typed.Expr, big: typed.Expr, type_: Type, values: Values) -> Expr:
+def _number_at(place: typed.Place, place_in_it: typed.Expr, big: typed.Expr, type_: Type, values: Evaluation) -> Expr:
     """The number at a place in bytes: an error of kind ``index`` where they are too few."""
     assert isinstance(type_, Int | Float)
     writer, scalar = values.writer, scalar_name(scalar_of(type_))
@@ -65,7 +65,7 @@ def _integer_of(size: int) -> Scalar:
     return "u64" if size == WIDTH["u64"] else "u32"
 
 
-def _byte_of(value: typed.Expr, which: typed.Expr, values: Values) -> Expr:
+def _byte_of(value: typed.Expr, which: typed.Expr, values: Evaluation) -> Expr:
     """One byte of a number: an error of kind ``index`` where it has fewer."""
     writer, number = values.writer, values.of(value)
     size = WIDTH[type_of(number)]

@@ -10,8 +10,8 @@ from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import is_textual
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
-from rosetta_jit.lowering.rules.sides import HolderSide, wire_key
 from rosetta_jit.lowering.rules.values import constant, scalar_type
+from rosetta_jit.lowering.rules.wire_side import wire_key
 from rosetta_jit.lowering.writer import Where, block
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String, Union
 from rosetta_jit.startup.dataclass import dataclass
@@ -19,6 +19,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosetta_jit.lowering.rules.holder_side import HolderSide
     from rosetta_jit.lowering.rules.values import Values
     from rosetta_jit.wire.codec import Path
 

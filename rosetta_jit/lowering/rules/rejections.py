@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, Const, Expect, Failure, If, Site
 from rosetta_jit.kernel.terms import add
-from rosetta_jit.lowering.texts.values import forgetting, text_of
+from rosetta_jit.lowering.texts.values import text_of
 from rosetta_jit.lowering.texts.views import Quoted, Text, joined, sound
 from rosetta_jit.lowering.writer import block
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.language import typed
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 MAX_SHOWN = 100
 """Bytes of a value."""
 
 
-def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Values) -> None:
+def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Evaluation) -> None:
     """Refuse the message with a text that is put together where it is refused; long values are cut."""
     writer = values.writer
-    with forgetting(values.source), writer.nested() as refused:
+    with values.source.forgetting(), writer.nested() as refused:
         shown = joined(writer, [_shown(text_of(piece, values), values) for piece in pieces])
         site = Site("rejected", values.where.path, reason, values.line, detail_lane=shown.lane)
         number = writer.sites.setdefault(site, len(writer.sites))
@@ -32,7 +32,7 @@ def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, 
     writer.emit(If(Const("bool", value=True) if when is None else when, block(refused)))
 
 
-def _shown(text: Text, values: Values) -> Text:
+def _shown(text: Text, values: Evaluation) -> Text:
     if isinstance(text, Quoted):
         return text
     after = values.writer.let("cut", Binary("min", text.after, add(text.first, MAX_SHOWN)))

@@ -1,7 +1,7 @@
 """Rules of a mapping as statements of the kernel, the same in both directions: read one side, write the other.
 
 To unpack, the walk has found the wire's fields, and the rules fill the holder. To pack, the walk asks for numbers and sizes while it
-lays out the message (`supplies`), and the rules then fill the elements into their places.
+lays out the message (`packed_values`), and the rules then fill the elements into their places.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.rules.copies import copy, is_endless
+from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.key_search import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
-from rosetta_jit.lowering.rules.sides import HolderSide, Side, WireSide, presence, wire_key
+from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key
 from rosetta_jit.lowering.texts.separated import count_of_parts, parts_of
 from rosetta_jit.lowering.texts.values import checked, placed_of, quoted, text_of
 from rosetta_jit.lowering.texts.views import placed
@@ -34,6 +35,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.rules.values import Values
+
+
+Side = HolderSide | WireSide
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,10 +89,8 @@ class Runner:
     @contextmanager
     def forgetting(self) -> Generator[None]:
         """Around statements that may not run, or run again: what is looked up within them is not known behind them."""
-        known = [(side, dict(side.arrays)) for side in (self.source, self.target) if isinstance(side, HolderSide)]
-        yield
-        for side, arrays in known:
-            side.arrays = arrays
+        with self.source.forgetting(), self.target.forgetting():
+            yield
 
     def count(self, value: Expr) -> Expr:
         """A length that is used more than once."""

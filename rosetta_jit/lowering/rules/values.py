@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import field, replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Protocol, assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
-    Address,
     Assign,
     Binary,
     Call,
@@ -39,7 +38,6 @@ from rosetta_jit.lowering.rules.number_bytes import of_bytes
 from rosetta_jit.lowering.rules.rejections import reject_with
 from rosetta_jit.lowering.texts.comparison import is_text
 from rosetta_jit.lowering.texts.questions import number_of
-from rosetta_jit.lowering.texts.values import forgetting
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
@@ -50,29 +48,10 @@ if TYPE_CHECKING:
     from typing import TypeGuard
 
     from rosetta_jit.kernel.ir import Block, Stmt
+    from rosetta_jit.lowering.evaluation import Source
     from rosetta_jit.model.expr import Operator
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
-
-
-class Source(Protocol):
-    """The side that rules read."""
-
-    def number(self, place: typed.Place, values: Values) -> Expr:
-        """The number at a place."""
-        ...
-
-    def count(self, place: typed.Place, values: Values) -> Expr:
-        """The number of elements at a place, int64."""
-        ...
-
-    def address(self, place: typed.Place, values: Values) -> Address:
-        """Where the bytes of a string or bytes field begin."""
-        ...
-
-    def present(self, place: typed.Place, values: Values) -> Expr:
-        """Whether what can be absent is there."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +129,7 @@ class Values:
     def joined(self, operator: Operator, left: typed.Expr, right: typed.Expr) -> Expr:
         """``left and right``, ``left or right``: where the left one decides, the right one may have no value."""
         writer, first = self.writer, self.of(left)
-        with forgetting(self.source), writer.nested() as step:
+        with self.source.forgetting(), writer.nested() as step:
             second = self.of(right)
         if not any(isinstance(stmt, FAILING) for stmt, _ in statements(block(step))):
             writer.emit(*step)
@@ -166,7 +145,7 @@ class Values:
         found = writer.var("chosen", constant(0, scalar_type(choice.type)))
         undecided = writer.var("undecided", Const("bool", value=True))
         for condition, chosen in choice.cases:
-            with forgetting(self.source), writer.nested() as step:
+            with self.source.forgetting(), writer.nested() as step:
                 holds = self.of(condition)
                 with writer.nested() as then:
                     writer.assign(found, self.of(chosen))
@@ -176,7 +155,7 @@ class Values:
         if choice.otherwise is None:
             self.reject(choice.reason, choice.pieces, when=undecided)
             return found
-        with forgetting(self.source), writer.nested() as other:
+        with self.source.forgetting(), writer.nested() as other:
             writer.assign(found, self.of(choice.otherwise))
         writer.emit(If(undecided, block(other)))
         return found
@@ -196,7 +175,7 @@ class Values:
         writer.expect(there, "index", self.where, f"the list has {len(listed.items)} items", line=self.line)
         cases: list[tuple[int, Block]] = []
         for case, item in enumerate(listed.items):
-            with forgetting(self.source), writer.nested() as body:
+            with self.source.forgetting(), writer.nested() as body:
                 use(item)
             cases.append((case, block(body)))
         writer.emit(Switch(number, tuple(cases), ()))
@@ -208,6 +187,11 @@ class Values:
             return
         good = Const("bool", value=False) if when is None else Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)
+
+    def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Values:
+        """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
+        variables = {**self.variables, name: number}
+        return replace(self, variables=variables, decided={}) if afresh else replace(self, variables=variables)
 
     def at_rule(self, span: Span | None) -> Values:
         """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""

@@ -11,13 +11,13 @@ from rosetta_jit.lowering.writer import block
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Address, Scalar
     from rosetta_jit.language import typed
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 WORDS: tuple[Scalar, ...] = ("u64", "u32", "u16", "u8")
 """What the bytes of a message are compared in."""
 
 
-def is_text(values: Values, place: typed.Place, text: bytes) -> Expr:
+def is_text(values: Evaluation, place: typed.Place, text: bytes) -> Expr:
     """Whether a field holds these bytes. They are looked at only where the length is the same."""
     writer = values.writer
     count, address = values.source.count(place, values), values.source.address(place, values)

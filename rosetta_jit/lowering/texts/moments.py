@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.ir import Expr, Local
     from rosetta_jit.language import typed
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.texts.views import View
 
 BEYOND = float(1 << 63)
 """The first float that is no int64."""
 
 
-def dated(call: typed.TextCall, values: Values) -> View:
+def dated(call: typed.TextCall, values: Evaluation) -> View:
     """`iso8601`: a moment as text."""
     seconds, nanoseconds = _numbers(call, values)
     years = Binary("and", Compare("ge", seconds, index(LEAST_SECONDS)), Compare("le", seconds, index(MOST_SECONDS)))
@@ -33,7 +33,7 @@ def dated(call: typed.TextCall, values: Values) -> View:
     return written_date(values.writer, seconds, nanoseconds)
 
 
-def moment(call: typed.TextCall, values: Values, placed: Callable[[typed.Expr, Values], View]) -> Expr:
+def moment(call: typed.TextCall, values: Evaluation, placed: Callable[[typed.Expr, Evaluation], View]) -> Expr:
     """`timestamp`, `nanoseconds`, `seconds` and `fraction`: a moment as a number, or one of its two parts; ``placed`` gives texts."""
     is_text = len(call.arguments) == 1 and is_textual(call.arguments[0].type)
     seconds, nanoseconds = _of_text(placed(call.arguments[0], values), values) if is_text else _numbers(call, values)
@@ -49,7 +49,7 @@ def moment(call: typed.TextCall, values: Values, placed: Callable[[typed.Expr, V
             return _in_nanoseconds(seconds, nanoseconds, values)
 
 
-def _numbers(call: typed.TextCall, values: Values) -> tuple[Expr, Expr]:
+def _numbers(call: typed.TextCall, values: Evaluation) -> tuple[Expr, Expr]:
     """The seconds and nanoseconds of the numbers that a function is given."""
     first, *others = (values.of(argument) for argument in call.arguments)
     if others:
@@ -57,21 +57,21 @@ def _numbers(call: typed.TextCall, values: Values) -> tuple[Expr, Expr]:
     return _of_float(values.writer.let("time", first), values) if type_of(first) == "f64" else split(values.writer, first)
 
 
-def _given(seconds: Expr, nanoseconds: Expr, values: Values) -> tuple[Expr, Expr]:
+def _given(seconds: Expr, nanoseconds: Expr, values: Evaluation) -> tuple[Expr, Expr]:
     whole, behind = values.writer.let("time", seconds), values.writer.let("time", nanoseconds)
     within = Binary("and", Compare("ge", behind, index(0)), Compare("lt", behind, index(SECOND)))
     _expect(values, within, "range", "the nanoseconds are not less than a second")
     return whole, behind
 
 
-def _of_text(view: View, values: Values) -> tuple[Expr, Expr]:
+def _of_text(view: View, values: Evaluation) -> tuple[Expr, Expr]:
     read = read_date(values.writer, view)
     _expect(values, Unary("not", read.is_none), "text", "the text is no date with a time and its offset")
     _expect(values, Unary("not", read.is_too_fine), "range", "the date is finer than nanoseconds")
     return read.seconds, read.nanoseconds
 
 
-def _of_float(time: Local, values: Values) -> tuple[Expr, Expr]:
+def _of_float(time: Local, values: Evaluation) -> tuple[Expr, Expr]:
     """Rounded to nanoseconds, which may make a second full. What is behind the point of a float is a float, exactly."""
     writer = values.writer
     below = writer.let("below", Unary("floor", time))
@@ -86,7 +86,7 @@ def _of_float(time: Local, values: Values) -> tuple[Expr, Expr]:
     return writer.let("seconds", Convert("i64", whole)), behind
 
 
-def _in_nanoseconds(seconds: Expr, nanoseconds: Expr, values: Values) -> Expr:
+def _in_nanoseconds(seconds: Expr, nanoseconds: Expr, values: Evaluation) -> Expr:
     """All int64 of nanoseconds can be reached: before 1970 the nanoseconds are counted down from the next second."""
     writer = values.writer
     whole, behind = writer.let("whole", seconds), writer.let("behind", nanoseconds)
@@ -99,5 +99,5 @@ def _in_nanoseconds(seconds: Expr, nanoseconds: Expr, values: Values) -> Expr:
     return writer.checked("add", product, rest, values.where, line=values.line)
 
 
-def _expect(values: Values, condition: Expr, kind: str, detail: str) -> None:
+def _expect(values: Evaluation, condition: Expr, kind: str, detail: str) -> None:
     values.writer.expect(condition, kind, values.where, detail, line=values.line)

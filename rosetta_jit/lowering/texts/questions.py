@@ -13,10 +13,10 @@ from rosetta_jit.lowering.texts.values import expect, placed_of, quoted
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.language import typed
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 
-def number_of(call: typed.TextCall, values: Values) -> Expr:
+def number_of(call: typed.TextCall, values: Evaluation) -> Expr:
     """What a function of texts gives that gives no text."""
     writer, arguments = values.writer, call.arguments
     match call.function:
@@ -42,7 +42,7 @@ def number_of(call: typed.TextCall, values: Values) -> Expr:
             raise AssertionError(call)
 
 
-def _read(read: Read, what: str, target: str, values: Values) -> Expr:
+def _read(read: Read, what: str, target: str, values: Evaluation) -> Expr:
     expect(values, Unary("not", read.is_none), "text", f"the text is not {what}")
     expect(values, Unary("not", read.is_too_large), "range", f"the number does not fit {target}")
     return read.value

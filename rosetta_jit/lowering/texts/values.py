@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
@@ -10,8 +9,7 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, If, IsText, Place, Una
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
 from rosetta_jit.language.functions.texts import BLANKS
-from rosetta_jit.lowering.rules.images import bytes_of
-from rosetta_jit.lowering.rules.sides import HolderSide
+from rosetta_jit.lowering.images import bytes_of
 from rosetta_jit.lowering.texts.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.texts.making import padded, replaced, with_case
 from rosetta_jit.lowering.texts.moments import dated
@@ -23,16 +21,16 @@ from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.types import Array, Float, String
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Sequence
 
     from rosetta_jit.kernel.ir import Address, Expr, Local
-    from rosetta_jit.lowering.rules.values import Source, Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
 
 
-def text_of(value: typed.Expr, values: Values) -> Text:
+def text_of(value: typed.Expr, values: Evaluation) -> Text:
     """A text that is written down, lies in a field, or is computed."""
     match value:
         case typed.Const(str(text)):
@@ -53,12 +51,12 @@ def text_of(value: typed.Expr, values: Values) -> Text:
             raise AssertionError(value)
 
 
-def _field(place: typed.Place, values: Values) -> View:
+def _field(place: typed.Place, values: Evaluation) -> View:
     size = values.writer.let("size", values.source.count(place, values))
     return _view(values.source.address(place, values), size, values)
 
 
-def _view(address: Address, size: Expr, values: Values) -> View:
+def _view(address: Address, size: Expr, values: Evaluation) -> View:
     writer = values.writer
     if isinstance(address, Wire):
         writer.require(size, values.where, at=address.at)  # it is there: said again where the proof may have lost it
@@ -66,7 +64,7 @@ def _view(address: Address, size: Expr, values: Values) -> View:
     return sound(writer, View(address.lane, address.row, writer.let("after", Binary("add", address.row, size))))
 
 
-def _image(value: typed.ImageCall, values: Values) -> View:
+def _image(value: typed.ImageCall, values: Evaluation) -> View:
     """An image, or its pixels, in the hidden lane."""
     made = bytes_of(value, values)
     assert isinstance(made.address, Place)
@@ -83,7 +81,7 @@ def _pieces(value: typed.Expr) -> Sequence[typed.Expr]:
             return [value]
 
 
-def _chosen(choice: typed.Choice, values: Values) -> View:
+def _chosen(choice: typed.Choice, values: Evaluation) -> View:
     """Only the text that is chosen is made, behind the others of the hidden lane."""
     writer, lane = values.writer, lane_of(values.writer)
     first, size, undecided = writer.var("first", index(0)), writer.var("size", index(0)), writer.var("undecided", TRUE)
@@ -95,7 +93,7 @@ def _chosen(choice: typed.Choice, values: Values) -> View:
         writer.assign(undecided, Const("bool", value=False))
 
     for condition, value in choice.cases:
-        with forgetting(values.source), writer.nested() as step:
+        with values.source.forgetting(), writer.nested() as step:
             holds = values.of(condition)
             with writer.nested() as then:
                 choose(value)
@@ -104,13 +102,13 @@ def _chosen(choice: typed.Choice, values: Values) -> View:
     if choice.otherwise is None:
         values.reject(choice.reason, choice.pieces, when=undecided)
     else:
-        with forgetting(values.source), writer.nested() as other:
+        with values.source.forgetting(), writer.nested() as other:
             choose(choice.otherwise)
         writer.emit(If(undecided, block(other)))
     return _found(lane, first, size, values)
 
 
-def _listed(listed: typed.Listed, values: Values) -> View:
+def _listed(listed: typed.Listed, values: Evaluation) -> View:
     """Only the text that is chosen is made, as above."""
     writer, lane = values.writer, lane_of(values.writer)
     first, size = writer.var("first", index(0)), writer.var("size", index(0))
@@ -124,7 +122,7 @@ def _listed(listed: typed.Listed, values: Values) -> View:
     return _found(lane, first, size, values)
 
 
-def _found(lane: int, first: Local, size: Local, values: Values) -> View:
+def _found(lane: int, first: Local, size: Local, values: Evaluation) -> View:
     """A text that one of several ways has made."""
     writer = values.writer
     for known in (Compare("ge", first, index(0)), Compare("ge", size, index(0)), Compare("le", size, Used(lane))):
@@ -133,18 +131,7 @@ def _found(lane: int, first: Local, size: Local, values: Values) -> View:
     return sound(writer, View(lane, first, writer.let("after", Binary("add", first, size))))
 
 
-@contextmanager
-def forgetting(source: Source) -> Generator[None]:
-    """Around statements that may not run: what is looked up within them is not known behind them."""
-    if not isinstance(source, HolderSide):
-        yield
-        return
-    known = dict(source.arrays)
-    yield
-    source.arrays = known
-
-
-def _called(call: typed.TextCall, values: Values) -> Text:
+def _called(call: typed.TextCall, values: Evaluation) -> Text:
     writer, arguments = values.writer, call.arguments
     match call.function:
         case "written":
@@ -179,7 +166,7 @@ def _called(call: typed.TextCall, values: Values) -> Text:
             raise AssertionError(call)
 
 
-def _joined_elements(call: typed.TextCall, values: Values) -> View:
+def _joined_elements(call: typed.TextCall, values: Evaluation) -> View:
     """The elements of an array as one text."""
     array, pattern = call.arguments
     assert isinstance(array, typed.Access)
@@ -188,14 +175,14 @@ def _joined_elements(call: typed.TextCall, values: Values) -> View:
     element = typed.Place(place.side, (*place.steps, typed.IndexStep(variable)), array.type.element)
 
     def of_number(number: Local) -> View:
-        return _field(element, replace(values, variables={**values.variables, variable.name: number}))
+        return _field(element, values.with_local(variable.name, number))
 
-    with forgetting(values.source):
+    with values.source.forgetting():
         count = values.source.count(place, values)
         return between_separators(values.writer, count, quoted(pattern), of_number, lambda good, why: expect(values, good, "text", why))
 
 
-def _written(call: typed.TextCall, values: Values) -> View:
+def _written(call: typed.TextCall, values: Evaluation) -> View:
     number, decimals = call.arguments[0], call.arguments[1:]
     value = values.of(number)
     if not isinstance(number.type, Float):
@@ -209,7 +196,7 @@ def _written(call: typed.TextCall, values: Values) -> View:
     return written_float(values.writer, known, places)
 
 
-def _slice(call: typed.TextCall, values: Values) -> View:
+def _slice(call: typed.TextCall, values: Evaluation) -> View:
     """A part by its first and last byte, where characters begin."""
     writer = values.writer
     text, start, stop = call.arguments
@@ -228,7 +215,7 @@ def _slice(call: typed.TextCall, values: Values) -> View:
     return found
 
 
-def _without(side: Literal["behind", "before"], view: View, known: bytes, values: Values) -> View:
+def _without(side: Literal["behind", "before"], view: View, known: bytes, values: Evaluation) -> View:
     """A text without the begin, or the end, that it must have."""
     end, where = ("starts_with", "begin") if side == "behind" else ("ends_with", "end")
     there = has_at(values.writer, end, view, placed(values.writer, Quoted(known)))
@@ -243,7 +230,7 @@ def _without(side: Literal["behind", "before"], view: View, known: bytes, values
     return sound(values.writer, replace(view, after=Binary("sub", view.after, size)), must)
 
 
-def _padded(call: typed.TextCall, values: Values) -> View:
+def _padded(call: typed.TextCall, values: Evaluation) -> View:
     text, size = call.arguments
     assert isinstance(size, typed.Const)
     view = placed_of(text, values)
@@ -251,7 +238,7 @@ def _padded(call: typed.TextCall, values: Values) -> View:
     return padded(values.writer, view, int(size.value))
 
 
-def _recoded(call: typed.TextCall, values: Values) -> View:
+def _recoded(call: typed.TextCall, values: Evaluation) -> View:
     """Bytes read as text, or text as bytes of an encoding."""
     writer, encoding = values.writer, quoted(call.arguments[1]).decode()
     view = placed_of(call.arguments[0], values)
@@ -274,7 +261,7 @@ def _recoded(call: typed.TextCall, values: Values) -> View:
     return made.view
 
 
-def placed_of(value: typed.Expr, values: Values) -> View:
+def placed_of(value: typed.Expr, values: Evaluation) -> View:
     """A text that lies somewhere, also where the mapping writes it down."""
     return placed(values.writer, text_of(value, values))
 
@@ -286,12 +273,12 @@ def quoted(value: typed.Expr) -> bytes:
     return value.value.encode()
 
 
-def expect(values: Values, condition: Expr, kind: str, detail: str) -> None:
+def expect(values: Evaluation, condition: Expr, kind: str, detail: str) -> None:
     """Fail at the rule, unless something holds."""
     values.writer.expect(condition, kind, values.where, detail, line=values.line)
 
 
-def checked(view: View, values: Values) -> View:
+def checked(view: View, values: Evaluation) -> View:
     """A text that is UTF-8, or an error."""
     if not view.valid:
         expect(values, IsText(view.address, view.size), "text", "not valid UTF-8")

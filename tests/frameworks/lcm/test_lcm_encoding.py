@@ -6,7 +6,8 @@ import pytest
 
 from rosetta_jit import Decoder
 from rosetta_jit.errors import DecodeError, SchemaError
-from rosetta_jit.frameworks.base import Choices, installed
+from rosetta_jit.frameworks.base import Choices
+from rosetta_jit.frameworks.installed import installed
 from rosetta_jit.frameworks.lcm.encoding import encode_type
 from rosetta_jit.frameworks.lcm.idl import parse
 from rosetta_jit.source import Source

@@ -14,7 +14,7 @@ from rosetta_jit.frameworks.protobuf.proto.symbols import declare
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.files import FileSet
+    from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
     from rosetta_jit.model.types import Schema
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.frameworks.protobuf.proto.files import FileSet
+    from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
     from rosetta_jit.frameworks.protobuf.proto.tree import Extend, File
 
 Kind = Literal["package", "message", "enum", "value", "field", "oneof", "extension", "service", "method"]

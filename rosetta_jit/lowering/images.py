@@ -11,7 +11,7 @@ from rosetta_jit.language.functions.images import MEASURES
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
 
 MEASURE, DECOMPRESS, COMPRESSED, COMPRESS = "image.measure", "image.decompress", "image.compressed", "image.compress"
 """The host's functions: a number of an image; its pixels; the size of a compressed image, and its bytes."""
@@ -34,13 +34,13 @@ LANE = "texts"
 """The hidden lane of what is computed: one byte a row."""
 
 
-def measured(call: typed.ImageCall, values: Values) -> Expr:
+def measured(call: typed.ImageCall, values: Evaluation) -> Expr:
     """A number of a compressed image."""
     what = index(MEASURES.index(call.function))
     return _asked(MEASURE, (what,), (bytes_of(call.bytes, values),), values)
 
 
-def bytes_of(value: typed.Expr, values: Values) -> Extent:
+def bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
     """Bytes that lie in a field, or that are computed."""
     match value:
         case typed.Access(place):
@@ -62,7 +62,7 @@ def bytes_of(value: typed.Expr, values: Values) -> Extent:
             raise AssertionError(value)
 
 
-def _filled(function: str, numbers: tuple[Expr, ...], source: Extent, size: Local, values: Values) -> Extent:
+def _filled(function: str, numbers: tuple[Expr, ...], source: Extent, size: Local, values: Evaluation) -> Extent:
     """New bytes behind those of the hidden lane, filled by the host."""
     writer = values.writer
     lane = writer.lane(LANE, 1)
@@ -74,7 +74,7 @@ def _filled(function: str, numbers: tuple[Expr, ...], source: Extent, size: Loca
     return target
 
 
-def _asked(function: str, numbers: tuple[Expr, ...], inputs: tuple[Extent, ...], values: Values, target: Extent | None = None) -> Local:
+def _asked(function: str, numbers: tuple[Expr, ...], inputs: tuple[Extent, ...], values: Evaluation, target: Extent | None = None) -> Local:
     """What the host answers, which is no problem."""
     writer = values.writer
     found = Local("i64", writer.fresh(function.rpartition(".")[2]))

@@ -1,36 +1,35 @@
-"""The two sides of a mapping while its rules run: the holder in its lanes, the wire where the walk found or laid out its fields.
+"""A side of a mapping in lanes, while its rules run: the holder, or a wire's message that is staged.
 
-A side can be read (`values.Source`) and be written; which one is which depends on the direction alone.
+It can be read (`lowering.evaluation.Source`) and be written; which one it is depends on the direction alone.
 """
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Get, If, Load, Place, Select, SetField, Store, Wire
-from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField
+from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.discriminators import discriminator_of
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import FieldStep, IndexStep
-from rosetta_jit.lowering.codec.fields import OTHER_CASE, converted, has_gaps, member_of, presence_bit, scalar_name
-from rosetta_jit.lowering.codec.wire_fields import EACH, NotInPlaceError
+from rosetta_jit.lowering.arithmetic import inside
+from rosetta_jit.lowering.codec.fields import OTHER_CASE, has_gaps, member_of, presence_bit, scalar_name
 from rosetta_jit.lowering.rules.discriminators import chosen_case
 from rosetta_jit.lowering.rules.initial_values import bear, bear_each
-from rosetta_jit.lowering.texts.views import between
-from rosetta_jit.lowering.writer import Where, block
+from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.model.types import Array, Bytes, Field, String, Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Generator, Mapping
 
-    from rosetta_jit.language.check.discriminators import Told
+    from rosetta_jit.language.check.discriminators import Discriminator
     from rosetta_jit.lowering.codec.fields import HolderElements, HolderFields
-    from rosetta_jit.lowering.codec.wire_fields import Region, WireFields
-    from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.writer import Writer
     from rosetta_jit.model.initial_values import Births
     from rosetta_jit.model.layout import Member
@@ -39,24 +38,6 @@ if TYPE_CHECKING:
 
 Key = tuple[object, ...]
 """A place by names and the expressions of its indices."""
-
-
-def has_product(number: typed.Expr) -> bool:
-    """Whether an index multiplies what is not known: one more factor, and the proof sees no bound of the product."""
-    match number:
-        case typed.Binary("*", left, right) if not isinstance(left, typed.Const) and not isinstance(right, typed.Const):
-            return True
-        case typed.Binary(_, left, right):
-            return has_product(left) or has_product(right)
-        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
-            return has_product(operand)
-        case _:
-            return False
-
-
-def inside(number: Expr, count: Expr) -> Expr:
-    """Whether an index is one of so many."""
-    return Binary("and", Compare("ge", number, index(0)), Compare("lt", number, count))
 
 
 @dataclass(slots=True)
@@ -70,14 +51,20 @@ class HolderSide:
     root: HolderFields
     births: Births | None = None
     opened: frozenset[int] = frozenset()
-    unions: Mapping[tuple[str, ...], Told] = field(default_factory=dict[tuple[str, ...], "Told"])
+    unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
     arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
 
     @property
     def writer(self) -> Writer:
         return self.root.writer
 
-    def number(self, place: typed.Place, values: Values) -> Expr:
+    @contextmanager
+    def forgetting(self) -> Generator[None]:
+        known = dict(self.arrays)
+        yield
+        self.arrays = known
+
+    def number(self, place: typed.Place, values: Evaluation) -> Expr:
         fields, path, last = self.descend(place, values)
         value = self.writer.let(path[-1] if path else "element", _got(fields, path))
         present = presence(fields, path)
@@ -85,12 +72,12 @@ class HolderSide:
             return value
         return self.present_or_default(present, member_of(fields.find(path[:-1]).slot, path[-1]), last, value, values)
 
-    def present(self, place: typed.Place, values: Values) -> Expr:
+    def present(self, place: typed.Place, values: Evaluation) -> Expr:
         """Whether what can be absent is there, on the way from the innermost element."""
         fields, path, _ = self.descend(place, values)
         return presence(fields, path, outer=True) or Const("bool", value=True)
 
-    def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Values) -> Expr:
+    def present_or_default(self, present: Expr, member: Member, last: Field, value: Expr, values: Evaluation) -> Expr:
         """What reading gives: the value; where it is absent, its default, or an error if it is required."""
         if last.required:
             self.expect_required(present, last, values)
@@ -98,10 +85,10 @@ class HolderSide:
         scalar = member.slot.scalar if isinstance(member.slot, Number) else "i32"
         return Select(present, value, Const(scalar_name(scalar), _number(last.default)))
 
-    def expect_required(self, present: Expr, last: Field, values: Values) -> None:
+    def expect_required(self, present: Expr, last: Field, values: Evaluation) -> None:
         self.writer.expect(present, "missing", values.where, f"the required `{last.name}` is not there", line=values.line)
 
-    def count(self, place: typed.Place, values: Values) -> Expr:
+    def count(self, place: typed.Place, values: Evaluation) -> Expr:
         """How many elements or bytes; a required text must be there."""
         match place.type, place.steps:
             case ((String() | Bytes()), (*_, FieldStep(Field(required=True) as last))) if self.births is None:
@@ -113,12 +100,12 @@ class HolderSide:
                 pass
         return self.array(place, values)[1]
 
-    def address(self, place: typed.Place, values: Values) -> Address:
+    def address(self, place: typed.Place, values: Evaluation) -> Address:
         """Where the bytes of a string or bytes field begin."""
         elements, _ = self.array(place, values)
         return Place(elements.lane, elements.start)
 
-    def array(self, place: typed.Place, values: Values) -> tuple[HolderElements, Expr]:
+    def array(self, place: typed.Place, values: Evaluation) -> tuple[HolderElements, Expr]:
         """The elements of an array, and how many there are."""
         key = _key(place)
         if key not in self.arrays:
@@ -137,7 +124,7 @@ class HolderSide:
         self.writer.expect(known, "length", fields.shown(path), "the holder is damaged")
         return count
 
-    def descend(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Field | None]:
+    def descend(self, place: typed.Place, values: Evaluation) -> tuple[HolderFields, Path, Field | None]:
         """The fields of the innermost element, the path from there, and the last field of it."""
         fields, path, last = self.root, (), None
         for done, step in enumerate(place.steps):
@@ -154,7 +141,7 @@ class HolderSide:
                     fields, path, last = elements.at(number), (), None
         return fields, path, last
 
-    def single(self, fields: HolderFields, path: Path, values: Values) -> HolderFields:
+    def single(self, fields: HolderFields, path: Path, values: Evaluation) -> HolderFields:
         """A message that has a row of its own, since it can contain itself: it is there, or it comes now."""
         where = fields.shown(path)
         if self.births is not None:
@@ -168,49 +155,51 @@ class HolderSide:
 
     # --- writing -------------------------------------------------------------------------------------------------------
 
-    def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
+    def set_number(self, place: typed.Place, value: Expr, values: Evaluation) -> None:
         fields, path, _ = self.descend(place, values)
-        told = self.unions.get(field_names(place))
-        if told is None:
+        discriminator = self.unions.get(field_names(place))
+        if discriminator is None:
             fields.put(path, value)
             return
         value = self.writer.once(value)
         fields.put(path, value)
-        path, case = (*path[:-1], told.name), chosen_case(told.union, value, self.writer)
+        path, case = (*path[:-1], discriminator.name), chosen_case(discriminator.union, value, self.writer)
         self.writer.emit(SetField(_case_word(fields, path), case))
-        for number in range(1, len(told.union.cases) + 1):
-            self.bear_case(fields, path, told, number, Compare("eq", case, index(number)))
+        for number in range(1, len(discriminator.union.cases) + 1):
+            self.bear_case(fields, path, discriminator, number, Compare("eq", case, index(number)))
 
-    def choose(self, place: typed.Place, values: Values) -> None:
-        """The unions that a place is in a case of have that case: their discriminators say so, or are told so."""
+    def choose(self, place: typed.Place, values: Evaluation) -> None:
+        """The unions that a place is in a case of have that case: their discriminators say so, or are made to."""
         for steps in range(1, len(place.steps)):
             names, case = discriminator_of(place, steps), place.steps[steps]
             if names is None or not isinstance(case, FieldStep):
                 continue
-            told = self.unions[names]
+            discriminator = self.unions[names]
             fields, path, _ = self.descend(_prefix(place, steps), values)
-            if told.by_rule:
-                self.expect_case(fields, path, index(told.number(case.field.name)), values)
+            if discriminator.by_rule:
+                self.expect_case(fields, path, index(discriminator.number(case.field.name)), values)
             else:
-                number = told.number(case.field.name)
-                fields.put((*path[:-1], names[-1]), index(told.label(case.field.name)))
+                number = discriminator.number(case.field.name)
+                fields.put((*path[:-1], names[-1]), index(discriminator.label(case.field.name)))
                 word = _case_word(fields, path)
-                self.bear_case(fields, path, told, number, Compare("ne", Get("i64", word), index(number)))
+                self.bear_case(fields, path, discriminator, number, Compare("ne", Get("i64", word), index(number)))
                 self.writer.emit(SetField(word, index(number)))
 
-    def bear_case(self, fields: HolderFields, path: Path, told: Told, number: int, when: Expr) -> None:
+    def bear_case(self, fields: HolderFields, path: Path, discriminator: Discriminator, number: int, when: Expr) -> None:
         """Give a case that comes what it is born with."""
         cell = fields.find(path)
         assert isinstance(cell.slot, Variant)
         births = (
-            () if self.births is None else self.births.of(told.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
+            ()
+            if self.births is None
+            else self.births.of(discriminator.union.cases[number - 1].type, cell.slot.members[number - 1].slot, cell.lane)
         )
         with self.writer.nested() as body:
             bear(fields, births, cell.row, self.opened)
         if body:
             self.writer.emit(If(when, block(body)))
 
-    def case_of(self, place: typed.Place, values: Values) -> tuple[HolderFields, Path, Expr] | None:
+    def case_of(self, place: typed.Place, values: Evaluation) -> tuple[HolderFields, Path, Expr] | None:
         """The case that a discriminator has chosen for a union that is set as a whole, if one has."""
         names = discriminator_of(place, len(place.steps))
         if names is None or not self.unions[names].by_rule:
@@ -218,12 +207,12 @@ class HolderSide:
         fields, path, _ = self.descend(place, values)
         return fields, path, self.writer.let("case", Get("i64", _case_word(fields, path)))
 
-    def expect_case(self, fields: HolderFields, path: Path, number: Expr, values: Values) -> None:
+    def expect_case(self, fields: HolderFields, path: Path, number: Expr, values: Evaluation) -> None:
         """That a discriminator has chosen a case."""
         agrees = Compare("eq", Get("i64", _case_word(fields, path)), number)
         self.writer.expect(agrees, "union", fields.shown(path[:-1]), OTHER_CASE, line=values.line)
 
-    def appear(self, place: typed.Place, values: Values) -> None:
+    def appear(self, place: typed.Place, values: Evaluation) -> None:
         """What can be absent is there, as it was born."""
         fields, path, _ = self.descend(place, values)
         if isinstance(place.type, Struct) and isinstance(fields.find(path).slot, Span):
@@ -231,7 +220,7 @@ class HolderSide:
         else:
             fields.appear(path)
 
-    def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
+    def set_length(self, place: typed.Place, count: Expr, values: Evaluation) -> None:
         """Take room for the elements; those that are structs begin empty."""
         fields, path, _ = self.descend(place, values)
         where = fields.shown(path)
@@ -250,107 +239,15 @@ class HolderSide:
         """Whether bytes stay in the message."""
         return self.root.borrow
 
-    def borrow(self, place: typed.Place, at: Expr, size: Expr, values: Values) -> None:
+    def borrow(self, place: typed.Place, at: Expr, size: Expr, values: Evaluation) -> None:
         """Say where in the message the bytes of a field are."""
         fields, path, _ = self.descend(place, values)
         fields.put_bytes(path, at, size)
 
-    def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
+    def set_byte(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
         """One byte of a text whose length was set."""
         elements, _ = self.array(place, values)
         self.writer.emit(SetField(Place(elements.lane, add(elements.start, number)), Const("u8", value)))
-
-
-@dataclass(slots=True)
-class WireSide:
-    """The wire, as the walk has bound it."""
-
-    writer: Writer
-    root: WireFields
-
-    def number(self, place: typed.Place, values: Values) -> Expr:
-        key, indices = wire_key(place)
-        if not indices:
-            found = self.root.get(key)
-            if found is None:
-                raise NotInPlaceError(key)
-            return found
-        region, at = self.element(key, indices, values)
-        return Load(region.scalar, at, ">" if region.order == ">" else "<")
-
-    def count(self, place: typed.Place, values: Values) -> Expr:
-        del values
-        return self.root.size_of(wire_key(place)[0])
-
-    def address(self, place: typed.Place, values: Values) -> Address:
-        """Where the bytes of a string or bytes field begin."""
-        del values
-        key = (*wire_key(place)[0], EACH)
-        if key not in self.root.found.regions:
-            raise NotInPlaceError(key)
-        return Wire(self.root.found.regions[key].first)
-
-    def present(self, place: typed.Place, values: Values) -> Expr:
-        """Whether what can be absent is there; fields of which this can be said are not read in place."""
-        del values
-        raise NotInPlaceError(wire_key(place)[0])
-
-    def element(self, key: Path, indices: list[typed.Expr], values: Values) -> tuple[Region, Expr]:
-        """How the elements of an array lie, and where one of them is; it is checked to be there."""
-        if len(indices) != 1 or key not in self.root.found.regions:
-            raise NotInPlaceError(key)
-        region, array = self.root.found.regions[key], key[: key.index(EACH)]
-        number = self.writer.once(values.of(indices[0]))
-        where = Where().members(array).element(number)
-        count = self.root.size_of(array)
-        self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
-        if not isinstance(region.step, Const) and has_product(indices[0]):
-            number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
-        at = Binary("add", region.first, mul(number, region.step))
-        if not isinstance(region.step, Const):  # written down, for it follows from a product
-            self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
-        self.writer.require(WIDTH[region.scalar], where, at=at)
-        return region, at
-
-    # --- writing -------------------------------------------------------------------------------------------------------
-
-    def set_number(self, place: typed.Place, value: Expr, values: Values) -> None:
-        """Numbers outside arrays were written by the walk."""
-        key, indices = wire_key(place)
-        if indices:
-            region, at = self.element(key, indices, values)
-            self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
-
-    def is_open(self, place: typed.Place) -> bool:
-        """Whether the walk has left room for the bytes of a field, and not copied them."""
-        return (*wire_key(place)[0], EACH) in self.root.found.regions
-
-    def set_length(self, place: typed.Place, count: Expr, values: Values) -> None:
-        """The walk has asked for it."""
-
-    def set_byte(self, place: typed.Place, number: int, value: int, values: Values) -> None:
-        """One byte of a text whose size the walk has asked for."""
-        del values
-        at = add(self.root.found.regions[(*wire_key(place)[0], EACH)].first, number)
-        self.writer.require(1, self.root.where, at=at)
-        self.writer.emit(Store(at, Const("u8", value)))
-
-
-Side = HolderSide | WireSide
-
-
-def wire_key(place: typed.Place) -> tuple[Path, list[typed.Expr]]:
-    """The path of a place with its indices taken out."""
-    key: list[str] = []
-    indices: list[typed.Expr] = []
-    for step in place.steps:
-        match step:
-            case FieldStep(each):
-                key.append(each.name)
-            case IndexStep(at):
-                key.append(EACH)
-                indices.append(at)
-    return tuple(key), indices
 
 
 def presence(fields: HolderFields, path: Path, *, outer: bool = False) -> Expr | None:

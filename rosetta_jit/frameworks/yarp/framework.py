@@ -1,0 +1,16 @@
+"""YARP as a `Framework`: where its front ends, encodings and manners are found."""
+
+from __future__ import annotations
+
+from rosetta_jit.frameworks.base import Framework
+
+HERE = "rosetta_jit.frameworks.yarp"
+ENCODING = f"{HERE}.encoding:encode_type"
+
+FRAMEWORK = Framework(
+    "yarp",
+    features=f"{HERE}.features:PROBES",
+    idl={".bottle-schema": f"{HERE}.schema:parse", ".thrift": f"{HERE}.thrift:parse"},
+    manners=f"{HERE}.manners:BOTTLE",
+    encodings={"yarp": ENCODING, "yarp3": ENCODING, "yarp4": ENCODING, "yarp2012": ENCODING},
+)

@@ -1,0 +1,85 @@
+"""How expressions are evaluated, as an interface: what the parts of an expression ask of the whole, and of the side that is read.
+
+`lowering.rules.values` implements it, and calls the parts: numbers, texts, images, searches.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from contextlib import AbstractContextManager
+
+    from rosetta_jit.kernel.ir import Address, Expr, Local, Scalar
+    from rosetta_jit.language import typed
+    from rosetta_jit.lowering.writer import Where, Writer
+
+
+class Source(Protocol):
+    """The side that rules read."""
+
+    def forgetting(self) -> AbstractContextManager[None]:
+        """Around statements that may not run: what is looked up within them is not known behind them."""
+        ...
+
+    def number(self, place: typed.Place, values: Evaluation) -> Expr:
+        """The number at a place."""
+        ...
+
+    def count(self, place: typed.Place, values: Evaluation) -> Expr:
+        """The number of elements at a place, int64."""
+        ...
+
+    def address(self, place: typed.Place, values: Evaluation) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        ...
+
+    def present(self, place: typed.Place, values: Evaluation) -> Expr:
+        """Whether what can be absent is there."""
+        ...
+
+
+class Evaluation(Protocol):
+    """Evaluates expressions of one rule: ``line`` is that of the mapping, ``where`` the field of the message, for errors."""
+
+    @property
+    def writer(self) -> Writer:
+        """Where statements go."""
+        ...
+
+    @property
+    def source(self) -> Source:
+        """The side that is read."""
+        ...
+
+    @property
+    def variables(self) -> Mapping[str, Expr]:
+        """The loop variables around."""
+        ...
+
+    @property
+    def where(self) -> Where: ...
+
+    @property
+    def line(self) -> str: ...
+
+    def of(self, value: typed.Expr) -> Expr:
+        """The kernel expression of a number."""
+        ...
+
+    def in_range(self, value: Local, target: Scalar) -> None:
+        """Refuse the message where a number is none of a type."""
+        ...
+
+    def reject(self, reason: str, pieces: tuple[typed.Expr, ...] = (), *, when: Expr | None = None) -> None:
+        """Refuse the message, always or where something holds."""
+        ...
+
+    def switch(self, listed: typed.Listed, use: Callable[[typed.Expr], None]) -> None:
+        """Do something with the item of a list that an index chooses."""
+        ...
+
+    def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Evaluation:
+        """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
+        ...

@@ -1,0 +1,131 @@
+"""The wire as a side of a mapping, while its rules run: its fields where the walk found them, or laid them out.
+
+It can be read (`lowering.evaluation.Source`) and be written; which one it is depends on the direction alone.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Load, Store, Wire
+from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.language import typed
+from rosetta_jit.language.typed import FieldStep, IndexStep
+from rosetta_jit.lowering.arithmetic import inside
+from rosetta_jit.lowering.codec.fields import converted
+from rosetta_jit.lowering.codec.wire_fields import EACH, NotInPlaceError
+from rosetta_jit.lowering.texts.views import between
+from rosetta_jit.lowering.writer import Where
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.lowering.codec.wire_fields import Region, WireFields
+    from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.lowering.writer import Writer
+    from rosetta_jit.wire.codec import Path
+
+
+@dataclass(slots=True)
+class WireSide:
+    """The wire, as the walk has bound it."""
+
+    writer: Writer
+    root: WireFields
+
+    def forgetting(self) -> AbstractContextManager[None]:
+        return nullcontext()
+
+    def number(self, place: typed.Place, values: Evaluation) -> Expr:
+        key, indices = wire_key(place)
+        if not indices:
+            found = self.root.get(key)
+            if found is None:
+                raise NotInPlaceError(key)
+            return found
+        region, at = self.element(key, indices, values)
+        return Load(region.scalar, at, ">" if region.order == ">" else "<")
+
+    def count(self, place: typed.Place, values: Evaluation) -> Expr:
+        del values
+        return self.root.size_of(wire_key(place)[0])
+
+    def address(self, place: typed.Place, values: Evaluation) -> Address:
+        """Where the bytes of a string or bytes field begin."""
+        del values
+        key = (*wire_key(place)[0], EACH)
+        if key not in self.root.found.regions:
+            raise NotInPlaceError(key)
+        return Wire(self.root.found.regions[key].first)
+
+    def present(self, place: typed.Place, values: Evaluation) -> Expr:
+        """Whether what can be absent is there; fields of which this can be said are not read in place."""
+        del values
+        raise NotInPlaceError(wire_key(place)[0])
+
+    def element(self, key: Path, indices: list[typed.Expr], values: Evaluation) -> tuple[Region, Expr]:
+        """How the elements of an array lie, and where one of them is; it is checked to be there."""
+        if len(indices) != 1 or key not in self.root.found.regions:
+            raise NotInPlaceError(key)
+        region, array = self.root.found.regions[key], key[: key.index(EACH)]
+        number = self.writer.once(values.of(indices[0]))
+        where = Where().members(array).element(number)
+        count = self.root.size_of(array)
+        self.writer.expect(inside(number, count), "index", where, "no such element", line=values.line)
+        if not isinstance(region.step, Const) and has_product(indices[0]):
+            number = self.writer.let("element", between(number, index(0), Binary("sub", count, index(1))))
+        at = Binary("add", region.first, mul(number, region.step))
+        if not isinstance(region.step, Const):  # written down, for it follows from a product
+            self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
+        self.writer.require(WIDTH[region.scalar], where, at=at)
+        return region, at
+
+    # --- writing -------------------------------------------------------------------------------------------------------
+
+    def set_number(self, place: typed.Place, value: Expr, values: Evaluation) -> None:
+        """Numbers outside arrays were written by the walk."""
+        key, indices = wire_key(place)
+        if indices:
+            region, at = self.element(key, indices, values)
+            self.writer.emit(Store(at, converted(value, region.scalar), ">" if region.order == ">" else "<"))
+
+    def is_open(self, place: typed.Place) -> bool:
+        """Whether the walk has left room for the bytes of a field, and not copied them."""
+        return (*wire_key(place)[0], EACH) in self.root.found.regions
+
+    def set_length(self, place: typed.Place, count: Expr, values: Evaluation) -> None:
+        """The walk has asked for it."""
+
+    def set_byte(self, place: typed.Place, number: int, value: int, values: Evaluation) -> None:
+        """One byte of a text whose size the walk has asked for."""
+        del values
+        at = add(self.root.found.regions[(*wire_key(place)[0], EACH)].first, number)
+        self.writer.require(1, self.root.where, at=at)
+        self.writer.emit(Store(at, Const("u8", value)))
+
+
+def wire_key(place: typed.Place) -> tuple[Path, list[typed.Expr]]:
+    """The path of a place with its indices taken out."""
+    key: list[str] = []
+    indices: list[typed.Expr] = []
+    for step in place.steps:
+        match step:
+            case FieldStep(each):
+                key.append(each.name)
+            case IndexStep(at):
+                key.append(EACH)
+                indices.append(at)
+    return tuple(key), indices
+
+
+def has_product(number: typed.Expr) -> bool:
+    """Whether an index multiplies what is not known: one more factor, and the proof sees no bound of the product."""
+    match number:
+        case typed.Binary("*", left, right) if not isinstance(left, typed.Const) and not isinstance(right, typed.Const):
+            return True
+        case typed.Binary(_, left, right):
+            return has_product(left) or has_product(right)
+        case typed.Unary(_, operand) | typed.Convert(operand, _, _):
+            return has_product(operand)
+        case _:
+            return False
