@@ -13,6 +13,8 @@ from rosetta_jit.frameworks.protobuf.manners import ProtobufMessage
 from rosetta_jit.frameworks.ros1.manners import RosMessage
 from rosetta_jit.frameworks.ros2.manners import Ros2Message
 from rosetta_jit.frameworks.yarp.manners import BottleMessage
+from rosetta_jit.logs.channel import Channel
+from rosetta_jit.logs.log import Log
 from rosetta_jit.runtime.columns import Ragged
 from rosetta_jit.startup.cached import cached_property
 
@@ -28,6 +30,7 @@ line is described by `rosetta-jit --help`.
 CHAPTERS = {
     "Programs": (rj.Decoder, rj.Encoder, Options, rj.check, rj.infer),
     "Messages": (rj.Holder, rj.Batch, Ragged),
+    "Logs": (rj.open, Log, Channel),
     "What holders of a framework have besides": (ProtobufMessage, RosMessage, Ros2Message, LcmMessage, Structure, BottleMessage),
     "Errors": tuple(
         found for found in (getattr(rj, name) for name in rj.__all__) if isinstance(found, type) and issubclass(found, Exception)

@@ -233,9 +233,13 @@ def is_for_types(node):
 
 TOGETHER = [
     {"model.expr", "model.types"},
-    {"runtime.holder.access", "runtime.holder.message"},
-    {"runtime.holder.classes", "runtime.holder.family"},
+    {"runtime.holder.access", "runtime.holder.message", "runtime.holder.undo"},
+    {"runtime.batch", "runtime.holder", "runtime.looks.described", "runtime.looks.page"}
+    | {f"runtime.holder.{name}" for name in ("classes", "family", "serialising")}
+    | {f"runtime.holder.objects.{name}" for name in ("foreign", "giving", "reading", "source", "taking")},
     {f"kernel.proof.{name}" for name in ("obligations", "paths", "record", "scope", "symbolic")},
+    {"logs.base", "logs.table"},
+    {"logs.channel", "logs.log", "logs.tables"},
 ]
 """Modules that name each other's types: a type may have a length that is an expression, and a parameter in an expression has a type.
 There shall be no more of them."""

@@ -254,7 +254,7 @@ def _many(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnErr
 
 def _decoder(log: Log, connection: Connection, target: str | None, options: Options) -> Decoder:
     from rosetta_jit.api.programs import Decoder
-    from rosetta_jit.frameworks.base import installed
+    from rosetta_jit.frameworks.installed import installed
 
     encodings = {name for framework in installed().values() for name in framework.encodings}
     chosen = dict[str, Any](options)
