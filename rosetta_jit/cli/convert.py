@@ -44,16 +44,36 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code 1 if something is wrong with the log, or if messages were left out."""
+    """Exit code 1 if something is wrong with the log, or if messages were left out; 2 if options do not go together."""
     from rosetta_jit.logs.converting import TABLES
 
     output = Path(arguments.output)
+    misplaced = _misplaced(arguments, of_tables=output.suffix not in TABLES)
+    if misplaced:
+        kind = "a table" if output.suffix in TABLES else "a log, whose messages are not decoded"
+        print(f"error: {', '.join(misplaced)} cannot be used: {output.name} is {kind}", file=sys.stderr)
+        return 2
     with log_of(arguments) as log:
         if output.suffix in TABLES:
             topic = one_topic(log, topics_of(arguments))
             target = target_of(arguments)
             return _table(log, log[topic] if target is None else log[topic, target], output, arguments)
         return _log(log, output, arguments)
+
+
+def _misplaced(arguments: argparse.Namespace, *, of_tables: bool) -> list[str]:
+    """The options that were given and do nothing: those that tables alone have, or those that logs alone have."""
+    if not of_tables:
+        return ["--to"] if arguments.to else []
+    given = {
+        "--mapping": arguments.mapping,
+        "--type": arguments.type,
+        "--columns": arguments.columns,
+        "--flatten": arguments.flatten,
+        "--header-time": arguments.header_time,
+        "--on-error": arguments.on_error != "stop",
+    }
+    return [option for option, value in given.items() if value]
 
 
 def _table(log: Log, channel: Channel, output: Path, arguments: argparse.Namespace) -> int:

@@ -13,6 +13,7 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import THREAD
 from rosetta_jit.runtime.lanes import roomier
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -46,19 +47,28 @@ class DecoderBase(Program):
     def _start(self, loaded: Loaded) -> None:
         self._bind(loaded, self._call_slowly)
 
-    def into(self, message: Buffer, holder: Any) -> Any:
-        """Decode into a holder of one's own, or into an object of another class whose attributes are called as the fields; returns it.
+    if TYPE_CHECKING:  # for people and type checkers it is a method
 
-        Raises
-        ------
-        DecodeError
-            The message is not what the schema promises; a holder is invalid until it is filled again, an object is as it was.
-        ValuesError
-            The object lacks an attribute, or no class is known for a message in it (see `to`). It has some of the values then.
-        TypeError, BufferError
-            The message has no bytes, or the holder is of another type.
-        """
-        return self(message, holder)
+        def into(self, message: Buffer, holder: Any) -> Any: ...
+
+    else:
+
+        @cached_property
+        def into(self):
+            """``into(message, holder)`` decodes into a holder of one's own, or into an object of another class by its attributes.
+
+            It returns what it filled, and is the same as `builtin`: it costs no more than a call of the decoder.
+
+            Raises
+            ------
+            DecodeError
+                The message is not what the schema promises; a holder is invalid until it is filled again, an object is as it was.
+            ValuesError
+                The object lacks an attribute, or no class is known for a message in it (see `to`). It has some of the values then.
+            TypeError, BufferError
+                The message has no bytes, or the holder is of another type.
+            """
+            return self.builtin
 
     def to(self, message: Buffer, object_type: type[_Object], *, types: Mapping[str, type] | None = None) -> _Object:
         """Decode into a new object of a class: a dataclass, or a framework's own.

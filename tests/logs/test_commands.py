@@ -84,6 +84,16 @@ def test_a_table_is_of_one_topic(command):
     assert "did you mean `/a`" in command("convert", "a.bag", "--topic", "a", "-o", "b.parquet", code=1).err
 
 
+@pytest.mark.parametrize(
+    ("output", "options"),
+    [("out.mcap", ["--mapping", "ros1/imu.mapping"]), ("out.bag", ["--flatten", "--on-error", "skip"]), ("out.csv", ["--to", "ros2"])],
+)
+def test_options_that_would_do_nothing_are_refused(command, folder, output, options):
+    err = command("convert", "a.bag", "-o", output, *options, code=2).err
+    assert all(option in err for option in options if option.startswith("--"))
+    assert not (folder / output).exists()
+
+
 def test_bag_to_mcap_and_back(command, folder):
     """What we write, the real libraries read; and so do we."""
     command("convert", "a.bag", "-o", "from_bag.mcap")
