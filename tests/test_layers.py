@@ -238,7 +238,6 @@ TOGETHER = [
     | {f"runtime.holder.{name}" for name in ("classes", "family", "serialising")}
     | {f"runtime.holder.objects.{name}" for name in ("foreign", "giving", "reading", "source", "taking")},
     {f"kernel.proof.{name}" for name in ("obligations", "paths", "record", "scope", "symbolic")},
-    {"logs.base", "logs.table"},
     {"logs.channel", "logs.log", "logs.tables"},
 ]
 """Modules that name each other's types: a type may have a length that is an expression, and a parameter in an expression has a type.

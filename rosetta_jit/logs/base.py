@@ -7,8 +7,7 @@ block = bytes, and a row a message: its channel, its times, where it lies
 from __future__ import annotations
 
 from dataclasses import field
-from functools import cache
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
     from rosetta_jit.logs.walking import Rows
-
-GROUP = "rosetta_jit.logs"
-"""The entry-point group in which packages offer formats of their own: a `Format` each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,14 +155,3 @@ class Format:
         """What opens it, imported when it is needed."""
         module, _, name = self.open.partition(":")
         return cast("Open", getattr(imported(module), name))
-
-
-@cache
-def formats() -> Mapping[str, Format]:
-    """Every format by name: ours, and those of installed packages."""
-    from importlib.metadata import entry_points
-
-    from rosetta_jit.logs.table import FORMATS
-
-    offered: list[Any] = [each.load() for each in entry_points(group=GROUP)]
-    return {each.name: each for each in (*FORMATS, *offered)}

@@ -11,10 +11,11 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import render
 from rosetta_jit.errors import LogError, LogWarning
-from rosetta_jit.logs.base import Wanted, formats
+from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.channel import Channel, OnError
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
 from rosetta_jit.logs.storage import open_storage
+from rosetta_jit.logs.table import formats
 
 if TYPE_CHECKING:
     import os

@@ -1,8 +1,17 @@
-"""The formats of logs that come with rosetta_jit."""
+"""The formats of logs: those that come with rosetta_jit, and those of installed packages."""
 
 from __future__ import annotations
 
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
 from rosetta_jit.logs.base import Format
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+GROUP = "rosetta_jit.logs"
+"""The group of entry points by which packages offer formats."""
 
 _HERE = "rosetta_jit.logs"
 
@@ -18,3 +27,12 @@ FORMATS = (
     Format("delimited", (".delimited", ".pbd", ".binpb.delimited"), f"{_HERE}.delimited.reader:DelimitedReader"),
     Format("lcm", (".lcmlog",), f"{_HERE}.lcm.reader:LcmReader", bytes.fromhex("eda1da01")),
 )
+
+
+@cache
+def formats() -> Mapping[str, Format]:
+    """Every format by name."""
+    from importlib.metadata import entry_points
+
+    offered: list[Any] = [each.load() for each in entry_points(group=GROUP)]
+    return {each.name: each for each in (*FORMATS, *offered)}
