@@ -100,8 +100,9 @@ OF_PEERS = {
 }
 
 
+@pytest.mark.parametrize("what", ["encoded", "decoded"])
 @pytest.mark.parametrize("name", OF_PEERS)
-def test_objects_of_peers(name, effort, compare, record):
+def test_objects_of_peers(name, what, effort, compare, record):
     """Their objects to bytes and back, by our programs and by their own functions."""
     make, who = OF_PEERS[name]
     made = make()
@@ -111,19 +112,14 @@ def test_objects_of_peers(name, effort, compare, record):
         bytes_of = peer.encode or type(values[0]).SerializeToString
         assert [encode(each) for each in values] == list(made.messages[:KEPT])
         given = {"encode": encode, "to": decode.to, "made": type(values[0]), "theirs": bytes_of, "parse": peer.decode}
-        for what, ours, its, messages in (
-            ("encoded", "encode(m)", "theirs(m)", values),
-            ("decoded", "to(m, made)", "parse(m)", made.messages),
-        ):
-            outcome = compare(
-                OBJECTS,
-                f"{name}, {what}",
-                [
-                    contender(effort, OURS, "ours", "the peer's object", ours, messages, **given),
-                    contender(effort, peer.who, "peer", "the peer's object", its, messages, **given),
-                ],
-            )
-            record(f"{name}, {what}", outcome.ratio(OURS, peer.who), 1, f"x {who}", _detail(outcome, peer.who))
+        jobs = {"encoded": ("encode(m)", "theirs(m)", values), "decoded": ("to(m, made)", "parse(m)", made.messages)}
+        ours, its, messages = jobs[what]
+        contenders = [
+            contender(effort, OURS, "ours", "the peer's object", ours, messages, **given),
+            contender(effort, peer.who, "peer", "the peer's object", its, messages, **given),
+        ]
+        outcome = compare(OBJECTS, f"{name}, {what}", contenders)
+        record(f"{name}, {what}", outcome.ratio(OURS, peer.who), 1, f"x {who}", _detail(outcome, peer.who))
 
 
 def _peers(made, job):

@@ -58,18 +58,16 @@ def numba_tagged() -> Any:
 
 
 def numba_kernel(decoder: Any, holder: Any) -> tuple[Any, Any]:
-    """Our kernel, called through numba's dispatcher instead of our entry; and the state of a holder, which must be large enough."""
+    """Our kernel in a function of numba's, called through its dispatcher instead of our entry; and the holder that it fills."""
     import numba
-
-    from rosetta_jit.backends.numba.function import data_pointer
 
     kernel = decoder.kernel
 
     @numba.njit
-    def decode(message: Any, state: Any) -> int:
-        return kernel(data_pointer(message), 0, message.size, data_pointer(state), 0)
+    def decode(message: Any, holder: Any) -> None:
+        kernel(message, holder)
 
-    return decode, holder.lanes_.state
+    return decode, holder
 
 
 def frombuffer(message: bytes) -> Callable[[bytes], np.ndarray]:

@@ -41,7 +41,7 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
     old = max(old, 0)
     at_end = start + old == lanes.used(lane)
     if count <= old:
-        _waste_in(lanes, node, start + count, old - count)
+        _waste_in(lanes, node, start + count, old - count, whole=count == 0)
         if at_end:
             lanes.give_back(lane, start + count)
         elif count < old:
@@ -58,17 +58,26 @@ def resize(lanes: Lanes, node: Spanned, row: int, count: int) -> int:
     return start
 
 
-def _waste_in(lanes: Lanes, node: Node, start: int, rows: int) -> None:
-    """Note that what elements hold in other lanes is not referred to any more, when so many of them end."""
+def _waste_in(lanes: Lanes, node: Node, start: int, rows: int, *, whole: bool = False) -> None:
+    """Note that what elements hold in other lanes is not referred to any more, when so many of them end: ``whole``, if those are all."""
     if not rows:
         return
     match node:
+        case Items(element=Text() as text) if whole and _is_last(lanes, text, start, rows):
+            lanes.give_back(text.lane, int(lanes.row_words(text.span.lane, start, rows)[:, text.span.index].min()))
         case Items(element=element):
             _waste_of(lanes, element, start, rows)
         case Pairs(record=record) | Child(record=record):
             _waste_of(lanes, record, start, rows)
         case _:
             pass
+
+
+def _is_last(lanes: Lanes, text: Text, row: int, rows: int) -> bool:
+    """Whether the texts of these rows, none of which is empty, are all that stands in their lane from the first of them on."""
+    words = lanes.row_words(text.span.lane, row, rows)[:, text.span.index : text.span.index + 2]
+    starts, counts = words[:, 0], words[:, 1]
+    return bool((counts > 0).all()) and int(starts.min() + counts.sum()) == lanes.used(text.lane)
 
 
 def _waste_of(lanes: Lanes, node: Node, row: int, rows: int) -> None:
