@@ -151,6 +151,10 @@ def _placed(text: str, path: str, *more: str) -> str:
     return f"{text} - at {', '.join(places)}" if places else text
 
 
+class MissingPackage(RosettaError, ImportError):  # noqa: N818  the package is what is missing
+    """What was asked for takes a package that is an extra; the message says how to install it."""
+
+
 class InvalidHolder(RosettaError):  # noqa: N818  the holder is what is wrong
     """A holder was read although the last decode into it failed."""
 

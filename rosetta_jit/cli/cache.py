@@ -49,6 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _warm(arguments: argparse.Namespace) -> int:
     """Compile, show what is done meanwhile, and say at the end what took how long."""
     from rosetta_jit.api.warm import programs_of, warm
+    from rosetta_jit.runtime.cache.kernels import Cache
 
     programs = programs_of(arguments.names, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
     started, made, wrong = time.perf_counter(), 0, 0
@@ -58,7 +59,10 @@ def _warm(arguments: argparse.Namespace) -> int:
             _show(each, as_json=arguments.json, progress=f"{number}/{len(programs)}")
     if not arguments.json:
         print(f"{made - wrong} programs ready, {wrong} wrong, in {time.perf_counter() - started:.1f} s")
-    return int(bool(wrong) or not made)
+    is_kept = Cache.default().is_kept
+    if not is_kept:
+        print("error: the cache cannot keep what was compiled: see `rosetta-jit cache info`", file=sys.stderr)
+    return int(bool(wrong) or not made or not is_kept)
 
 
 def _show(warmed: Warmed, *, as_json: bool, progress: str) -> None:

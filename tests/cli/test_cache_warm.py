@@ -9,6 +9,7 @@ import pytest
 from rosetta_jit.api.programs import Decoder, Encoder
 from rosetta_jit.api.warm import programs_of, warm
 from rosetta_jit.cli import main
+from rosetta_jit.errors import CacheWarning
 
 KEY_VALUE = "ros1/key_value.mapping"
 BOOL = "std_msgs/msg/Bool"
@@ -40,6 +41,21 @@ def test_what_is_wrong_is_told_and_the_others_are_made(tmp_path, monkeypatch, ca
     out, err = capsys.readouterr()
     assert "2 programs ready, 2 wrong" in out
     assert "no file declares" in err
+
+
+def test_it_fails_where_nothing_can_be_kept(tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "open"
+    folder.mkdir()
+    folder.chmod(0o777)
+    monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(folder))
+    with pytest.warns(CacheWarning, match="can be written by others"):
+        assert main(["cache", "warm", BOOL]) == 1
+    assert "error: the cache cannot keep what was compiled" in capsys.readouterr().err
+
+
+def test_it_fails_where_the_cache_is_off(monkeypatch):
+    monkeypatch.setenv("ROSETTA_JIT_CACHE", "off")
+    assert main(["cache", "warm", BOOL]) == 1
 
 
 def test_a_writer_of_several_dialects_is_made_for_each():

@@ -5,5 +5,7 @@ Whoever imports this asks for pyarrow, which is an extra.
 
 from importlib.util import find_spec
 
+from rosetta_jit.errors import MissingPackage
+
 if find_spec("pyarrow") is None:
-    raise ImportError("tables take pyarrow: pip install 'rosetta-jit[arrow]'")
+    raise MissingPackage("tables take pyarrow: pip install 'rosetta-jit[arrow]'")

@@ -86,6 +86,11 @@ class Cache:
         """The user's cache, one object a process. ROSETTA_JIT_CACHE_DIR names another folder, ROSETTA_JIT_CACHE=off keeps nothing."""
         return _default(os.environ.get("ROSETTA_JIT_CACHE_DIR", ""), os.environ.get("ROSETTA_JIT_CACHE", ""))
 
+    @property
+    def is_kept(self) -> bool:
+        """Whether later processes find what this one has put here: there is a folder, and writing to it has not failed."""
+        return self.folder is not None and "folder" not in self._warned
+
     def get(self, name: str) -> Entry | None:
         """The program of that name, or None."""
         return self._read(name + ENTRY)
