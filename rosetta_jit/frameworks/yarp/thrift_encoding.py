@@ -157,8 +157,3 @@ class Thrift:
 def _width(unit: str) -> str:
     letter = FIXED_FORMATS[unit]
     return {"b": "i8", "h": "i16", "i": "i32", "q": "i64", "f": "f32", "d": "f64"}[letter]
-
-
-def is_thrift(type_: Type) -> bool:
-    """Whether Thrift declares a type."""
-    return isinstance(type_, Struct) and type_.option("thrift") is not None

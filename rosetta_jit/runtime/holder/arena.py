@@ -213,12 +213,6 @@ def clear(lanes: Lanes, entry: Entry, row: int) -> None:
             assert_never(presence)
 
 
-def clear_record(lanes: Lanes, record: Record, row: int) -> None:
-    """Make every field of a record absent or empty."""
-    for entry in record.entries.values():
-        clear(lanes, entry, row)
-
-
 def _release(lanes: Lanes, node: Node, row: int) -> None:
     """Give back what a node's spans hold, as far as it is known without looking at their elements."""
     match node:
