@@ -69,7 +69,7 @@ MAY_IMPORT = {
     "backends.llvm": {"backends", "kernel"},
     "backends.numba": {"backends.llvm", "kernel"},
     "backends.python": {"backends", "kernel"},
-    "backends.entry": {"backends.llvm", "backends.numba", "kernel", "runtime.code"},
+    "backends.entry": {"backends.llvm", "backends.numba", "kernel", "runtime.code", "runtime.cache"},
     "frameworks": REPORTS | {"model", "parsing", "wire", "runtime.holder", "runtime.looks"},
     "runtime": REPORTS
     | {

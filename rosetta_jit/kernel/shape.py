@@ -103,23 +103,29 @@ def are_vast(kernels: Iterable[Kernel]) -> bool:
     return sum(depth for kernel in kernels for body in kernel.bodies for _, depth in statements(body)) > VAST
 
 
-def are_straight(kernels: Iterable[Kernel]) -> bool:
-    """Whether kernels have neither loops nor what stands for loops: each statement runs once at most."""
-    every = [each for kernel in kernels for each in _every_statement(kernel)]
+def are_straight_and_compute(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels, in the first of their bodies, compute with floats, without loops and without what stands for loops."""
+    every = [each for kernel in kernels for each in _usual_statements(kernel)]
     if any(isinstance(each, For | While) for each in every):
         return False
-    parts = (part for each in every for expr in expressions_of(each) for part in subexpressions(expr))
-    return not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
+    parts = [part for each in every for expr in expressions_of(each) for part in subexpressions(expr)]
+    has_floats = any(isinstance(part, Const | Convert) and part.type in ("f32", "f64") for part in parts)
+    return has_floats and not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
 
 
-def have_short_counted_loops(kernels: Iterable[Kernel]) -> bool:
-    """Whether kernels have loops whose rounds are counted beforehand, those over elements of arrays, and little else."""
-    every = [each for kernel in kernels for each in _every_statement(kernel)]
-    return len(every) <= LONG * 4 and any(isinstance(each, For) for each in every)
+def have_loops_for_vectors(kernels: Iterable[Kernel]) -> bool:
+    """Whether kernels of moderate size have, in the first of their bodies, loops over elements that do nothing but compute and store."""
+    every = [each for kernel in kernels for each in _usual_statements(kernel)]
+    return len(every) <= LONG * 4 and any(isinstance(each, For) and _only_stores(each.body) for each in every)
 
 
-def _every_statement(kernel: Kernel) -> Iterator[Stmt]:
-    for block in (*kernel.bodies, *(routine.body for routine in kernel.routines)):
+def _only_stores(block: Block) -> bool:
+    return all(isinstance(each, Let | Store | SetField) for each in block)
+
+
+def _usual_statements(kernel: Kernel) -> Iterator[Stmt]:
+    """What runs for the usual message: all but the later bodies."""
+    for block in (kernel.bodies[0], *(routine.body for routine in kernel.routines)):
         yield from (each for each, _ in statements(block))
 
 

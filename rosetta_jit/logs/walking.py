@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from rosetta_jit.runtime.cache.kernels import Cache
-from rosetta_jit.runtime.cache.names import entry_name
+from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.code import native
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -129,12 +128,10 @@ def _function(name: str) -> Any:
 def _library() -> Library:
     """The code, from the kernel cache or compiled."""
     text = Path(__file__).with_name("walk.ll").read_text("utf-8")
-    kept, name = Cache.default(), entry_name(text)
-    entry = kept.get(name)
-    if entry is not None:
-        return native.load(entry.image, SYMBOLS)
+    return native.load(kept("walks", text, lambda: _assembled(text)), SYMBOLS)
+
+
+def _assembled(text: str) -> bytes:
     from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
 
-    image = assembled(text, SYMBOLS)
-    kept.put(name, {"entry": "walks"}, image)
-    return native.load(image, SYMBOLS)
+    return assembled(text, SYMBOLS)

@@ -41,9 +41,10 @@ MODULES = tuple(
 
 NO_PROOF = {
     "is_large",
-    "are_straight",
-    "have_short_counted_loops",
-    "_every_statement",
+    "are_straight_and_compute",
+    "have_loops_for_vectors",
+    "_usual_statements",
+    "_only_stores",
     "is_short_and_straight",
     "calls_to_host",
     "our_functions",

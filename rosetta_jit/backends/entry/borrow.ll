@@ -46,7 +46,7 @@ decode:
 run:
   call void @enter(ptr %state, i64 %epoch, i64 1)
   call void @tell(ptr %context, ptr %state)
-  %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0) #0
+  %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
   call void @leave(ptr %state, i64 %epoch, i64 1)
   %good = icmp sge i64 %result, 0
   %valid = zext i1 %good to i64
@@ -83,9 +83,4 @@ drop:
   br label %raise
 raise:
   ret ptr null
-}
-
-; Nothing precedes decoding.
-define internal i64 @prepare(ptr %state, i64 %row) alwaysinline {
-  ret i64 0
 }

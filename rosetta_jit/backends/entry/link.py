@@ -1,15 +1,19 @@
-"""From kernels to object code: link them with the entries from CPython, optimise once, emit.
+"""From kernels to object code: compile them with the entries from CPython.
 
 The object exports, beside each kernel as `kernel` (and `size`, of an encoder), what the entry's own file defines:
 
     decode, borrow    call many
     encode            call many sizes
+
+A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
+kernel into it. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are kept in the cache.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,17 +23,18 @@ from rosetta_jit.backends.entry.host_table import TABLE, table_text
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import (
-    are_straight,
+    are_straight_and_compute,
     are_vast,
     calls_to_host,
-    have_short_counted_loops,
+    have_loops_for_vectors,
     is_large,
     is_short_and_straight,
     is_told,
     our_functions,
 )
-from rosetta_jit.runtime.code.assembler import linked, make_private, run_few_passes, run_passes, target_machine
-from rosetta_jit.runtime.code.prelink import prelinked
+from rosetta_jit.runtime.cache.texts import kept
+from rosetta_jit.runtime.code.assembler import linked, make_private, object_of, run_few_passes, run_passes, shortened, target_machine
+from rosetta_jit.runtime.code.prelink import is_prelinking, prelinked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -38,13 +43,24 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel
 
-TEMPLATES: dict[EntryName, tuple[str, ...]] = {
-    "decode": ("objects.ll", "decode.ll", "many.ll"),
-    "borrow": ("objects.ll", "borrow.ll", "many.ll"),
-    "encode": ("objects.ll", "encode.ll", "many.ll"),
+USUAL: dict[EntryName, tuple[str, ...]] = {
+    "decode": ("decode.ll",),
+    "borrow": ("borrow.ll",),
+    "encode": ("usable.ll", "measured.ll", "encode.ll"),
 }
+"""The usual call."""
+
+REST: dict[EntryName, tuple[str, ...]] = {
+    "decode": ("any_decode.ll", "unmeasured.ll", "many.ll"),
+    "borrow": ("unmeasured.ll", "many.ll"),
+    "encode": ("usable.ll", "measured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
+}
+"""Whatever else is called."""
+
 FUNCTIONS = ("kernel", "size")
 """The names of a program's kernels: what decodes or encodes, and, to encode, what measures."""
+
+REST_SYMBOL = "any_call"
 
 
 def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
@@ -59,12 +75,18 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: 
     functions
         Those of the user's that the kernels call; they need numba.
     """
-    image = object_file(kernels, entry, with_numba=with_numba, functions=functions)
-    return prelinked(image) or image
+    if not is_prelinking():
+        return object_file(kernels, entry, with_numba=with_numba, functions=functions)
+    machine = target_machine(hurried=are_vast(kernels))
+    module = linked(_own_parts(kernels, entry, with_numba=with_numba, functions=functions))
+    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
+    around = _surroundings(*_surrounding_texts(kernels, entry))
+    image = prelinked(machine.emit_object(module), around)
+    return image or object_file(kernels, entry, with_numba=with_numba, functions=functions)
 
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
-    """The same as an object file, which only a linker can load."""
+    """The same as one object file, which only a linker can load."""
     machine = target_machine(hurried=are_vast(kernels))
     return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
 
@@ -88,27 +110,38 @@ def optimised(
     with_numba: bool,
     functions: Sequence[UserFunction] = (),
 ) -> binding.ModuleRef:
-    """The program's module after one run of LLVM's passes.
-
-    Kernels leave little for LLVM to find, and the passes of O1 find it. Those of O3, which take twice as long, are for loops over elements;
-    making vectors of statements that stand side by side, which looks at all values of loops in one another, for kernels without loops. Vast
-    kernels get the few passes that take time in proportion to their size. docs/performance.md has the figures.
-    """
-    module = linked(_parts(kernels, entry, with_numba=with_numba, functions=functions))
-    make_private(module, (*SYMBOLS[entry], TABLE))
-    if are_vast(kernels):
-        run_few_passes(module, machine)
-        return module
-    thorough = bool(functions) or have_short_counted_loops(kernels)
-    options = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
-    options.loop_vectorization, options.slp_vectorization = True, thorough or are_straight(kernels)
-    builder = binding.create_pass_builder(machine, options)
-    run_passes(builder.getModulePassManager(), module, builder)
+    """The whole program in one module, after one run of LLVM's passes."""
+    parts = _own_parts(kernels, entry, with_numba=with_numba, functions=functions)
+    module = linked((*parts, *_surrounding_texts(kernels, entry)))
+    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
     return module
 
 
-def _parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction]) -> Iterator[str]:
-    """The modules that a program is linked from, as LLVM text."""
+def _optimise(
+    module: binding.ModuleRef, kernels: Sequence[Kernel], exported: Sequence[str], machine: binding.TargetMachine, *, thorough: bool
+) -> None:
+    """Run LLVM's passes once.
+
+    Kernels leave little for LLVM to find, and a few passes find it, in time that is in proportion to the kernel. Those of O3, which take
+    five times as long, are for loops over elements that become loops over vectors; those of O1, with vectors made of statements that stand
+    side by side, for arithmetic without loops. docs/performance.md has the figures.
+    """
+    make_private(module, exported)
+    thorough = thorough or have_loops_for_vectors(kernels)
+    if are_vast(kernels) or not (thorough or are_straight_and_compute(kernels)):
+        run_few_passes(module, machine)
+        return
+    options = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
+    options.loop_vectorization = options.slp_vectorization = True
+    builder = binding.create_pass_builder(machine, options)
+    run_passes(builder.getModulePassManager(), module, builder)
+
+
+# --- parts ---------------------------------------------------------------------------------------------------------------
+
+
+def _own_parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction]) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text."""
     if with_numba and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
@@ -120,7 +153,31 @@ def _parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, fun
         yield str(compile_function(function))
     if our_functions(kernels):
         yield table_text(kernels)
-    yield _entries(kernels, entry)
+    if _is_inside(kernels):
+        yield _usual(_entry_text(USUAL[entry], kernels, inline="alwaysinline"))
+
+
+def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
+    """The modules that a program's surroundings are linked from."""
+    rest = _entry_text(REST[entry], kernels)
+    return (rest,) if _is_inside(kernels) else (_entry_text(USUAL[entry], kernels), rest)
+
+
+def _is_inside(kernels: Sequence[Kernel]) -> bool:
+    """Whether the first kernel becomes a part of the usual call."""
+    return is_short_and_straight(kernels[0])
+
+
+@cache
+def _usual(text: str) -> str:
+    """The module of the usual call with nothing left to do in it but to put a kernel there."""
+    return kept("call", text, lambda: shortened(text, SYMBOLS["encode"]).encode()).decode()
+
+
+@cache
+def _surroundings(*texts: str) -> bytes:
+    """The object file of what stands around a program's own module."""
+    return kept("entry", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
 
 
 def _emitted(kernel: Kernel, name: str) -> str:
@@ -137,13 +194,12 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
     return text, _template("numba.ll").replace("@typed", f'@"{name}"')
 
 
-def _entries(kernels: Sequence[Kernel], entry: EntryName) -> str:
-    """The entry's functions. `#0` are the attributes of the call that is to be quick."""
+def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel], *, inline: str = "") -> str:
+    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
-    templates = (*TEMPLATES[entry], told, hosted, _thread_template())
-    inline = "alwaysinline" if is_short_and_straight(kernels[0]) else ""
-    return "\n".join((*map(_template, templates), f"attributes #0 = {{ nounwind {inline} }}"))
+    texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
+    return "\n".join((*texts, f"attributes #0 = {{ nounwind {inline} }}"))
 
 
 def _thread_template() -> str:

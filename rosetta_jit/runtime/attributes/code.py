@@ -8,8 +8,7 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.runtime.cache.kernels import Cache
-from rosetta_jit.runtime.cache.names import entry_name
+from rosetta_jit.runtime.cache.texts import kept
 from rosetta_jit.runtime.callable import is_native
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.code import native
@@ -55,16 +54,14 @@ def functions() -> Mapping[str, Callable[..., Any]]:
 
 
 def _image() -> bytes:
-    kept, whole = Cache.default(), text()
-    name = entry_name(whole)
-    entry = kept.get(name)
-    if entry is not None:
-        return entry.image
+    whole = text()
+    return kept("attributes", whole, lambda: _assembled(whole))
+
+
+def _assembled(whole: str) -> bytes:
     from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
 
-    image = assembled(whole, SYMBOLS)
-    kept.put(name, {"entry": "attributes"}, image)
-    return image
+    return assembled(whole, SYMBOLS)
 
 
 def text() -> str:

@@ -61,8 +61,21 @@ def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine) ->
 
 def assembled(text: str, exported: Sequence[str]) -> bytes:
     """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes."""
+    image = object_of([text], exported)
+    return prelinked(image) or image
+
+
+def object_of(texts: Iterable[str], exported: Sequence[str]) -> bytes:
+    """The same of several modules, as one object file."""
+    machine, module = target_machine(), linked(texts)
+    make_private(module, exported)
+    run_few_passes(module, machine)
+    return machine.emit_object(module)
+
+
+def shortened(text: str, exported: Sequence[str]) -> str:
+    """A module of which a few passes have left what is exported, as text."""
     machine, module = target_machine(), linked([text])
     make_private(module, exported)
     run_few_passes(module, machine)
-    image = machine.emit_object(module)
-    return prelinked(image) or image
+    return str(module)

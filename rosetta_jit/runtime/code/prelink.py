@@ -1,4 +1,4 @@
-"""Prelink: lay out the sections of an object file once, when it is compiled, so that no later process needs a linker for it.
+"""Prelink: lay out the sections of object files once, when they are compiled, so that no later process needs a linker for them.
 
     code    executable sections, read-only ones, a jump for each function of the process that is called, the slots
     data    what is written
@@ -8,6 +8,7 @@ What is not known here is left to a linker: other processors and systems, kinds 
 
 from __future__ import annotations
 
+import os
 import struct
 import sys
 from typing import TYPE_CHECKING
@@ -18,9 +19,12 @@ from rosetta_jit.runtime.code.prelinked import PAGE, Prelinked, data_offset, to_
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from rosetta_jit.runtime.code.object_file import ObjectFile, Section, Symbol
+
+    _Key = tuple[int, int]
+    """A section: the number of its file, and its number there."""
 
 # System V ABI, AMD64 supplement, 4.4.1: all of them 32 bits, relative to the place itself.
 _RELATIVE, _CALL = 2, 4
@@ -49,48 +53,70 @@ class _Tables:
         return self.slots + 8 * self.wants.index(name)
 
 
-def prelinked(image: bytes) -> bytes | None:
-    """An object file as prelinked code; None where that cannot be."""
-    if sys.platform != "linux" or not image.startswith(object_file.MAGIC):
+def is_prelinking() -> bool:
+    """Whether code for this machine is prelinked."""
+    return sys.platform == "linux" and os.uname().machine == "x86_64"
+
+
+def prelinked(*images: bytes) -> bytes | None:
+    """Object files as one piece of prelinked code, in which each may call functions of the others; None where that cannot be."""
+    if sys.platform != "linux" or not all(image.startswith(object_file.MAGIC) for image in images):
         return None
-    file = object_file.read(image)
-    if file.machine != X86_64:
+    files = [object_file.read(image) for image in images]
+    if any(file.machine != X86_64 for file in files):
         return None
     try:
-        return to_bytes(_laid_out(file))
+        return to_bytes(_laid_out(files))
     except _UnknownError:
         return None
 
 
-def _laid_out(file: ObjectFile) -> Prelinked:
-    sections = _in_memory(file)
-    relocations = [(each, file.symbols[each.symbol]) for each in file.relocations if each.section in sections]
+def _laid_out(files: Sequence[ObjectFile]) -> Prelinked:
+    sections = _in_memory(files)
     code, data = bytearray(), bytearray()
-    places = _append(code, 0, {number: each for number, each in sections.items() if not each.flags & WRITABLE})
-    tables = _append_tables(code, tuple(dict.fromkeys(symbol.name for _, symbol in relocations if symbol.section == UNDEFINED)))
-    places |= _append(data, data_offset(code), {number: each for number, each in sections.items() if each.flags & WRITABLE})
-    for relocation, symbol in relocations:
-        place = places[relocation.section] + relocation.offset
+    places = _append(code, 0, {key: each for key, each in sections.items() if not each.flags & WRITABLE})
+    given = {each.name: (number, each) for number, file in enumerate(files) for each in file.symbols if _is_given(each)}
+    relocations = [
+        ((number, each.section), each, *_definition(number, file.symbols[each.symbol], given))
+        for number, file in enumerate(files)
+        for each in file.relocations
+        if (number, each.section) in sections
+    ]
+    tables = _append_tables(code, tuple(dict.fromkeys(symbol.name for *_, symbol in relocations if symbol.section == UNDEFINED)))
+    places |= _append(data, data_offset(code), {key: each for key, each in sections.items() if each.flags & WRITABLE})
+    for key, relocation, number, symbol in relocations:
+        place = places[key] + relocation.offset
         if place >= len(code):
             raise _UnknownError  # an address among the data: it depends on where they lie
-        struct.pack_into("<i", code, place, _target(relocation.kind, symbol, places, tables) + relocation.addend - place)
-    gives = {each.name: _place(each, places) for each in file.symbols if each.is_global and each.section != UNDEFINED}
+        struct.pack_into("<i", code, place, _target(relocation.kind, number, symbol, places, tables) + relocation.addend - place)
+    gives = {name: _place(number, symbol, places) for name, (number, symbol) in given.items()}
     return Prelinked(bytes(code), bytes(data), tables.slots, tables.wants, gives)
 
 
-def _in_memory(file: ObjectFile) -> dict[int, Section]:
-    """The sections that a program has when it runs, by their numbers, executable ones first. Nothing unwinds our stacks."""
-    kept = {number: each for number, each in enumerate(file.sections) if each.flags & IN_MEMORY and each.kind not in (NOTE, UNWIND)}
+def _is_given(symbol: Symbol) -> bool:
+    """Whether other files may use what a file defines."""
+    return symbol.is_global and symbol.section != UNDEFINED
+
+
+def _definition(file: int, symbol: Symbol, given: Mapping[str, tuple[int, Symbol]]) -> tuple[int, Symbol]:
+    """What a file means by a symbol: its own, another file's, or what the process must give; with the number of the file that has it."""
+    return given.get(symbol.name, (file, symbol)) if symbol.section == UNDEFINED else (file, symbol)
+
+
+def _in_memory(files: Sequence[ObjectFile]) -> dict[_Key, Section]:
+    """The sections that a program has when it runs, executable ones first. Nothing unwinds our stacks."""
+    every = {(number, index): each for number, file in enumerate(files) for index, each in enumerate(file.sections)}
+    kept = {key: each for key, each in every.items() if each.flags & IN_MEMORY and each.kind not in (NOTE, UNWIND)}
     if any(each.flags & THREAD_LOCAL or each.alignment > PAGE for each in kept.values()):
         raise _UnknownError
     return dict(sorted(kept.items(), key=lambda item: not item[1].flags & EXECUTABLE))
 
 
-def _append(memory: bytearray, begin: int, sections: Mapping[int, Section]) -> dict[int, int]:
+def _append(memory: bytearray, begin: int, sections: Mapping[_Key, Section]) -> dict[_Key, int]:
     """Append sections to memory that begins somewhere; where each of them lies."""
-    places: dict[int, int] = {}
-    for number, section in sections.items():
-        places[number] = begin + _aligned(memory, section.alignment)
+    places: dict[_Key, int] = {}
+    for key, section in sections.items():
+        places[key] = begin + _aligned(memory, section.alignment)
         memory += section.content.ljust(section.size, b"\0")
     return places
 
@@ -111,11 +137,11 @@ def _aligned(memory: bytearray, alignment: int) -> int:
     return len(memory)
 
 
-def _target(kind: int, symbol: Symbol, places: Mapping[int, int], tables: _Tables) -> int:
-    """What a place refers to: a symbol of the file's own, or the jump or the slot of one of the process's."""
+def _target(kind: int, file: int, symbol: Symbol, places: Mapping[_Key, int], tables: _Tables) -> int:
+    """What a place refers to: a symbol of the files' own, or the jump or the slot of one of the process's."""
     is_own = symbol.section != UNDEFINED
     if is_own and kind in (_RELATIVE, _CALL):
-        return _place(symbol, places)
+        return _place(file, symbol, places)
     if not is_own and kind == _CALL:
         return tables.jump(symbol.name)
     if not is_own and kind in _SLOTS:
@@ -123,8 +149,8 @@ def _target(kind: int, symbol: Symbol, places: Mapping[int, int], tables: _Table
     raise _UnknownError
 
 
-def _place(symbol: Symbol, places: Mapping[int, int]) -> int:
-    """Where a symbol of the file's own lies."""
-    if symbol.section not in places:
+def _place(file: int, symbol: Symbol, places: Mapping[_Key, int]) -> int:
+    """Where a symbol of a file lies."""
+    if (file, symbol.section) not in places:
         raise _UnknownError  # a number and no place, or something that object files share
-    return places[symbol.section] + symbol.value
+    return places[file, symbol.section] + symbol.value

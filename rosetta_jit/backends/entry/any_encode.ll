@@ -1,0 +1,73 @@
+; encode(holder, buffer, offset) -> the offset behind what was written; whatever else is left to the slow path.
+define ptr @any_call(ptr %self, ptr %args, i64 %nargsf, ptr %names) noinline {
+  %view = alloca [80 x i8], align 8
+  %context = call ptr @context(ptr %self)
+  %count = call i64 @positional(i64 %nargsf, ptr %names)
+  %three = icmp eq i64 %count, 3
+  br i1 %three, label %holder, label %slow, !prof !0
+holder:
+  %holder.object = load ptr, ptr %args
+  %state = call ptr @state_of(ptr %context, ptr %holder.object)
+  %mine = icmp ne ptr %state, null
+  br i1 %mine, label %into, label %slow, !prof !0
+into:
+  %offset.at = getelementptr ptr, ptr %args, i64 2
+  %offset.object = load ptr, ptr %offset.at
+  %offset = call i64 @PyLong_AsSsize_t(ptr %offset.object)
+  %positive = icmp sge i64 %offset, 0
+  br i1 %positive, label %target, label %negative, !prof !0
+negative:
+  %error = call ptr @PyErr_Occurred()
+  %clean = icmp eq ptr %error, null
+  br i1 %clean, label %slow, label %raise
+target:
+  %target.at = getelementptr ptr, ptr %args, i64 1
+  %target.object = load ptr, ptr %target.at
+  ; PyBUF_WRITABLE
+  %has = call i1 @open(ptr %target.object, ptr %view, i32 1)
+  br i1 %has, label %opened, label %raise, !prof !0
+opened:
+  %room = load ptr, ptr %view
+  %room.size.at = getelementptr i8, ptr %view, i64 16
+  %room.size = load i64, ptr %room.size.at
+  %inside = icmp sle i64 %offset, %room.size
+  ; looked at here: to open a buffer may run any code
+  %into.epoch = call i64 @epoch(ptr %state)
+  %into.usable = call i1 @is_usable(ptr %state, i64 %into.epoch)
+  %fits = and i1 %inside, %into.usable
+  br i1 %fits, label %prepare, label %close, !prof !0
+prepare:
+  ; though the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
+  call void @enter(ptr %state, i64 %into.epoch, i64 0)
+  call void @tell(ptr %context, ptr %state)
+  %into.size = call i64 @prepare(ptr %state, i64 0)
+  %prepared = icmp sge i64 %into.size, 0
+  br i1 %prepared, label %fill, label %leave, !prof !0
+fill:
+  %filled.end = call i64 @kernel(ptr %room, i64 %offset, i64 %room.size, ptr %state, i64 0)
+  br label %leave
+leave:
+  %left = phi i64 [ %into.size, %prepare ], [ %filled.end, %fill ]
+  call void @leave(ptr %state, i64 %into.epoch, i64 0)
+  br label %close
+close:
+  %end = phi i64 [ 0, %opened ], [ %left, %leave ]
+  call void @close(ptr %target.object, ptr %view)
+  br i1 %fits, label %judge, label %slow, !prof !0
+judge:
+  %filled = icmp sge i64 %end, 0
+  br i1 %filled, label %position, label %failed, !prof !0
+position:
+  %end.object = call ptr @PyLong_FromSsize_t(i64 %end)
+  ret ptr %end.object
+
+failed:
+  call void @untell(ptr %context, ptr %state)
+  call void @note(i64 %end, ptr %state)
+  br label %slow
+slow:
+  %answer = call ptr @slow(ptr %context, ptr %args, i64 %nargsf, ptr %names)
+  ret ptr %answer
+raise:
+  ret ptr null
+}

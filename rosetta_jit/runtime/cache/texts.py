@@ -1,0 +1,22 @@
+"""Code that is written by hand, as LLVM text: compiled once a machine, then found in the cache."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.runtime.cache.kernels import Cache
+from rosetta_jit.runtime.cache.names import entry_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def kept(kind: str, text: str, compiled: Callable[[], bytes]) -> bytes:
+    """What a text compiles to: from the cache, or made now and put there. ``kind`` says what it is to people who look at the cache."""
+    cache, name = Cache.default(), entry_name(text)
+    entry = cache.get(name)
+    if entry is not None:
+        return entry.image
+    image = compiled()
+    cache.put(name, {"entry": kind}, image)
+    return image
