@@ -76,7 +76,7 @@ $(BIN)/python:
 
 yarp: $(YARP)/cmake/.built ## build the real YARP out of PyPI for tests and bench (minutes; needs a C++ compiler, CMake, and Debian's ycm-cmake-modules and libace-dev)
 
-# A source distribution of 2021: newer compilers want headers that it forgets. Its libraries are enough, and are used where they are built.
+# A source distribution of 2021: newer compilers want headers that it forgets. Its libraries and two programs (`yarp`, `yarpserver`) are enough, and are used where they are built.
 YARP_RELEASE := yarp_middleware-3.5.0
 YARP_HEADERS := utility cstdint limits memory iterator sstream functional mutex algorithm string
 YARP_WITHOUT := GUIS TESTS BINDINGS EXAMPLES libYARP_math CARRIER_PLUGINS DEVICE_PLUGINS PORTMONITOR_PLUGINS
@@ -85,7 +85,7 @@ $(YARP)/cmake/.built: | $(BIN)/python
 	tar -xzf $(YARP)/$(YARP_RELEASE).tar.gz -C $(YARP)
 	cmake -S $(YARP)/$(YARP_RELEASE) -B $(YARP)/cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$(YARP_HEADERS:%=-include %)" \
 		$(YARP_WITHOUT:%=-DYARP_COMPILE_%=OFF) > $(YARP)/configure.log 2>&1
-	cmake --build $(YARP)/cmake --parallel 2 --target YARP_os YARP_sig YARP_init YARP_wire_rep_utils
+	cmake --build $(YARP)/cmake --parallel 2 --target YARP_os YARP_sig YARP_init YARP_wire_rep_utils yarp yarpserver
 	touch $@
 
 native: $(VENV)/.bench ## build the native peers: YARP or the model of it, and the C++ of each framework that is installed

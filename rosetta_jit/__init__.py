@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import (
+    AddressError,
     CacheWarning,
     DecodeError,
     EncodeError,
@@ -26,6 +27,7 @@ from rosetta_jit.errors import (
     ReportError,
     RosettaError,
     SchemaError,
+    TransportError,
 )
 
 if TYPE_CHECKING:
@@ -40,10 +42,12 @@ if TYPE_CHECKING:
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
+    from rosetta_jit.transports.opening import call, publish, serve, subscribe
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "AddressError",
     "Batch",
     "CacheWarning",
     "DecodeError",
@@ -62,9 +66,14 @@ __all__ = [
     "ReportError",
     "RosettaError",
     "SchemaError",
+    "TransportError",
+    "call",
     "check",
     "infer",
     "open",
+    "publish",
+    "serve",
+    "subscribe",
 ]
 
 _LAZY = {
@@ -73,6 +82,10 @@ _LAZY = {
     "Batch": "rosetta_jit.runtime.batch",
     "Holder": "rosetta_jit.runtime.holder",
     "Log": "rosetta_jit.logs.log",
+    "call": "rosetta_jit.transports.opening",
+    "publish": "rosetta_jit.transports.opening",
+    "serve": "rosetta_jit.transports.opening",
+    "subscribe": "rosetta_jit.transports.opening",
 }
 """What needs numpy is imported when it is first used, so that `rosetta-jit --help` answers at once."""
 

@@ -5,11 +5,13 @@ RosettaError
         SchemaError         in an IDL file or a wire schema
         MappingError        in a mapping
         LogError            in a log that cannot be read at all
+        AddressError        in the address of a transport
     MessageError        what is wrong with one message: kind and field path
         DecodeError         bytes that are not what the schema promises; with byte offset
         EncodeError         a holder whose values the wire cannot carry
     ValuesError         plain values that a holder's type cannot take; with field path
     InvalidHolder       a holder that was read although the last decode into it failed
+    TransportError      a peer or a connection that fails; with kind and address
     InUse               a holder or batch that another thread uses at the same time
 
 Errors of the caller (an object of the wrong type, a read-only output) are Python's own TypeError and BufferError.
@@ -65,6 +67,48 @@ class MappingError(ReportError):
 
 class LogError(ReportError):
     """A log that cannot be read, or asks for what is not there."""
+
+
+class AddressError(ReportError):
+    """An address of a transport, or an option behind it, that cannot be used."""
+
+
+Failure = Literal[
+    "unreachable",  # nothing answers at the address
+    "taken",  # something else listens there, or has the name
+    "unknown",  # nobody has the name
+    "timeout",  # no answer in time
+    "closed",  # the connection is gone, or was closed here
+    "protocol",  # bytes that the protocol does not have there
+    "type",  # the peer has another type, or another md5 sum
+    "too large",  # a message above `max_message`
+    "refused",  # the peer says no
+]
+
+
+class TransportError(RosettaError):
+    """A peer or a connection that fails.
+
+    Attributes
+    ----------
+    kind : str
+        What happened, one word of `Failure`.
+    address : str
+        Which channel or peer it is about.
+    detail : str
+        One sentence for a person.
+    """
+
+    def __init__(self, kind: Failure, address: str, detail: str) -> None:
+        from rosetta_jit.terminal import printable
+
+        self.kind: Failure = kind
+        self.address = address
+        self.detail = detail
+        super().__init__(printable(f"{kind}: {detail} - {address}"))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.address, self.detail)
 
 
 class MessageError(RosettaError, ValueError):

@@ -17,6 +17,7 @@ from rosetta_jit.logs.channel import Channel
 from rosetta_jit.logs.log import Log
 from rosetta_jit.runtime.columns import Ragged
 from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.transports.base import Caller, Message, Server, Sink, Source
 
 HEAD = """\
 # API reference
@@ -31,6 +32,7 @@ CHAPTERS = {
     "Programs": (rj.Decoder, rj.Encoder, Options, rj.check, rj.infer),
     "Messages": (rj.Holder, rj.Batch, Ragged),
     "Logs": (rj.open, Log, Channel),
+    "Transports": (rj.subscribe, rj.publish, rj.call, rj.serve, Message, Source, Sink, Caller, Server),
     "What holders of a framework have besides": (ProtobufMessage, RosMessage, Ros2Message, LcmMessage, Structure, BottleMessage),
     "Errors": tuple(
         found for found in (getattr(rj, name) for name in rj.__all__) if isinstance(found, type) and issubclass(found, Exception)

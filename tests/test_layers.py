@@ -29,7 +29,20 @@ API = {"api", "api.options", "api.cacheable"}
 ANYTHING = (
     COMPILER
     | API
-    | {"in_numba", "stubs", "logs", "generate", "pipeline", "pipeline.request", "file_errors", "recording", "explain", "demo", ""}
+    | {
+        "in_numba",
+        "stubs",
+        "logs",
+        "generate",
+        "pipeline",
+        "pipeline.request",
+        "file_errors",
+        "recording",
+        "explain",
+        "demo",
+        "transports",
+        "",
+    }
 )
 
 MAY_IMPORT = {
@@ -38,7 +51,7 @@ MAY_IMPORT = {
     "terminal": set(),
     "file_errors": set(),
     "diagnostics": {"source", "terminal"},
-    "errors": {"diagnostics"},
+    "errors": {"diagnostics", "terminal"},
     "catalogue": {"source", "diagnostics", "model"},
     "recording": REPORTS | {"file_errors"},
     "model": REPORTS,
@@ -107,6 +120,7 @@ MAY_IMPORT = {
         "pipeline",
         "pipeline.request",
     },
+    "transports": REPORTS,
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,
@@ -207,6 +221,18 @@ def test_no_framework_knows_another():
         for target, _ in imported(path)
         if target.startswith("frameworks.") and target.count(".") > 1 and target.split(".")[1] != module.split(".")[1]
         if module.split(".")[1] not in shared.get(target.split(".")[1], set())
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_transports_know_no_compiler_and_no_other_transport():
+    """A transport moves bytes. What several share lies beside their folders; extras are imported by the folder of their transport."""
+    wrong = [
+        f"{module} imports {target}"
+        for module, path in modules().items()
+        if module.startswith("transports.") and module.count(".") > 1
+        for target, _ in imported(path)
+        if target.startswith("transports.") and target.count(".") > 1 and target.split(".")[1] != module.split(".")[1]
     ]
     assert not wrong, "\n".join(wrong)
 

@@ -1,0 +1,57 @@
+"""What can be wrong with the address of a transport, and with the options behind it."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosetta_jit.diagnostics import Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosetta_jit.source import Span
+
+
+def no_scheme(span: Span, known: Iterable[str]) -> Diagnostic:
+    """Nothing says which transport is meant."""
+    names = ", ".join(f"`{each}:`" for each in known)
+    return Diagnostic(
+        "error", "no-scheme", "an address begins with its transport", span, "which transport?", help=f"put one before it: {names}"
+    )
+
+
+def unknown_scheme(span: Span, name: str, known: Iterable[str]) -> Diagnostic:
+    """No transport of that name."""
+    names = tuple(known)
+    near = get_close_matches(name, names, 1)
+    text = f"did you mean `{near[0]}:`?" if near else f"known are {', '.join(f'`{each}:`' for each in names)}"
+    return Diagnostic("error", "unknown-transport", f"there is no transport `{name}`", span, "not known", help=text)
+
+
+def cannot(span: Span, name: str, what: str) -> Diagnostic:
+    """A transport that lacks this direction."""
+    return Diagnostic("error", "transport-cannot", f"the transport `{name}` cannot {what}", span, "no such direction")
+
+
+def unknown_option(span: Span | None, name: str, known: Iterable[str]) -> Diagnostic:
+    """A word behind the `?` that the transport does not have."""
+    names = sorted(known)
+    near = get_close_matches(name, names, 1)
+    text = f"did you mean `{near[0]}`?" if near else f"known are {', '.join(f'`{each}`' for each in names)}"
+    return Diagnostic("error", "unknown-option", f"there is no option `{name}`", span, "not known here", help=text)
+
+
+def bad_option(span: Span | None, name: str, wanted: str) -> Diagnostic:
+    """A value that an option cannot take."""
+    return Diagnostic("error", "option-value", f"`{name}` takes {wanted}", span, "not that")
+
+
+def option_twice(span: Span, name: str) -> Diagnostic:
+    """Two values of one option."""
+    return Diagnostic("error", "option-twice", f"`{name}` is said twice", span, "again")
+
+
+def bad_place(span: Span, wanted: str, example: str) -> Diagnostic:
+    """What stands behind the scheme is not what the transport needs."""
+    return Diagnostic("error", "address", f"this is not {wanted}", span, f"expected {wanted}", help=f"for example `{example}`")

@@ -1,0 +1,407 @@
+"""What a transport is, and what it gives a user: sources, sinks, callers and servers of raw messages."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter, deque
+from dataclasses import field
+from time import monotonic
+from typing import TYPE_CHECKING, Any, Self, cast
+
+from rosetta_jit.errors import TransportError
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from types import TracebackType
+
+    from rosetta_jit.transports.address import Option
+
+    Deliver = Callable[["Message"], object]
+    Lost = Callable[[str, int], object]
+    Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
+
+MAX_MESSAGE_BYTES = 64 << 20
+"""What `max_message` is where nobody says it."""
+
+QUEUE = 1000
+"""Messages that wait for who iterates over a source, where nobody says how many."""
+
+
+class Message:
+    """One message as it came.
+
+    Attributes
+    ----------
+    data : bytes or memoryview
+        Its bytes. A memoryview is valid until the callback that got the message returns: see `keep`.
+    channel : str
+        Which channel it came over: a subscription may be for several.
+    type : str or None
+        The type's name, where the middleware tells it.
+    time : int
+        When it was received, in nanoseconds since 1970.
+    sent : int or None
+        When it was sent, where the middleware tells it, in nanoseconds since 1970.
+    attributes : mapping
+        What else the middleware tells: the envelope of YARP, event ids and causes of RSB, the attachment of zenoh.
+    """
+
+    __slots__ = ("attributes", "channel", "data", "sent", "time", "type")
+
+    def __init__(
+        self,
+        data: bytes | memoryview,
+        channel: str,
+        type: str | None = None,  # noqa: A002 - it is what everybody calls it
+        time: int = 0,
+        sent: int | None = None,
+        attributes: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.data = data
+        self.channel = channel
+        self.type = type
+        self.time = time
+        self.sent = sent
+        self.attributes = NOTHING if attributes is None else attributes
+
+    def keep(self) -> Message:
+        """The same with bytes of its own, which stay valid."""
+        if not isinstance(self.data, bytes):
+            self.data = bytes(self.data)
+        return self
+
+    def __repr__(self) -> str:
+        return (
+            f"Message({len(self.data)} bytes, {self.channel!r}, type={self.type!r}, time={self.time}, attributes={dict(self.attributes)!r})"
+        )
+
+
+NOTHING: Mapping[str, Any] = {}
+"""The attributes of messages without any."""
+
+
+class Counts:
+    """What passed at one end, and what did not.
+
+    Attributes
+    ----------
+    messages, bytes : int
+        Received, or taken to be sent.
+    lost : Counter
+        Messages that did not arrive or were not sent, by the reason in words.
+    reconnects : int
+        Connections that were made again.
+    connections : int
+        Peers that are connected now.
+    """
+
+    def __init__(self, address: str, lost: Lost | None = None) -> None:
+        self.address = address
+        self.messages = 0
+        self.bytes = 0
+        self.lost: Counter[str] = Counter()
+        self.reconnects = 0
+        self.connections = 0
+        self._tell = lost
+        self._lock = threading.Lock()
+
+    def lose(self, reason: str, count: int = 1) -> None:
+        """Count messages that are lost, and say why; for transports."""
+        with self._lock:
+            self.lost[reason] += count
+        if self._tell is not None:
+            self._tell(reason, count)
+
+
+class Source(Counts):
+    """Messages that arrive at an address; a context manager, and an iterable where no callback gets them.
+
+    Iterating ends when the source is closed, or where the channel has an end (a pipe, a connection of its own). Messages that nobody takes
+    wait, at most ``queue`` of them; then the oldest is dropped, and counted as `queue full`.
+    """
+
+    def __init__(self, address: str, deliver: Deliver | None, lost: Lost | None, *, queue: int = QUEUE) -> None:
+        super().__init__(address, lost)
+        self._waiting: deque[Message] = deque()
+        self._most = max(queue, 1)
+        self._changed = threading.Condition()
+        self._ended = False
+        self._close: Callable[[], None] = _nothing
+        self._deliver = self._put if deliver is None else deliver
+
+    def arrived(self, message: Message) -> None:
+        """Count a message, and pass it on; for transports. What the callback raises is reported, and costs this message alone."""
+        self.messages += 1
+        self.bytes += len(message.data)
+        try:
+            self._deliver(message)
+        except Exception as error:  # noqa: BLE001 - the user's code: it must not end the thread that serves all connections
+            self.lose("the callback failed")
+            threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
+
+    def opened(self, close: Callable[[], None]) -> Source:
+        """Say what closes it; for transports."""
+        self._close = close
+        return self
+
+    def ended(self) -> None:
+        """Nothing comes any more; for transports."""
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+
+    def take(self, timeout: float | None = None) -> Message | None:
+        """The next message; None after so many seconds without one, or at the end."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting or self._ended, timeout)
+            return self._waiting.popleft() if self._waiting else None
+
+    def close(self) -> None:
+        """Stop receiving. Messages that wait can still be taken."""
+        close, self._close = self._close, _nothing
+        close()
+        self.ended()
+
+    def _put(self, message: Message) -> None:
+        message.keep()
+        with self._changed:
+            is_full = len(self._waiting) >= self._most
+            if is_full:
+                self._waiting.popleft()
+            self._waiting.append(message)
+            self._changed.notify()
+        if is_full:
+            self.lose("queue full")
+
+    def __iter__(self) -> Iterator[Message]:
+        while (message := self.take()) is not None:
+            yield message
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Sink(Counts):
+    """Where messages are sent; a context manager. Transports derive from it."""
+
+    def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
+        """Send one message. It never waits for a peer longer than the transport's options say.
+
+        Parameters
+        ----------
+        data
+            The bytes; they may be changed when the call returns.
+        time
+            When it was made, in nanoseconds since 1970, for transports that tell it; by default now.
+        attributes
+            What the transport can tell besides, with the names that its messages have.
+
+        Returns
+        -------
+        bool
+            Whether it was taken. Where it was not, `lost` counts it.
+
+        Raises
+        ------
+        TransportError
+            It is larger than ``max_message``, or the sink is closed.
+        """
+        raise NotImplementedError
+
+    def flush(self, timeout: float = 5.0) -> bool:
+        """Wait until all that was taken is on its way; False where that takes longer than so many seconds."""
+        del timeout
+        return True
+
+    def close(self) -> None:
+        """Send what was taken, for as long as the option `linger` says, and stop."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Caller(Counts):
+    """The asking end of remote procedure calls; a context manager. Transports derive from it."""
+
+    def __call__(
+        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
+    ) -> Message:
+        """Ask, and wait for the answer; not in a callback of a source, whose thread receives the answer.
+
+        Raises
+        ------
+        TransportError
+            Nothing came within ``timeout`` seconds (default: the option `timeout`), or the peer said that it failed.
+        """
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Stop; who waits for an answer gets an error."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Server(Counts):
+    """The answering end; a context manager. Answers are worked out in a thread of its own, one after the other.
+
+    At most ``queue`` questions wait; further ones are refused, and counted.
+    """
+
+    def __init__(self, address: str, answer: Answer, lost: Lost | None = None, *, queue: int = QUEUE) -> None:
+        super().__init__(address, lost)
+        self._answer = answer
+        self._most = max(queue, 1)
+        self._asked: deque[tuple[Message, Callable[[bytes | None, str | None], object]]] = deque()
+        self._changed = threading.Condition()
+        self._closed = False
+        self._close: Callable[[], None] = _nothing
+        self._thread = threading.Thread(target=self._run, name=f"answers {address}", daemon=True)
+
+    def asked(self, message: Message, reply: Callable[[bytes | None, str | None], object]) -> bool:
+        """Take a question; ``reply`` gets the answer, or None and an error's text. For transports."""
+        message.keep()
+        with self._changed:
+            taken = len(self._asked) < self._most and not self._closed
+            if taken:
+                self._asked.append((message, reply))
+                self._changed.notify()
+        if not taken:
+            self.lose("queue full")
+            reply(None, "too many questions wait")
+        return taken
+
+    def opened(self, close: Callable[[], None]) -> Server:
+        """Say what closes it, and begin to answer; for transports."""
+        self._close = close
+        self._thread.start()
+        return self
+
+    def close(self) -> None:
+        """Answer what was asked so far, and stop."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(5)
+        close, self._close = self._close, _nothing
+        close()
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._asked or self._closed)
+                if not self._asked:
+                    return
+                message, reply = self._asked.popleft()
+            self.messages += 1
+            self.bytes += len(message.data)
+            try:
+                answer = self._answer(message)
+            except Exception as error:  # noqa: BLE001 - the user's code: the peer gets to know
+                self.lose("the answer failed")
+                reply(None, f"{type(error).__name__}: {error}")
+            else:
+                reply(None if answer is None else bytes(answer), None)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Pending:
+    """The place where an answer is waited for."""
+
+    __slots__ = ("_done", "_error", "_message")
+
+    def __init__(self) -> None:
+        self._done = threading.Event()
+        self._message: Message | None = None
+        self._error: TransportError | None = None
+
+    def answer(self, message: Message) -> None:
+        """It came."""
+        self._message = message.keep()
+        self._done.set()
+
+    def fail(self, error: TransportError) -> None:
+        """It will not come."""
+        self._error = error
+        self._done.set()
+
+    def wait(self, until: float, address: str) -> Message:
+        """The answer, at the latest at a moment of the monotonic clock.
+
+        Raises
+        ------
+        TransportError
+            It did not come, or the peer failed.
+        """
+        self._done.wait(max(0.0, until - monotonic()))
+        if self._error is not None:
+            raise self._error
+        if self._message is None:
+            raise TransportError("timeout", address, "no answer came in time")
+        return self._message
+
+
+@dataclass(frozen=True, slots=True)
+class Transport:
+    """One transport; every function as ``module:name``, imported when it is first used. Empty where it lacks a direction.
+
+    Attributes
+    ----------
+    name
+        What people call it.
+    schemes
+        The words that addresses of it begin with.
+    example
+        An address, for help and errors.
+    subscribe
+        ``(address, source, options) -> None``: fills the `Source`, and tells it what closes it by `Source.opened`.
+    publish
+        ``(address, options, lost) -> Sink``.
+    call
+        ``(address, options) -> Caller``.
+    serve
+        ``(address, server, options) -> None``, as ``subscribe``.
+    names
+        ``(address, options) -> list of (channel, type or None)``: which channels there are, for patterns in configurations.
+    options
+        By name; `COMMON` are added.
+    extra
+        The extra of rosetta_jit that it takes, and the module whose absence tells: ``("zenoh", "zenoh")``.
+    """
+
+    name: str
+    schemes: tuple[str, ...]
+    example: str
+    subscribe: str = ""
+    publish: str = ""
+    call: str = ""
+    serve: str = ""
+    names: str = ""
+    options: Mapping[str, Option] = field(default_factory=dict[str, "Option"])
+    extra: tuple[str, str] = ("", "")
+
+    def function(self, direction: str) -> Callable[..., Any]:
+        """The function for a direction, `subscribe` and so on; the caller has seen that there is one."""
+        module, _, name = cast("str", getattr(self, direction)).partition(":")
+        return cast("Callable[..., Any]", getattr(imported(module), name))
+
+
+def _nothing() -> None:
+    pass

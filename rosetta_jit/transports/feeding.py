@@ -1,0 +1,140 @@
+"""Protocols as generators that ask for bytes: `head = yield 8`, `line = yield Until(delimiter, most)`.
+
+A generator knows no socket, so that a test feeds it a captured stream in pieces of any size. The memoryviews that it gets are valid until
+it asks again.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    Machine = Generator["int | Until", memoryview, None]
+
+FIRST_BYTES = 1 << 16
+"""Of a buffer, which grows as more bytes of a message really come."""
+
+
+class Between(int):
+    """So many bytes; and before the first of them the stream may end, as no message has begun."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Until:
+    """All bytes up to a delimiter, which is part of them; a failure where there are more than ``most``."""
+
+    delimiter: bytes
+    most: int
+    between: bool = False
+
+
+class ProtocolError(Exception):
+    """The peer sent what the protocol does not have; it costs the peer its connection."""
+
+
+class Feed:
+    """The bytes that came and were not asked for yet, and the generator that asks.
+
+    Attributes
+    ----------
+    done
+        Whether the generator has returned: the connection has come to its end.
+    """
+
+    __slots__ = ("_buffer", "_end", "_machine", "_searched", "_start", "_want", "done")
+
+    def __init__(self, machine: Machine) -> None:
+        self._buffer = memoryview(bytearray(FIRST_BYTES))
+        self._start = self._end = self._searched = 0
+        self._machine = machine
+        self.done = False
+        self._want: int | Until = 0
+        self._ask(None)
+
+    def room(self) -> memoryview:
+        """Where the next bytes are to be put; `filled` says how many."""
+        if self._end == len(self._buffer) or self._start == self._end:
+            self._make_room()
+        return self._buffer[self._end :]
+
+    def filled(self, count: int) -> None:
+        """So many bytes were put into the room: hand on what is complete.
+
+        Raises
+        ------
+        ProtocolError
+            The peer is wrong.
+        """
+        self._end += count
+        while not self.done:
+            want = self._want
+            if isinstance(want, int):
+                stop = self._start + want
+                if stop > self._end:
+                    return
+            elif not (stop := self._found(want)):
+                return
+            piece = self._buffer[self._start : stop]
+            self._start = self._searched = stop
+            self._ask(piece)
+
+    def feed(self, data: bytes) -> None:
+        """Hand on bytes that lie elsewhere; as `filled`."""
+        rest = memoryview(data)
+        while rest:
+            room = self.room()
+            count = min(len(room), len(rest))
+            room[:count] = rest[:count]
+            rest = rest[count:]
+            self.filled(count)
+
+    def rest(self) -> memoryview:
+        """What came and was not asked for."""
+        return self._buffer[self._start : self._end]
+
+    @property
+    def is_between(self) -> bool:
+        """Whether the stream may end here: no message has begun."""
+        if self.done:
+            return True
+        return self._start == self._end and (isinstance(self._want, Between) or (isinstance(self._want, Until) and self._want.between))
+
+    def close(self) -> None:
+        """Let the generator end."""
+        self.done = True
+        self._machine.close()
+
+    def _ask(self, piece: memoryview | None) -> None:
+        try:
+            self._want = self._machine.send(piece)  # pyright: ignore[reportArgumentType] - what starts a generator
+        except StopIteration:
+            self.done = True
+
+    def _found(self, want: Until) -> int:
+        """Where the delimiter ends; 0 where it did not come yet."""
+        base = max(self._start, self._searched - len(want.delimiter) + 1)
+        at = bytes(self._buffer[base : min(self._end, self._start + want.most)]).find(want.delimiter)
+        if at >= 0:
+            return base + at + len(want.delimiter)
+        if self._end - self._start >= want.most:
+            raise ProtocolError(f"no end of line within {want.most} bytes")
+        self._searched = self._end
+        return 0
+
+    def _make_room(self) -> None:
+        """Move what is left to the front, of a larger buffer where one message fills this one."""
+        left = self._end - self._start
+        buffer = self._buffer
+        if left > len(buffer) // 2:
+            wanted = self._want if isinstance(self._want, int) else 0
+            buffer = memoryview(bytearray(max(2 * len(buffer), min(wanted, 4 * len(buffer)))))
+        if left:
+            buffer[:left] = self._buffer[self._start : self._end]
+        self._searched = max(self._searched - self._start, 0)
+        self._buffer, self._start, self._end = buffer, 0, left

@@ -1,0 +1,36 @@
+"""Which transports there are: ours, and those of installed packages."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.startup.entry_points import may_be_offered
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.transports.base import Transport
+
+GROUP = "rosetta_jit.transports"
+"""The entry-point group in which packages offer transports of their own: a `Transport` each."""
+
+OURS = ("sockets",)
+"""Folders beside this file with a `transport.TRANSPORTS`."""
+
+
+@cache
+def installed() -> Mapping[str, Transport]:
+    """Every transport by its schemes: ours, and those of installed packages."""
+    ours = [
+        each for name in OURS for each in cast("tuple[Transport, ...]", imported(f"rosetta_jit.transports.{name}.transport").TRANSPORTS)
+    ]
+    found = [*ours, *_offered()] if may_be_offered(GROUP) else ours
+    return {scheme: transport for transport in found for scheme in transport.schemes}
+
+
+def _offered() -> list[Transport]:
+    from importlib.metadata import entry_points  # slow to import
+
+    return [cast("Transport", each.load()) for each in entry_points(group=GROUP)]

@@ -1,0 +1,97 @@
+"""Remote procedure calls over TCP or Unix sockets: a frame is a question, the next frame back is its answer."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from time import monotonic, time_ns
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.base import Caller, Message, Pending, Server
+from rosetta_jit.transports.sockets.framing import framed, messages
+from rosetta_jit.transports.sockets.tcp import Links, waited
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.transports.address import Address
+    from rosetta_jit.transports.feeding import Machine
+    from rosetta_jit.transports.stream import Stream
+
+
+def call(address: Address, options: Mapping[str, Any]) -> Caller:
+    """Ask who listens at an address."""
+    return TcpCaller(address, options)
+
+
+class TcpCaller(Caller):
+    """Sends questions over one connection; answers come in their order."""
+
+    def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
+        super().__init__(str(address))
+        self._channel = address.rest
+        self._frame: str = options["frame"]
+        self._most: int = options["max_message"]
+        self._timeout: float = options["timeout"]
+        self._asked: deque[Pending] = deque()
+        self._order = threading.Lock()
+        self._links = Links(address, self, self._machine, listen=options["listen"] == "yes", went=self._lost)
+
+    def __call__(
+        self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
+    ) -> Message:
+        del attributes
+        until = monotonic() + (self._timeout if timeout is None else timeout)
+        parts = framed(self._frame, data, self._most, self.address)
+        pending = Pending()
+        with self._order:
+            stream = next(iter(waited(self._links, until - monotonic())), None)
+            if stream is None:
+                raise TransportError("unreachable", self.address, "nobody answers there")
+            self._asked.append(pending)
+            if not stream.send(*parts):
+                self._asked.remove(pending)
+                raise TransportError("closed", self.address, "the connection is gone, or too slow")
+        self.messages += 1
+        self.bytes += len(data)
+        try:
+            return pending.wait(until, self.address)
+        except TransportError as error:
+            if error.kind == "timeout":  # a late answer would be taken for that of the next question
+                stream.finish(0)
+            raise
+
+    def close(self) -> None:
+        self._links.close(0)
+        self._lost()
+
+    def _machine(self, stream: Stream) -> Machine:
+        def take(data: memoryview) -> None:
+            if self._asked:
+                self._asked.popleft().answer(Message(data, self._channel, None, time_ns()))
+            else:
+                stream.finish(0)
+
+        return messages(self._frame, take, self._most)
+
+    def _lost(self) -> None:
+        while self._asked:
+            self._asked.popleft().fail(TransportError("closed", self.address, "the connection ended before the answer came"))
+
+
+def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:
+    """Answer who connects. A question whose answer fails ends its connection: frames have no other way to say so."""
+    frame, most, channel = options["frame"], options["max_message"], address.rest
+
+    def machine(stream: Stream) -> Machine:
+        def reply(answer: bytes | None, error: str | None) -> None:
+            if error is not None:
+                stream.finish(0)
+            else:
+                stream.send(*framed(frame, answer or b"", most, server.address))
+
+        return messages(frame, lambda data: server.asked(Message(data, channel, None, time_ns(), None, {"peer": stream.peer}), reply), most)
+
+    links = Links(address, server, machine, listen=options["listen"] != "no")
+    server.opened(lambda: links.close(options["linger"]))

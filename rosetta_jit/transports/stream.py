@@ -1,0 +1,236 @@
+"""Connected stream sockets in the loop: what comes is fed to a protocol, what is sent waits its turn, and each ends for itself."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections import deque
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from rosetta_jit.transports.feeding import Feed, ProtocolError
+from rosetta_jit.transports.loop import READ, WRITE, loop
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.transports.feeding import Machine
+    from rosetta_jit.transports.loop import Timer
+
+    Bytes = bytes | bytearray | memoryview
+
+MAX_WAITING_BYTES = 16 << 20
+"""Bytes that wait for a slow peer; one message of any size may always begin to wait."""
+
+
+class Stream:
+    """One connection, in the loop.
+
+    Parameters
+    ----------
+    sock
+        Connected.
+    machine
+        The generator of the protocol, made for this stream.
+    ended
+        Is called once in the loop's thread, when the connection is gone: with the stream and why, empty where it ended in order.
+
+    Attributes
+    ----------
+    peer : str
+        The other end's address.
+    cut : bool
+        Whether it ended in the middle of a message.
+    """
+
+    def __init__(
+        self,
+        sock: socket.socket,
+        machine: Callable[[Stream], Machine],
+        ended: Callable[[Stream, str], object],
+        *,
+        max_waiting: int = MAX_WAITING_BYTES,
+    ) -> None:
+        sock.setblocking(False)
+        _tune(sock)
+        self.socket = sock
+        self.peer = _name(sock)
+        self.cut = False
+        self.closed = False
+        self._ended = ended
+        self._machine = machine
+        self._feed: Feed | None = None
+        self._most = max_waiting
+        self._waiting: deque[memoryview] = deque()
+        self._waiting_bytes = 0
+        self._room = threading.Condition()
+        self._finishing = False
+        self._paused = False
+        self._deadline: Timer | None = None
+        self._events = 0
+
+    def start(self) -> Stream:
+        """Begin to read; in the loop's thread."""
+        self._feed = Feed(self._machine(self))
+        self._watch()
+        return self
+
+    def within(self, seconds: float, why: str) -> None:
+        """End it unless `in_time` is called within so many seconds; in the loop's thread."""
+        self.in_time()
+        self._deadline = loop().later(seconds, lambda: self.end(why))
+
+    def in_time(self) -> None:
+        """What `within` waited for has come."""
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def send(self, *parts: Bytes) -> bool:
+        """Send parts as one, or let them wait; from any thread. False where too much waits, or it is closed: then nothing is sent."""
+        size = sum(map(len, parts))
+        with self._room:
+            if self.closed or self._finishing or (self._waiting and self._waiting_bytes + size > self._most):
+                return False
+            sent = 0
+            if not self._waiting:
+                try:
+                    sent = self.socket.sendmsg(parts)
+                except BlockingIOError:
+                    pass
+                except OSError as error:
+                    loop().soon(self.end, _why(error))
+                    return False
+                if sent == size:
+                    return True
+            rest = memoryview(b"".join(parts))[sent:]
+            self._waiting.append(rest)
+            self._waiting_bytes += len(rest)
+        loop().soon(self._watch)
+        return True
+
+    def wait(self, seconds: float, *, empty: bool = False) -> bool:
+        """Wait for room, or until nothing waits any more; False where that takes longer. Not in the loop's thread."""
+        until = monotonic() + seconds
+        with self._room:
+            while not self.closed and (self._waiting_bytes > (0 if empty else self._most // 2)):
+                if not self._room.wait(until - monotonic()) and monotonic() >= until:
+                    return False
+        return True
+
+    @property
+    def waiting(self) -> int:
+        """Bytes that are not sent yet."""
+        return self._waiting_bytes
+
+    def pause(self, *, paused: bool) -> None:
+        """Stop reading, or go on; in the loop's thread. The peer notices when its own buffers are full."""
+        self._paused = paused
+        self._watch()
+
+    def finish(self, linger: float) -> None:
+        """Send what waits, then close; at the latest after so many seconds. From any thread."""
+        self._finishing = True
+        loop().soon(self._finish, linger)
+
+    def end(self, why: str = "") -> None:
+        """Close now; in the loop's thread."""
+        if self.closed:
+            return
+        with self._room:
+            self.closed = True
+            self._room.notify_all()
+        self.in_time()
+        loop().unwatch(self.socket.fileno())
+        if self._feed is not None:
+            self.cut = not self._feed.is_between
+            self._feed.close()
+        self.socket.close()
+        self._ended(self, why)
+
+    def _finish(self, linger: float) -> None:
+        if not self._waiting:
+            self.end()
+        elif not self.closed:
+            loop().later(linger, self.end)
+
+    def _watch(self) -> None:
+        if self.closed:
+            return
+        events = (0 if self._paused else READ) | (WRITE if self._waiting else 0)
+        if events != self._events or not self._events:
+            self._events = events
+            loop().watch(self.socket.fileno(), events, self._ready)
+
+    def _ready(self, events: int) -> None:
+        if events & WRITE:
+            self._write()
+        if events & ~WRITE and not self.closed:
+            self._read()
+
+    def _read(self) -> None:
+        feed = self._feed
+        assert feed is not None
+        try:
+            count = self.socket.recv_into(feed.room())
+            if not count:
+                self.end()
+                return
+            feed.filled(count)
+        except BlockingIOError:
+            return
+        except ProtocolError as error:
+            self.end(str(error))
+        except OSError as error:
+            self.end(_why(error))
+        except Exception:
+            self.end("a mistake in rosetta_jit")
+            raise
+        if feed.done and not self.closed:
+            self._finish(1.0)
+
+    def _write(self) -> None:
+        try:
+            with self._room:
+                while self._waiting:
+                    sent = self.socket.send(self._waiting[0])
+                    self._waiting_bytes -= sent
+                    if sent < len(self._waiting[0]):
+                        self._waiting[0] = self._waiting[0][sent:]
+                        break
+                    self._waiting.popleft()
+                self._room.notify_all()
+        except BlockingIOError:
+            pass
+        except OSError as error:
+            self.end(_why(error))
+            return
+        if self._finishing and not self._waiting:
+            self.end()
+        self._watch()
+
+
+def _why(error: OSError) -> str:
+    return error.strerror or str(error)
+
+
+def _name(sock: socket.socket) -> str:
+    try:
+        found = sock.getpeername()
+    except OSError:
+        return "gone"
+    return f"{found[0]}:{found[1]}" if isinstance(found, tuple) else str(found or "local")
+
+
+def _tune(sock: socket.socket) -> None:
+    """Send at once; notice peers that vanished without a word within half a minute."""
+    if sock.family in (socket.AF_INET, socket.AF_INET6):
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        for option, value in (
+            (socket.TCP_KEEPIDLE, 10),
+            (socket.TCP_KEEPINTVL, 5),
+            (socket.TCP_KEEPCNT, 3),
+            (socket.TCP_USER_TIMEOUT, 30_000),
+        ):
+            sock.setsockopt(socket.IPPROTO_TCP, option, value)
