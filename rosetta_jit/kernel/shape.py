@@ -113,9 +113,9 @@ def are_straight_and_compute(kernels: Iterable[Kernel]) -> bool:
     return has_floats and not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
 
 
-def have_loops_for_vectors(kernels: Iterable[Kernel]) -> bool:
-    """Whether kernels of moderate size have, in the first of their bodies, loops over elements that do nothing but compute and store."""
-    every = [each for kernel in kernels for each in _usual_statements(kernel)]
+def has_loops_for_vectors(kernel: Kernel) -> bool:
+    """Whether a kernel of moderate size has, in the first of its bodies, loops over elements that do nothing but compute and store."""
+    every = list(_usual_statements(kernel))
     return len(every) <= LONG * 4 and any(isinstance(each, For) and _only_stores(each.body) for each in every)
 
 

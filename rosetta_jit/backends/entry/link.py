@@ -1,12 +1,14 @@
 """From kernels to object code: compile them with the entries from CPython.
 
-The object exports, beside each kernel as `kernel` (and `size`, of an encoder), what the entry's own file defines:
+The object exports, beside each kernel as `kernel` (and `size`, of an encoder, and `write`, of a bridge), what the entry's own file defines:
 
     decode, borrow    call many
     encode            call many sizes
+    bridge            call many
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
-kernel into it. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are kept in the cache.
+kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are
+kept in the cache.
 """
 
 from __future__ import annotations
@@ -15,18 +17,19 @@ import os
 import sys
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NotRequired, TypedDict, Unpack
 
 from llvmlite import binding, ir
 
 from rosetta_jit.backends.entry.host_table import TABLE, table_text
+from rosetta_jit.backends.entry.references import references_text
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import (
     are_straight_and_compute,
     are_vast,
     calls_to_host,
-    have_loops_for_vectors,
+    has_loops_for_vectors,
     is_large,
     is_short_and_straight,
     is_told,
@@ -47,6 +50,7 @@ USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("decode.ll",),
     "borrow": ("borrow.ll",),
     "encode": ("usable.ll", "measured.ll", "encode.ll"),
+    "bridge": ("bridge.ll",),
 }
 """The usual call."""
 
@@ -54,71 +58,70 @@ REST: dict[EntryName, tuple[str, ...]] = {
     "decode": ("any_decode.ll", "unmeasured.ll", "many.ll"),
     "borrow": ("unmeasured.ll", "many.ll"),
     "encode": ("usable.ll", "measured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
+    "bridge": (),
 }
 """Whatever else is called."""
 
-FUNCTIONS = ("kernel", "size")
-"""The names of a program's kernels: what decodes or encodes, and, to encode, what measures."""
+FUNCTIONS = ("kernel", "size", "write")
+"""The names of a program's kernels: what decodes or encodes; to encode, what measures; of a bridge, what encodes what was decoded."""
 
 REST_SYMBOL = "any_call"
 
 
-def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
+class Options(TypedDict):
+    """What a program is compiled with, besides its kernels.
+
+    ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code does
+    the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes that
+    become the message when it is decoded.
+    """
+
+    with_numba: bool
+    functions: NotRequired[Sequence[UserFunction]]
+    references: NotRequired[Sequence[int]]
+
+
+def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """Code for this machine's CPU, to be loaded by `runtime.code.native`: prelinked, or else an object file.
 
-    Parameters
-    ----------
-    kernels
-        Verified kernels: one, or to encode the encoder and its size kernel.
-    with_numba
-        Whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more. The code does the same.
-    functions
-        Those of the user's that the kernels call; they need numba.
+    ``kernels`` are verified: one, or to encode the encoder and its size kernel; of a bridge, the decoder, the size kernel and the encoder.
     """
     if not is_prelinking():
-        return object_file(kernels, entry, with_numba=with_numba, functions=functions)
+        return object_file(kernels, entry, **options)
     machine = target_machine(hurried=are_vast(kernels))
-    module = linked(_own_parts(kernels, entry, with_numba=with_numba, functions=functions))
-    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
-    around = _surroundings(*_surrounding_texts(kernels, entry))
-    image = prelinked(machine.emit_object(module), around)
-    return image or object_file(kernels, entry, with_numba=with_numba, functions=functions)
+    module = linked(_own_parts(kernels, entry, options))
+    _optimise(module, kernels, entry, machine, options)
+    around = _surrounding_texts(kernels, entry)
+    image = prelinked(machine.emit_object(module), *([_surroundings(*around)] if around else []))
+    return image or object_file(kernels, entry, **options)
 
 
-def object_file(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
+def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """The same as one object file, which only a linker can load."""
     machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
+    return machine.emit_object(optimised(kernels, entry, machine, options))
 
 
-def llvm_text(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> str:
+def llvm_text(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The optimised LLVM module as text."""
-    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba, functions=functions))
+    return str(optimised(kernels, entry, target_machine(), options))
 
 
-def assembly(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> str:
+def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The machine code as assembler text."""
     machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
+    return machine.emit_assembly(optimised(kernels, entry, machine, options))
 
 
-def optimised(
-    kernels: Sequence[Kernel],
-    entry: EntryName,
-    machine: binding.TargetMachine,
-    *,
-    with_numba: bool,
-    functions: Sequence[UserFunction] = (),
-) -> binding.ModuleRef:
+def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    parts = _own_parts(kernels, entry, with_numba=with_numba, functions=functions)
-    module = linked((*parts, *_surrounding_texts(kernels, entry)))
-    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
+    module = linked((*_own_parts(kernels, entry, options), *_surrounding_texts(kernels, entry)))
+    _optimise(module, kernels, entry, machine, options)
     return module
 
 
 def _optimise(
-    module: binding.ModuleRef, kernels: Sequence[Kernel], exported: Sequence[str], machine: binding.TargetMachine, *, thorough: bool
+    module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options
 ) -> None:
     """Run LLVM's passes once.
 
@@ -126,52 +129,54 @@ def _optimise(
     five times as long, are for loops over elements that become loops over vectors; those of O1, with vectors made of statements that stand
     side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
-    make_private(module, exported)
-    thorough = thorough or have_loops_for_vectors(kernels)
+    make_private(module, (*SYMBOLS[entry], TABLE))
+    thorough = bool(options.get("functions")) or any(has_loops_for_vectors(kernel) for kernel in kernels)
     if are_vast(kernels) or not (thorough or are_straight_and_compute(kernels)):
         run_few_passes(module, machine)
         return
-    options = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
-    options.loop_vectorization = options.slp_vectorization = True
-    builder = binding.create_pass_builder(machine, options)
+    tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
+    tuning.loop_vectorization = tuning.slp_vectorization = True
+    builder = binding.create_pass_builder(machine, tuning)
     run_passes(builder.getModulePassManager(), module, builder)
 
 
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction]) -> Iterator[str]:
+def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> Iterator[str]:
     """The modules that a program's own is linked from, as LLVM text."""
-    if with_numba and not is_large(kernels[0]) and not calls_to_host(kernels):
+    if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
         yield _emitted(kernels[0], FUNCTIONS[0])
     yield from (_emitted(kernel, name) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
-    for function in functions:
+    for function in options.get("functions", ()):
         from rosetta_jit.backends.numba.user_functions import compile_function
 
         yield str(compile_function(function))
     if our_functions(kernels):
         yield table_text(kernels)
-    if _is_inside(kernels):
-        yield _usual(_entry_text(USUAL[entry], kernels, inline="alwaysinline"))
+    if entry == "bridge":
+        yield references_text(options.get("references", ()))
+    if _is_inside(kernels, entry):
+        yield _usual(_entry_text(USUAL[entry], kernels), SYMBOLS[entry])
 
 
 def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
-    rest = _entry_text(REST[entry], kernels)
-    return (rest,) if _is_inside(kernels) else (_entry_text(USUAL[entry], kernels), rest)
+    around = (REST[entry],) if _is_inside(kernels, entry) else (USUAL[entry], REST[entry])
+    return tuple(_entry_text(templates, kernels) for templates in around if templates)
 
 
-def _is_inside(kernels: Sequence[Kernel]) -> bool:
-    """Whether the first kernel becomes a part of the usual call."""
-    return is_short_and_straight(kernels[0])
+def _is_inside(kernels: Sequence[Kernel], entry: EntryName) -> bool:
+    """Whether the usual call is compiled with the kernels, of which those that are short become a part of it."""
+    return entry == "bridge" or is_short_and_straight(kernels[0])
 
 
 @cache
-def _usual(text: str) -> str:
-    """The module of the usual call with nothing left to do in it but to put a kernel there."""
-    return kept("call", text, lambda: shortened(text, SYMBOLS["encode"]).encode()).decode()
+def _usual(text: str, exported: tuple[str, ...]) -> str:
+    """The module of the usual call with nothing left to do in it but to put kernels there."""
+    return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
 @cache
@@ -194,12 +199,14 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
     return text, _template("numba.ll").replace("@typed", f'@"{name}"')
 
 
-def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel], *, inline: str = "") -> str:
-    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick."""
+def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
+    """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
-    return "\n".join((*texts, f"attributes #0 = {{ nounwind {inline} }}"))
+    inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
+    attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
+    return "\n".join((*texts, *attributes))
 
 
 def _thread_template() -> str:
