@@ -71,9 +71,9 @@ REST_SYMBOL = "any_call"
 class Options(TypedDict):
     """What a program is compiled with, besides its kernels.
 
-    ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code does
-    the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes that
-    become the message when it is decoded.
+    ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code
+    does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
+    that become the message when it is decoded.
     """
 
     with_numba: bool
