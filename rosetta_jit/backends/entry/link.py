@@ -23,6 +23,7 @@ from llvmlite import binding, ir
 
 from rosetta_jit.backends.entry.host_table import TABLE, table_text
 from rosetta_jit.backends.entry.references import references_text
+from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import (
@@ -89,10 +90,9 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     if not is_prelinking():
         return object_file(kernels, entry, **options)
     machine = target_machine(hurried=are_vast(kernels))
-    module = linked(_own_parts(kernels, entry, options))
+    module = linked(_own_parts(kernels, entry, options, whole=False))
     _optimise(module, kernels, entry, machine, options)
-    around = _surrounding_texts(kernels, entry)
-    image = prelinked(machine.emit_object(module), *([_surroundings(*around)] if around else []))
+    image = prelinked(machine.emit_object(module), *_surroundings(module, kernels, entry), gives=(*SYMBOLS[entry], TABLE))
     return image or object_file(kernels, entry, **options)
 
 
@@ -115,7 +115,7 @@ def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Opti
 
 def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    module = linked((*_own_parts(kernels, entry, options), *_surrounding_texts(kernels, entry)))
+    module = linked((*_own_parts(kernels, entry, options, whole=True), *_surrounding_texts(kernels, entry)))
     _optimise(module, kernels, entry, machine, options)
     return module
 
@@ -143,13 +143,13 @@ def _optimise(
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> Iterator[str]:
-    """The modules that a program's own is linked from, as LLVM text."""
+def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text. `support` is defined in what is to be ``whole``."""
     if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0])
-    yield from (_emitted(kernel, name) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole)
+    yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
     for function in options.get("functions", ()):
         from rosetta_jit.backends.numba.user_functions import compile_function
 
@@ -179,15 +179,29 @@ def _usual(text: str, exported: tuple[str, ...]) -> str:
     return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
+def _surroundings(module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
+    """The object files of what stands around a program's own module."""
+    around = _surrounding_texts(kernels, entry)
+    if around:
+        yield _entries(*around)
+    wanted = {each.name for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
+    if wanted:
+        yield _support(*sorted(wanted))
+
+
 @cache
-def _surroundings(*texts: str) -> bytes:
-    """The object file of what stands around a program's own module."""
-    return kept("entry", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
+def _entries(*texts: str) -> bytes:
+    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
 
 
-def _emitted(kernel: Kernel, name: str) -> str:
+@cache
+def _support(*names: str) -> bytes:
+    return kept("support", " ".join(names), lambda: object_of([definitions.text(names)], names))
+
+
+def _emitted(kernel: Kernel, name: str, *, whole: bool) -> str:
     module = ir.Module(name)
-    llvm.emit(module, kernel, name)
+    llvm.emit(module, kernel, name, whole=whole)
     return str(module)
 
 
