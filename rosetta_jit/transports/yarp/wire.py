@@ -6,8 +6,8 @@
     index = u8 blocks, u8 replies, ff * 8, i32 * (blocks + replies)
     command = i32 length of the text, '~', key, 0, 1, text
 
-All little-endian. The command is the first block, the payload the others. Key `D` is data, `d` data whose sender wants a reply, `q` the end,
-0 says that the text begins with the key, and an envelope follows it.
+All little-endian. The command is the first block, the payload the others. Key `D` is data, `d` data whose sender wants a reply, `q`
+the end, 0 says that the text begins with the key, and an envelope follows it.
 """
 
 from __future__ import annotations
