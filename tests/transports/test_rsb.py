@@ -109,10 +109,14 @@ def test_callers_of_rsb_cpp_get_their_answers(bus):
     server, _, port = bus
     answers = {"/calc/echo": lambda message: message.data, "/calc/fail": lambda _: 1 // 0, "/calc/nothing": lambda _: None}
     requests = bytes.fromhex(CAPTURES["rpc_cpp_caller"]["c2s"])
-    with rj.serve(server("/calc/echo", "&type=utf-8-string"), answers["/calc/echo"]), rj.serve(server("/calc/fail"), answers["/calc/fail"]):
-        with rj.serve(server("/calc/nothing"), answers["/calc/nothing"]), join(port) as caller:
-            caller.sendall(requests)
-            replies = [decode(memoryview(each)) for each in read(caller, 3)]
+    with (
+        rj.serve(server("/calc/echo", "&type=utf-8-string"), answers["/calc/echo"]),
+        rj.serve(server("/calc/fail"), answers["/calc/fail"]),
+        rj.serve(server("/calc/nothing"), answers["/calc/nothing"]),
+        join(port) as caller,
+    ):
+        caller.sendall(requests)
+        replies = [decode(memoryview(each)) for each in read(caller, 3)]
     asked, rest = [], requests
     while rest:
         size = struct.unpack_from("<I", rest)[0]
@@ -137,7 +141,7 @@ def test_servers_of_rsb_cpp_are_asked(bus):
         if event.method == "REPLY":
             replies[event.scope] = event
         stream = stream[4 + size :]
-    with socket.create_server(("127.0.0.1", port)) as real:  # noqa: SIM117 - the address stands between
+    with socket.create_server(("127.0.0.1", port)) as real:
         address = f"?port={port}&role=client&patient=yes&type=utf-8-string"
         with rj.call(f"rsb:/calc/echo{address}") as echo, rj.call(f"rsb:/calc/fail{address}") as fail:
             peer, _ = real.accept()

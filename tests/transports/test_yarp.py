@@ -203,20 +203,19 @@ def test_a_hundred_writers_at_once(at, names):
 def test_a_slow_reader_loses_its_own_messages_with_a_counter(at, names):
     slow = socket.create_server(("127.0.0.1", 0))
     names.ports["/slow"] = "127.0.0.1", str(slow.getsockname()[1])
-    with rj.publish(at("/out", "&linger=0")) as sink, rj.subscribe(at("/out", "&queue=100")) as quick:
+    with slow, rj.publish(at("/out", "&linger=0")) as sink, rj.subscribe(at("/out", "&queue=100")) as quick:
         assert ask_port(contact(names, "/out"), '[add] "tcp://slow"', 2).startswith("0 ")
         until(lambda: sink.connections == 2)
         for _ in range(30):
             assert sink.send(bytes(1 << 20))
             assert len(quick.take(5).data) == 1 << 20
         assert sink.lost == {"the reader is too slow": 15}
-    slow.close()
 
 
 def test_a_reader_that_dies_with_messages_on_the_way_is_counted(at, names):
     dying = socket.create_server(("127.0.0.1", 0))
     names.ports["/dying"] = "127.0.0.1", str(dying.getsockname()[1])
-    with rj.publish(at("/dying", "&open=no")) as sink:
+    with dying, rj.publish(at("/dying", "&open=no")) as sink:
         peer, _ = dying.accept()
         peer.sendall(b"YA\1\0\0\0RP")
         until(lambda: sink.connections)
@@ -225,7 +224,6 @@ def test_a_reader_that_dies_with_messages_on_the_way_is_counted(at, names):
         peer.close()
         until(lambda: not sink.connections)
         assert sink.lost["the reader went away"] == 3
-    dying.close()
 
 
 @pytest.mark.parametrize("wrong", ["icub", "/a b", '/a"b', "/a\nunregister /b", "/" + "x" * 300])

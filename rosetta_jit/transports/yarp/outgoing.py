@@ -40,6 +40,7 @@ class Output:
         self._waiting: deque[bytes] = deque()
         self._bytes = 0
         self._is_free = False
+        self._unanswered = 0
         self._changed = threading.Condition()
 
     def machine(self, stream: Stream) -> Machine:
@@ -65,6 +66,7 @@ class Output:
                 return False
             if self._is_free and not self._waiting:
                 self._is_free = self.carrier == "fast_tcp"
+                self._unanswered = not self._is_free
                 return stream.send(head, data)
             size = len(head) + len(data)
             if self._waiting and self._bytes + size > MAX_WAITING_BYTES:
@@ -100,7 +102,7 @@ class Output:
     def gone(self) -> int:
         """The connection is gone; gives the number of messages that waited."""
         with self._changed:
-            left = len(self._waiting) + (not self._is_free and self.carrier == "tcp")
+            left = len(self._waiting) + self._unanswered
             self._waiting.clear()
             self._bytes = 0
             self._changed.notify_all()
@@ -109,9 +111,10 @@ class Output:
     def _next(self, stream: Stream) -> None:
         """The reader is ready: send what waits, one message where it acknowledges each."""
         with self._changed:
-            self._is_free = True
+            self._is_free, self._unanswered = True, 0
             while self._waiting and self._is_free:
                 self._is_free = self.carrier == "fast_tcp"
+                self._unanswered = not self._is_free
                 data = self._waiting.popleft()
                 self._bytes -= len(data)
                 stream.send(data)
