@@ -19,6 +19,7 @@ ORDER = (
     "native_image",
     "reorder",
     "mapped",
+    "bridges",
     "peers",
     "attributes",
     "reading",

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from typing import Unpack
 
+    from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder, Encoder
     from rosetta_jit.diagnostics import Diagnostic
@@ -49,6 +50,7 @@ __version__ = "0.1.0"
 __all__ = [
     "AddressError",
     "Batch",
+    "Bridge",
     "CacheWarning",
     "DecodeError",
     "Decoder",
@@ -79,6 +81,7 @@ __all__ = [
 _LAZY = {
     "Decoder": "rosetta_jit.api.programs",
     "Encoder": "rosetta_jit.api.programs",
+    "Bridge": "rosetta_jit.api.bridges",
     "Batch": "rosetta_jit.runtime.batch",
     "Holder": "rosetta_jit.runtime.holder",
     "Log": "rosetta_jit.logs.log",

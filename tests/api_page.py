@@ -6,6 +6,7 @@ import inspect
 import re
 
 import rosetta_jit as rj
+from rosetta_jit.api.bridges import BridgeOptions
 from rosetta_jit.api.options import Options
 from rosetta_jit.frameworks.corba.manners import Structure
 from rosetta_jit.frameworks.lcm.manners import LcmMessage
@@ -29,7 +30,7 @@ line is described by `rosetta-jit --help`.
 
 """
 CHAPTERS = {
-    "Programs": (rj.Decoder, rj.Encoder, Options, rj.check, rj.infer),
+    "Programs": (rj.Decoder, rj.Encoder, rj.Bridge, Options, BridgeOptions, rj.check, rj.infer),
     "Messages": (rj.Holder, rj.Batch, Ragged),
     "Logs": (rj.open, Log, Channel),
     "Transports": (rj.subscribe, rj.publish, rj.call, rj.serve, Message, Source, Sink, Caller, Server),
@@ -53,13 +54,14 @@ def _class(class_):
     name = f"rj.{class_.__name__}" if class_.__name__ in rj.__all__ else class_.__name__
     bases = [each.__name__ for each in class_.__bases__ if issubclass(class_, Exception)]
     head = f"### {name}{f' ({bases[0]})' if bases else ''}\n\n{_text(class_)}"
-    if class_ in (rj.Decoder, rj.Encoder):
+    if class_ in (rj.Decoder, rj.Encoder, rj.Bridge):
         head += f"A program is called as `program{inspect.signature(_program(class_))}`.\n\n"
     return head + "".join(_member(class_, each) for each in _names(class_))
 
 
 def _program(class_):
-    return class_.of("std_msgs/Empty", encoding="ros1", backend="python")
+    options = {"encoding": "ros1", "backend": "python"}
+    return class_.of("std_msgs/Empty", **({"decode": options, "encode": options} if class_ is rj.Bridge else options))
 
 
 def _names(class_):

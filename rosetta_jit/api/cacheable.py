@@ -49,6 +49,5 @@ def note(request: Request, cache: Cache, reasons: tuple[str, ...]) -> None:
         return
     from rosetta_jit.catalogue import uncertain as words
 
-    program = f"{request.mapping or request.type} ({request.direction})"
     more = (words.more_reasons(len(reasons) - MAX_REASONS),) if len(reasons) > MAX_REASONS else ()
-    cache.put_note(name, program, (*reasons[:MAX_REASONS], *more))
+    cache.put_note(name, str(request), (*reasons[:MAX_REASONS], *more))

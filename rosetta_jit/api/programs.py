@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
-from rosetta_jit.api import cacheable as certainty
+from rosetta_jit.api.loading import answer, interpreted_kernel, library, sites_of
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.frameworks.base import manners_of
 from rosetta_jit.kernel.entries import SYMBOLS
@@ -16,32 +14,21 @@ from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.cache.kernels import Cache
-from rosetta_jit.runtime.cache.names import entry_name, request_name
 from rosetta_jit.runtime.callable import callable_class, public_class
-from rosetta_jit.runtime.code import native
-from rosetta_jit.runtime.code.allowed import ForeignCodeError
 from rosetta_jit.runtime.decoder import DecoderBase
 from rosetta_jit.runtime.encoder import EncoderBase
 from rosetta_jit.runtime.holder import holder_class_of
 from rosetta_jit.runtime.program import Loaded
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.startup.garbage import imported, seldom_collected
+from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from contextlib import AbstractContextManager
+    from collections.abc import Mapping
 
     from rosetta_jit.api.options import Options
     from rosetta_jit.pipeline.build import Build, Stage
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.runtime.holder import Holder
-
-_PYTHON = ("python", "interpreter")
-"""Backends that compile nothing."""
-
-RECENT = 8
-"""How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""
 
 
 class _Made:
@@ -126,7 +113,7 @@ class Decoder(_Made, DecoderBase):
 
         build = _build(replace(self._request, borrow=False))
         tell = self._tell if build.header["told"] else None
-        program = Program(_sites(build.header, 0), build.header["limit"], tell, self._untell)
+        program = Program(sites_of(build.header, 0), build.header["limit"], tell, self._untell)
         return callable_kernel(build.kernels[0], self.holder_type.family_, program)
 
     def _make(self, request: Request) -> None:
@@ -173,127 +160,42 @@ def _build(request: Request) -> Build:
     return Build(request)
 
 
-def _within_stack() -> AbstractContextManager[None]:
-    from rosetta_jit.pipeline.build import within_stack
-
-    return within_stack()
-
-
 def _loaded(request: Request) -> Loaded:
-    """The program that answers a request, compiled at most once a machine if all is identified that it depends on."""
-    if request.backend in _PYTHON:
-        build = _build(request)
-        with _within_stack():
-            return _interpreted(build)
-    cache = Cache.default()
-    name = cache.get_manifest(request_name(request.key())) if request.is_identified() else None
-    if name is not None:
-        with suppress(KeyError):
-            return _shared(name, cache)
-    build = _build(request)
-    with seldom_collected(), _within_stack():
-        return _compiled(build, cache)
-
-
-def _compiled(build: Build, cache: Cache) -> Loaded:
-    doubts = certainty.doubts(build.called)
-    name = None if doubts else entry_name(build.text)
-    if name is not None:
-        with suppress(KeyError):
-            return _answered(build, cache, name, _shared(name, cache))
-    addressing = build.check_functions()
-    image = build.image()
-    doubts = (*doubts, *certainty.doubts_of_compiled(build.called, addressing))
-    certainty.note(build.request, cache, doubts)
-    if name is None or doubts:
-        return _linked(build.header, image)
-    cache.put(name, build.header, image)
-    return _answered(build, cache, name, _linked(build.header, image))
-
-
-def _answered(build: Build, cache: Cache, name: str, loaded: Loaded) -> Loaded:
-    """A program that the cache has, as the answer to its request from now on, if the request says all."""
-    if build.request.is_identified():
-        cache.put_manifest(request_name(build.request.key()), build.files(), name)
-    return loaded
-
-
-@lru_cache(maxsize=RECENT)
-def _shared(name: str, cache: Cache) -> Loaded:
-    """A cached program: its code is loaded once, however many decoders it serves. KeyError if the cache has none that can be used."""
-    entry = cache.get(name)
-    if entry is None:
-        raise KeyError(name)
-    try:
-        return _linked(entry.header, entry.image)
-    except ForeignCodeError as error:
-        _warn(str(error))
-        raise KeyError(name) from error
+    """The program that answers a request."""
+    return answer(request, request.backend, _build, _linked, _interpreted)
 
 
 def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
     """A program from its object code."""
     holder_type = _holder_type(header)
-    library = _library(image, SYMBOLS[header["entry"]], header["host"])
-    size = run.native_run(library["size"]) if header["entry"] == "encode" else None
+    code = library(image, SYMBOLS[header["entry"]], header["host"])
+    size = run.native_run(code["size"]) if header["entry"] == "encode" else None
     return Loaded(
         holder_type=holder_type,
-        sites=_sites(header, 0),
-        kernel=run.native_run(library["kernel"]),
+        sites=sites_of(header, 0),
+        kernel=run.native_run(code["kernel"]),
         size=size,
-        size_sites=_sites(header, 1),
-        library=library,
+        size_sites=sites_of(header, 1),
+        library=code,
         borrow=header["entry"] == "borrow",
         told=header["told"],
         limit=header["limit"],
     )
 
 
-def _library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> native.Library:
-    """The code, with the functions of ours that it calls."""
-    if not called:
-        return native.load(image, symbols)
-    from rosetta_jit.runtime.code.host_table import fill
-    from rosetta_jit.runtime.images import image_functions
-
-    functions = image_functions()
-    return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
-
-
 def _interpreted(build: Build) -> Loaded:
     """A program that runs in Python: slowly, but anywhere."""
-    kernels = [_python_kernel(build, number) for number in range(len(build.kernels))]
+    kernels = [interpreted_kernel(build, build.request.backend, number) for number in range(len(build.kernels))]
     return Loaded(
         holder_type=_holder_type(build.header),
-        sites=_sites(build.header, 0),
+        sites=sites_of(build.header, 0),
         kernel=kernels[0],
         size=kernels[1] if len(kernels) > 1 else None,
-        size_sites=_sites(build.header, 1),
+        size_sites=sites_of(build.header, 1),
         borrow=build.request.borrow,
         told=build.header["told"],
         limit=build.header["limit"],
     )
-
-
-def _python_kernel(build: Build, number: int) -> run.Run:
-    from rosetta_jit.kernel.host import in_python
-
-    kernel = build.kernels[number]
-    functions = {each.name: in_python(each) for each in build.functions}
-    if build.header["host"]:
-        from rosetta_jit.runtime.images import image_functions
-
-        functions |= image_functions()
-    if build.request.backend == "python":
-        from rosetta_jit.backends.python.function import compile_python
-
-        with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
-            return run.python_run(compile_python(kernel, functions))
-    from functools import partial
-
-    from rosetta_jit.kernel.interpret import run as interpret
-
-    return run.python_run(partial(interpret, kernel, functions=functions))
 
 
 def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
@@ -359,19 +261,6 @@ def _of_request(program: Any, request: Request) -> Any:
     made = program.__new__(program)
     made._make(request)
     return made
-
-
-def _sites(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:
-    sites = header["sites"]
-    return tuple(run.Site.of(site) for site in sites[kernel]) if kernel < len(sites) else ()
-
-
-def _warn(why: str) -> None:
-    import warnings
-
-    from rosetta_jit.errors import CacheWarning
-
-    warnings.warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning, stacklevel=4)
 
 
 if not TYPE_CHECKING:

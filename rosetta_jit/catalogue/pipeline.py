@@ -44,6 +44,30 @@ def unknown_backend(name: str, known: Sequence[str]) -> Diagnostic:
     return Diagnostic("error", "unknown-backend", f"there is no backend `{name}`", help=f"there are {', '.join(known)}")
 
 
+def do_not_meet(filled: str, packed: str, span: Span | None, *, same_name: bool) -> Diagnostic:
+    """Two halves of a bridge that are not of one type."""
+    note = "they have one name, but not the same fields: each mapping has found another file" if same_name else ""
+    return Diagnostic(
+        "error",
+        "no-bridge",
+        f"what decodes fills `{filled}`, what encodes packs `{packed}`",
+        span=span,
+        label="this one is packed",
+        notes=(note,) if note else (),
+        help="a bridge is two mappings with the same data-holder, or one mapping and the data-holder's own encoding",
+    )
+
+
+def two_functions(name: str) -> Diagnostic:
+    """Both halves of a bridge were given a function of the same name, and not the same one."""
+    return Diagnostic("error", "two-functions", f"there are two functions `{name}`", help="give one of them another name")
+
+
+def half_a_bridge() -> Diagnostic:
+    """A bridge of which nothing says what it is between."""
+    return Diagnostic("error", "half-a-bridge", "no side of the bridge has a mapping", help="give a mapping, or use Bridge.of for a type")
+
+
 def unknown_leniency(name: str, encoding: str, known: Sequence[str]) -> Diagnostic:
     """Something that an encoding cannot be asked to forgive."""
     help_ = f"it can forgive {', '.join(known)}" if known else "leave out lenient="

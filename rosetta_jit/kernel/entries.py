@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
-EntryName = Literal["decode", "borrow", "encode"]
+EntryName = Literal["decode", "borrow", "encode", "bridge"]
 
 SYMBOLS: dict[EntryName, tuple[str, ...]] = {
     "decode": ("kernel", "call", "many"),
     "borrow": ("kernel", "call", "many"),
     "encode": ("kernel", "size", "call", "many", "sizes"),
+    "bridge": ("kernel", "size", "write", "call", "many"),
 }
 """By entry, what the object code defines for others; everything else in it is private."""

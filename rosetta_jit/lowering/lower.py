@@ -27,7 +27,7 @@ from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide
 from rosetta_jit.lowering.staging import staged_fields
-from rosetta_jit.lowering.writer import Where, Writer, block
+from rosetta_jit.lowering.writer import References, Where, Writer, block
 from rosetta_jit.model.initial_values import Births
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass
@@ -57,6 +57,7 @@ def lower(
     name: str,
     mapped: Mapped | None = None,
     borrow: bool = False,
+    references: References | None = None,
 ) -> Kernel:
     """The kernel that reads or writes messages of an encoding, or computes their size.
 
@@ -66,8 +67,10 @@ def lower(
         How the holder differs from the wire; None where it is of the wire's own type.
     borrow
         Bytes fields of the holder refer to the message instead of being copied.
+    references
+        How they refer to it: see `rosetta_jit.lowering.writer.References`. By the sign of their spans if None.
     """
-    lowering = _Lowering(encoding, layout, direction, borrow)
+    lowering = _Lowering(encoding, layout, direction, borrow, references)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
     mapped = _in_order(mapped, mapped.holder if direction == "decode" else mapped.wire)
@@ -118,9 +121,10 @@ class _Lowering:
     layout: Layout
     direction: Direction
     borrow: bool
+    references: References | None = None
 
     def kernel(self, name: str, relate: Relate) -> Kernel:
-        writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE])
+        writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
         own = len(writer.strides)
         attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
         bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)

@@ -54,6 +54,22 @@ class TooManyStatementsError(Exception):
     """A program beyond `MAX_STATEMENTS`, which it says; never leaves the pipeline."""
 
 
+@dataclass(frozen=True, slots=True)
+class References:
+    """Lanes that are to be the message itself: spans of bytes then say where in the message they are, and nothing is copied.
+
+    Attributes
+    ----------
+    found
+        Lanes whose spans refer to the message.
+    copied
+        Lanes that bytes are copied to as usual, because rules write to them, too.
+    """
+
+    found: set[int] = field(default_factory=set[int])
+    copied: frozenset[int] = frozenset()
+
+
 @dataclass(slots=True)
 class Tally:
     """How many statements a program has so far, its routines included."""
@@ -126,6 +142,18 @@ class Writer:
     deferred: list[Callable[[], None]] = field(default_factory=list["Callable[[], None]"])
     routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
     tally: Tally = field(default_factory=Tally)
+    references: References | None = None
+
+    def left_in_message(self, lane: int, size: Expr) -> Expr | None:
+        """The count of a span whose bytes stay in the message; None if they are to be copied. Its sign says whose bytes they are, unless
+        the whole lane becomes the message.
+        """
+        if self.references is None:
+            return Binary("sub", index(-1), size)
+        if lane in self.references.copied:
+            return None
+        self.references.found.add(lane)
+        return size
 
     def lane(self, name: str, stride: int) -> int:
         """The hidden lane of a name: for whatever a kernel must keep that the holder has no field for."""

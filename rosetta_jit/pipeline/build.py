@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Signature
+    from rosetta_jit.lowering.writer import References
     from rosetta_jit.pipeline.request import GivenFunction, Request
     from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Encoding
@@ -69,8 +70,9 @@ class Types:
 class Build:
     """A program in the making. Each stage is made when it is first asked for."""
 
-    def __init__(self, request: Request) -> None:
+    def __init__(self, request: Request, references: References | None = None) -> None:
         self.request = request
+        self.references = references
         self.reading = Reading()
         self.files_given = _named_files(self.request)
         self.search = SearchPath.of(self.request.folders, files=self.files_given)
@@ -116,8 +118,13 @@ class Build:
     @cached_property
     def kernels(self) -> tuple[Kernel, ...]:
         """Proven kernels: the decoder, or the encoder and what measures for it."""
+        return tuple(map(self._proven, self.lowered))
+
+    @cached_property
+    def lowered(self) -> tuple[Kernel, ...]:
+        """The same as they are before the passes and the proof."""
         directions = ("decode",) if self.request.direction == "decode" else ("encode", "size")
-        return tuple(self._proven(self._lowered(direction)) for direction in directions)
+        return tuple(map(self._lowered, directions))
 
     def _proven(self, kernel: Kernel) -> Kernel:
         try:
@@ -130,10 +137,13 @@ class Build:
         return passes.run(kernel)
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
-        types = self.types
+        types, request = self.types, self.request
         mapped = None if types.rules is None else self._mapped(types.rules)
+        borrow = request.borrow or self.references is not None
         try:
-            return lower(self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=self.request.borrow)
+            return lower(
+                self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=borrow, references=self.references
+            )
         except TooManyStatementsError as error:
             raise _report(self.request, words.too_many_statements(self._span, str(error))) from error
 
@@ -168,7 +178,11 @@ class Build:
     @cached_property
     def manners(self) -> str:
         """Where the manners of the holder's framework are found."""
-        return self._framework(self.types.holder).manners
+        return self.holder_framework.manners
+
+    @property
+    def holder_framework(self) -> Framework:
+        return self._framework(self.types.holder)
 
     def _framework(self, struct: Struct) -> Framework:
         """The framework whose IDL declares a type."""
@@ -218,7 +232,7 @@ class Build:
             "type": to_plain(Ref(self.types.holder.name), self.types.schema),
             "manners": self.manners,
             "entry": self.entry,
-            "sites": [[_plain_site(site) for site in kernel.sites] for kernel in self.kernels],
+            "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
             "host": our_functions(self.kernels),
             "limit": self.limit,
@@ -393,7 +407,8 @@ def _imported(build: Build) -> Schema:
     return Schema(types, constants=constants, left_out=left_out)
 
 
-def _plain_site(site: Site) -> list[Any]:
+def plain_site(site: Site) -> list[Any]:
+    """A site as the headers of programs have it."""
     parts = [[part.offset, part.size, part.path, part.step] for part in site.parts]
     return [site.kind, site.path, site.detail, site.line, parts, site.detail_lane]
 

@@ -79,6 +79,9 @@ class Request:
     functions: tuple[GivenFunction, ...] = ()
     backend: Backend | None = None
 
+    def __str__(self) -> str:
+        return f"{self.mapping or self.type} ({self.direction})"
+
     def is_identified(self) -> bool:
         """Whether the cache can know the answer: a function that is not identified may be another one each time."""
         return all(each.identity.digest is not None for each in self.functions)
@@ -88,6 +91,39 @@ class Request:
         functions = [[each.name, each.identity.digest] for each in self.functions]
         plain: dict[str, Any] = {name: getattr(self, name) for name in self.__match_args__}
         return {**plain, "functions": functions, "cwd": _here(), "path": environment.get("ROSETTA_JIT_PATH", "")}
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeRequest:
+    """One bridge: what decodes, and what encodes what was decoded.
+
+    Where one of them has neither mapping nor type, it is the data-holder of the other one, in the encoding of its own framework.
+    """
+
+    decode: Request
+    encode: Request
+
+    @property
+    def functions(self) -> tuple[GivenFunction, ...]:
+        """Functions of the user's own that the mappings call."""
+        return tuple(dict.fromkeys((*self.decode.functions, *self.encode.functions)))
+
+    def is_identified(self) -> bool:
+        """As of a `Request`."""
+        return self.decode.is_identified() and self.encode.is_identified()
+
+    def key(self, environment: Mapping[str, str] = os.environ) -> dict[str, Any]:
+        """As of a `Request`."""
+        return {"bridge": [self.decode.key(environment), self.encode.key(environment)]}
+
+    def __str__(self) -> str:
+        return f"{ends(self.decode)} to {ends(self.encode)} (bridge)"
+
+
+def ends(request: Request) -> str:
+    """One side of a bridge, for people."""
+    what = request.mapping or request.type or "the same type"
+    return what if request.encoding is None else f"{what}, {request.encoding}"
 
 
 def _here() -> str:

@@ -76,7 +76,7 @@ INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__"
 class CallSignature:
     """``__signature__`` of programs: that of their compiled call. Their classes have that of ``__init__``."""
 
-    def __get__(self, program: Program | None, owner: Any) -> Any:
+    def __get__(self, program: Told | None, owner: Any) -> Any:
         if program is None:
             return None
         from inspect import Parameter, Signature
@@ -86,32 +86,20 @@ class CallSignature:
         return Signature([first, *(Parameter(name, Parameter.POSITIONAL_ONLY, default=each) for name, each in optional.items())])
 
 
-class Program:
-    """What decoders and encoders share.
+class Told:
+    """A program whose kernels may ask for the time, or for the number of a message.
 
     ``_arguments`` are what a call takes: one argument, and others with their defaults.
     """
 
     _arguments: ClassVar[tuple[str, dict[str, object]]]
 
-    _loaded: Loaded
-    _holder: Holder
-    _plan: Plan
     _context: tuple[Context, NDArray[np.int64]]
-
-    def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
-        if "_loaded" in vars(self):
-            raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded = loaded
-        self._holder = loaded.holder_type()
-        self._plan = loaded.holder_type.family_.plan
-        lanes = self._holder.lanes_
-        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type)
-        bind_call(self, None if loaded.library is None else loaded.library["call"], context)
+    _asks: bool
 
     def _tell(self, lanes: Lanes, count: int) -> None:
         """Before so many messages are made: what their kernels may ask for. No others get their numbers."""
-        if self._loaded.told:
+        if self._asks:
             words = self._context[1]
             number = words[MADE]  # this line and the next are one step: CPython lets other threads run at calls and loops
             words[MADE] = number + count
@@ -130,7 +118,7 @@ class Program:
     def _untell(self, lanes: Lanes) -> None:
         """Behind a message that could not be made."""
         words, number = self._context[1], lanes.words[NUMBER]
-        if self._loaded.told and words[MADE] == number + 1:
+        if self._asks and words[MADE] == number + 1:
             words[MADE] = number
 
     if not TYPE_CHECKING:  # a descriptor, which inspect asks for
@@ -143,6 +131,24 @@ class Program:
     def builtin(self) -> Callable[..., Any]:
         """The program's call as a built-in function, for inner loops: CPython calls those faster than any object."""
         return builtin_of(self, "builtin", "What calling its __self__ does.")
+
+
+class Program(Told):
+    """What decoders and encoders share."""
+
+    _loaded: Loaded
+    _holder: Holder
+    _plan: Plan
+
+    def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
+        if "_loaded" in vars(self):
+            raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
+        self._loaded, self._asks = loaded, loaded.told
+        self._holder = loaded.holder_type()
+        self._plan = loaded.holder_type.family_.plan
+        lanes = self._holder.lanes_
+        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type)
+        bind_call(self, None if loaded.library is None else loaded.library["call"], context)
 
     @property
     def holder_type(self) -> type[Holder]:

@@ -13,7 +13,7 @@ import weakref
 import pytest
 
 import rosetta_jit as rj
-from rosetta_jit.api import programs
+from rosetta_jit.api import loading
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.runtime.callable import is_native
 
@@ -144,7 +144,7 @@ def test_a_class_ends_with_its_methods():
     gc.collect()
     assert method(data).s == "a"
     del method
-    programs._shared.cache_clear()
+    loading._shared.cache_clear()
     gc.collect()
     assert ends() is None
 

@@ -1,12 +1,14 @@
 """From kernels to object code: compile them with the entries from CPython.
 
-The object exports, beside each kernel as `kernel` (and `size`, of an encoder), what the entry's own file defines:
+The object exports, beside each kernel as `kernel` (and `size`, of an encoder, and `write`, of a bridge), what the entry's own file defines:
 
     decode, borrow    call many
     encode            call many sizes
+    bridge            call many
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
 kernel into it. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are kept in the cache.
+A bridge is one module.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from typing import TYPE_CHECKING
 from llvmlite import binding, ir
 
 from rosetta_jit.backends.entry.host_table import TABLE, table_text
+from rosetta_jit.backends.entry.references import references_text
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import (
@@ -47,6 +50,7 @@ USUAL: dict[EntryName, tuple[str, ...]] = {
     "decode": ("decode.ll",),
     "borrow": ("borrow.ll",),
     "encode": ("usable.ll", "measured.ll", "encode.ll"),
+    "bridge": ("bridge.ll",),
 }
 """The usual call."""
 
@@ -54,52 +58,84 @@ REST: dict[EntryName, tuple[str, ...]] = {
     "decode": ("any_decode.ll", "unmeasured.ll", "many.ll"),
     "borrow": ("unmeasured.ll", "many.ll"),
     "encode": ("usable.ll", "measured.ll", "any_encode.ll", "many.ll", "sizes.ll"),
+    "bridge": (),
 }
 """Whatever else is called."""
 
-FUNCTIONS = ("kernel", "size")
-"""The names of a program's kernels: what decodes or encodes, and, to encode, what measures."""
+FUNCTIONS = ("kernel", "size", "write")
+"""The names of a program's kernels: what decodes or encodes; to encode, what measures; of a bridge, what encodes what was decoded."""
 
 REST_SYMBOL = "any_call"
 
 
-def compile_program(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
+def compile_program(
+    kernels: Sequence[Kernel],
+    entry: EntryName,
+    *,
+    with_numba: bool,
+    functions: Sequence[UserFunction] = (),
+    references: Sequence[int] = (),
+) -> bytes:
     """Code for this machine's CPU, to be loaded by `runtime.code.native`: prelinked, or else an object file.
 
     Parameters
     ----------
     kernels
-        Verified kernels: one, or to encode the encoder and its size kernel.
+        Verified kernels: one, or to encode the encoder and its size kernel; of a bridge, the decoder, the size kernel and the encoder.
     with_numba
         Whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more. The code does the same.
     functions
         Those of the user's that the kernels call; they need numba.
+    references
+        Of a bridge, the lanes that become the message when it is decoded.
     """
-    if not is_prelinking():
-        return object_file(kernels, entry, with_numba=with_numba, functions=functions)
+    if not is_prelinking() or entry == "bridge":
+        image = object_file(kernels, entry, with_numba=with_numba, functions=functions, references=references)
+        return (prelinked(image) if is_prelinking() else None) or image
     machine = target_machine(hurried=are_vast(kernels))
-    module = linked(_own_parts(kernels, entry, with_numba=with_numba, functions=functions))
+    module = linked(_own_parts(kernels, entry, with_numba=with_numba, functions=functions, references=references))
     _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
     around = _surroundings(*_surrounding_texts(kernels, entry))
     image = prelinked(machine.emit_object(module), around)
-    return image or object_file(kernels, entry, with_numba=with_numba, functions=functions)
+    return image or object_file(kernels, entry, with_numba=with_numba, functions=functions, references=references)
 
 
-def object_file(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> bytes:
+def object_file(
+    kernels: Sequence[Kernel],
+    entry: EntryName,
+    *,
+    with_numba: bool,
+    functions: Sequence[UserFunction] = (),
+    references: Sequence[int] = (),
+) -> bytes:
     """The same as one object file, which only a linker can load."""
     machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
+    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions, references=references))
 
 
-def llvm_text(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> str:
+def llvm_text(
+    kernels: Sequence[Kernel],
+    entry: EntryName,
+    *,
+    with_numba: bool,
+    functions: Sequence[UserFunction] = (),
+    references: Sequence[int] = (),
+) -> str:
     """The optimised LLVM module as text."""
-    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba, functions=functions))
+    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba, functions=functions, references=references))
 
 
-def assembly(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction] = ()) -> str:
+def assembly(
+    kernels: Sequence[Kernel],
+    entry: EntryName,
+    *,
+    with_numba: bool,
+    functions: Sequence[UserFunction] = (),
+    references: Sequence[int] = (),
+) -> str:
     """The machine code as assembler text."""
     machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions))
+    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions, references=references))
 
 
 def optimised(
@@ -109,9 +145,10 @@ def optimised(
     *,
     with_numba: bool,
     functions: Sequence[UserFunction] = (),
+    references: Sequence[int] = (),
 ) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    parts = _own_parts(kernels, entry, with_numba=with_numba, functions=functions)
+    parts = _own_parts(kernels, entry, with_numba=with_numba, functions=functions, references=references)
     module = linked((*parts, *_surrounding_texts(kernels, entry)))
     _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
     return module
@@ -140,7 +177,9 @@ def _optimise(
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction]) -> Iterator[str]:
+def _own_parts(
+    kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction], references: Sequence[int]
+) -> Iterator[str]:
     """The modules that a program's own is linked from, as LLVM text."""
     if with_numba and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
@@ -153,12 +192,17 @@ def _own_parts(kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool,
         yield str(compile_function(function))
     if our_functions(kernels):
         yield table_text(kernels)
-    if _is_inside(kernels):
-        yield _usual(_entry_text(USUAL[entry], kernels, inline="alwaysinline"))
+    if entry == "bridge":
+        yield _entry_text(USUAL[entry], kernels, *("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels))
+        yield references_text(references)
+    elif _is_inside(kernels):
+        yield _usual(_entry_text(USUAL[entry], kernels, "alwaysinline"))
 
 
 def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
+    if entry == "bridge":
+        return ()
     rest = _entry_text(REST[entry], kernels)
     return (rest,) if _is_inside(kernels) else (_entry_text(USUAL[entry], kernels), rest)
 
@@ -194,12 +238,13 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
     return text, _template("numba.ll").replace("@typed", f'@"{name}"')
 
 
-def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel], *, inline: str = "") -> str:
-    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick."""
+def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel], *inline: str) -> str:
+    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick, `#1` and `#2` of a bridge's other kernels."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
-    return "\n".join((*texts, f"attributes #0 = {{ nounwind {inline} }}"))
+    attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline or ("",)))
+    return "\n".join((*texts, *attributes))
 
 
 def _thread_template() -> str:

@@ -181,8 +181,9 @@ class HolderFields:
     def put_bytes(self, path: Path, at: Expr, size: Expr) -> None:
         cell = self.mark(path)
         span = span_of(cell)
-        if self.borrow:  # the sign says that the bytes are the message's
-            self.set_span(cell, at, Binary("sub", index(-1), size))
+        left = self.writer.left_in_message(span.lane, size) if self.borrow else None
+        if left is not None:
+            self.set_span(cell, at, left)
             return
         start = self.reserve(span.lane, size)
         self.writer.emit(Copy(Place(span.lane, start), Wire(at), size))

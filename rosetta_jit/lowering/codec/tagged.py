@@ -237,8 +237,9 @@ def _read_bytes(message: Message, fields: HolderFields, span: Span, where: Where
     if text:
         writer.expect(IsText(Wire(at), size), "text", where, "not valid UTF-8")
     writer.advance(size)
-    if fields.borrow and not text:
-        return at, Binary("sub", index(-1), size)
+    left = writer.left_in_message(span.lane, size) if fields.borrow and not text else None
+    if left is not None:
+        return at, left
     start = fields.reserve(span.lane, size)
     writer.emit(Copy(Place(span.lane, start), Wire(at), size))
     return start, size

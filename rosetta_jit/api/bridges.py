@@ -1,0 +1,167 @@
+"""Bridges as users make them: one program from the bytes of one wire to those of another."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack, cast
+
+from rosetta_jit.api.loading import answer, interpreted_kernel, library, sites_of
+from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.kernel.entries import SYMBOLS
+from rosetta_jit.model.layout import layout
+from rosetta_jit.model.serial import from_plain
+from rosetta_jit.pipeline.request import BridgeRequest, ends
+from rosetta_jit.runtime import run
+from rosetta_jit.runtime.bridge import BridgeBase, LoadedBridge
+from rosetta_jit.runtime.callable import callable_class, public_class
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.api.options import Options
+    from rosetta_jit.pipeline.bridge import BridgeBuild
+    from rosetta_jit.pipeline.build import Stage
+
+
+class BridgeOptions(TypedDict, total=False):
+    """What can be said about a bridge besides its mappings.
+
+    Attributes
+    ----------
+    decode, encode : dict
+        The `Options` of what is read and of what is written: ``decode={"encoding": "yarp3"}``.
+    """
+
+    decode: Options
+    encode: Options
+
+
+class Bridge(BridgeBase):
+    """Turns messages of one wire into messages of another: ``bridge(message)`` gives bytes. Nothing of Python is between them.
+
+    The message is decoded by one mapping and encoded by the other, from the same memory; no holder comes into being. Bytes that both
+    mappings only hand on, such as pixels, are copied once, from message to message.
+
+    Parameters
+    ----------
+    decode_mapping : path or None
+        The mapping whose wire is read. None reads the data-holder of the other one as its own framework encodes it.
+    encode_mapping : path or None
+        The mapping whose wire is written, with the same data-holder. None writes that data-holder as its own framework encodes it.
+    **options
+        See `BridgeOptions`.
+
+    Raises
+    ------
+    MappingError, SchemaError
+        With every mistake and its place; also where the mappings have different data-holders.
+
+    Examples
+    --------
+    From a YARP bottle by way of ``rst.kinematics.JointAngles`` to its bytes, as protobuf has them:
+
+    >>> bridge = rj.Bridge("yarp/icub/torso_state.mapping")
+    """
+
+    _request: BridgeRequest
+
+    def __init__(
+        self,
+        decode_mapping: str | os.PathLike[str] | None,
+        encode_mapping: str | os.PathLike[str] | None = None,
+        **options: Unpack[BridgeOptions],
+    ) -> None:
+        given = _given(options)
+        read, written = (None if each is None else os.fspath(each) for each in (decode_mapping, encode_mapping))
+        decode = request_of("decode", given["decode"], mapping=read)
+        self._make(BridgeRequest(decode, request_of("encode", given["encode"], mapping=written)))
+
+    @classmethod
+    def of(cls, type_: str | type, encode_type: str | type | None = None, **options: Unpack[BridgeOptions]) -> Self:
+        """A bridge without a mapping, between two encodings of a type.
+
+        Parameters
+        ----------
+        type_
+            Qualified name of the type that is read, or a message class of protobuf's Python package.
+        encode_type
+            The same of what is written, where another framework has a type of the same name with the same fields.
+        **options
+            See `BridgeOptions`; at least one of them must say another encoding than the framework's usual one.
+        """
+        given = _given(options)
+        written = type_ if encode_type is None else encode_type
+        return _of_request(
+            cls, BridgeRequest(type_request("decode", type_, given["decode"]), type_request("encode", written, given["encode"]))
+        )
+
+    def stage(self, stage: Stage) -> str:
+        """What the bridge became, as text: of both halves, or of the code, which is one."""
+        return _build(self._request).stage(stage)
+
+    def __repr__(self) -> str:
+        return f"<Bridge from {ends(self._request.decode)} to {ends(self._request.encode)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies and pickles are made anew from the request, by the cache of their process: they share code, and no memory."""
+        return _of_request, (public_class(self), self._request)
+
+    def _make(self, request: BridgeRequest) -> None:
+        """Become the bridge that answers a request."""
+        self._request = request
+        self._start(cast("LoadedBridge", answer(request, request.decode.backend, _build, _linked, _interpreted)))
+
+
+def _given(options: BridgeOptions) -> dict[str, Options]:
+    unknown = sorted(set(options) - {"decode", "encode"})
+    if unknown:
+        raise TypeError(f"unknown option {unknown[0]!r}; a bridge has options of two halves: decode={{…}} and encode={{…}}")
+    return {"decode": options.get("decode", {}), "encode": options.get("encode", {})}
+
+
+def _of_request(program: Any, request: BridgeRequest) -> Any:
+    made = program.__new__(program)
+    made._make(request)
+    return made
+
+
+def bridge_of(request: BridgeRequest) -> Bridge:
+    """The bridge that answers a request."""
+    return _of_request(Bridge, request)
+
+
+def _build(request: BridgeRequest) -> BridgeBuild:
+    imported("rosetta_jit.pipeline.bridge")
+    from rosetta_jit.pipeline.bridge import BridgeBuild
+
+    return BridgeBuild(request)
+
+
+def _linked(header: Mapping[str, Any], image: bytes) -> LoadedBridge:
+    """A bridge from its object code."""
+    code = library(image, SYMBOLS["bridge"], header["host"])
+    kernels = run.native_run(code["kernel"]), run.native_run(code["size"]), run.native_run(code["write"])
+    return _loaded(header, kernels, code)
+
+
+def _interpreted(build: BridgeBuild) -> LoadedBridge:
+    """A bridge that runs in Python."""
+    decode, size, write = (interpreted_kernel(build, build.backend, number) for number in range(3))
+    return _loaded(build.header, (decode, size, write), None)
+
+
+def _loaded(header: Mapping[str, Any], kernels: tuple[run.Run, run.Run, run.Run], code: Any) -> LoadedBridge:
+    return LoadedBridge(
+        layout=layout(*from_plain(header["type"])),
+        kernels=kernels,
+        sites=tuple(sites_of(header, number) for number in range(3)),
+        references=tuple(header["references"]),
+        library=code,
+        told=header["told"],
+        limit=header["limit"],
+    )
+
+
+if not TYPE_CHECKING:
+    Bridge = callable_class(Bridge)

@@ -1,0 +1,149 @@
+"""Programs that answer requests: from the cache where it has them, else from the compiler."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.api import cacheable as certainty
+from rosetta_jit.runtime import run
+from rosetta_jit.runtime.cache.kernels import Cache
+from rosetta_jit.runtime.cache.names import entry_name, request_name
+from rosetta_jit.runtime.code import native
+from rosetta_jit.runtime.code.allowed import ForeignCodeError
+from rosetta_jit.startup.garbage import seldom_collected
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from contextlib import AbstractContextManager
+
+PYTHON = ("python", "interpreter")
+"""Backends that compile nothing."""
+
+RECENT = 8
+"""How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""
+
+Linked = Any
+"""What a process needs of a program: `rosetta_jit.runtime.program.Loaded`, or `rosetta_jit.runtime.bridge.LoadedBridge`."""
+
+
+def answer(
+    request: Any,
+    backend: str | None,
+    build_of: Callable[[Any], Any],
+    link: Callable[[Mapping[str, Any], bytes], Linked],
+    interpreted: Callable[[Any], Linked],
+) -> Linked:
+    """The program that answers a request, compiled at most once a machine if all is identified that it depends on.
+
+    Parameters
+    ----------
+    build_of
+        What compiles it: gives a `rosetta_jit.pipeline.build.Build`, or what is like it.
+    link
+        A program from the header and the object code that the cache keeps.
+    interpreted
+        One that runs in Python.
+    """
+    if backend in PYTHON:
+        build = build_of(request)
+        with _within_stack():
+            return interpreted(build)
+    cache = Cache.default()
+    name = cache.get_manifest(request_name(request.key())) if request.is_identified() else None
+    if name is not None:
+        with suppress(KeyError):
+            return _shared(name, cache, link)
+    build = build_of(request)
+    with seldom_collected(), _within_stack():
+        return _compiled(build, cache, link)
+
+
+def _within_stack() -> AbstractContextManager[None]:
+    from rosetta_jit.pipeline.build import within_stack
+
+    return within_stack()
+
+
+def _compiled(build: Any, cache: Cache, link: Callable[[Mapping[str, Any], bytes], Linked]) -> Linked:
+    doubts = certainty.doubts(build.called)
+    name = None if doubts else entry_name(build.text)
+    if name is not None:
+        with suppress(KeyError):
+            return _answered(build, cache, name, _shared(name, cache, link))
+    addressing = build.check_functions()
+    image = build.image()
+    doubts = (*doubts, *certainty.doubts_of_compiled(build.called, addressing))
+    certainty.note(build.request, cache, doubts)
+    if name is None or doubts:
+        return link(build.header, image)
+    cache.put(name, build.header, image)
+    return _answered(build, cache, name, link(build.header, image))
+
+
+def _answered(build: Any, cache: Cache, name: str, loaded: Linked) -> Linked:
+    """A program that the cache has, as the answer to its request from now on, if the request says all."""
+    if build.request.is_identified():
+        cache.put_manifest(request_name(build.request.key()), build.files(), name)
+    return loaded
+
+
+@lru_cache(maxsize=RECENT)
+def _shared(name: str, cache: Cache, link: Callable[[Mapping[str, Any], bytes], Linked]) -> Linked:
+    """A cached program: its code is loaded once, however many decoders it serves. KeyError if the cache has none that can be used."""
+    entry = cache.get(name)
+    if entry is None:
+        raise KeyError(name)
+    try:
+        return link(entry.header, entry.image)
+    except ForeignCodeError as error:
+        _warn(str(error))
+        raise KeyError(name) from error
+
+
+def library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> native.Library:
+    """The code, with the functions of ours that it calls."""
+    if not called:
+        return native.load(image, symbols)
+    from rosetta_jit.runtime.code.host_table import fill
+    from rosetta_jit.runtime.images import image_functions
+
+    functions = image_functions()
+    return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
+
+
+def interpreted_kernel(build: Any, backend: str | None, number: int) -> run.Run:
+    """A kernel of a program that runs in Python: slowly, but anywhere."""
+    from rosetta_jit.kernel.host import in_python
+
+    kernel = build.kernels[number]
+    functions = {each.name: in_python(each) for each in build.functions}
+    if build.header["host"]:
+        from rosetta_jit.runtime.images import image_functions
+
+        functions |= image_functions()
+    if backend == "python":
+        from rosetta_jit.backends.python.function import compile_python
+
+        with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
+            return run.python_run(compile_python(kernel, functions))
+    from functools import partial
+
+    from rosetta_jit.kernel.interpret import run as interpret
+
+    return run.python_run(partial(interpret, kernel, functions=functions))
+
+
+def sites_of(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:
+    """Where a kernel can fail, by number."""
+    sites = header["sites"]
+    return tuple(run.Site.of(site) for site in sites[kernel]) if kernel < len(sites) else ()
+
+
+def _warn(why: str) -> None:
+    import warnings
+
+    from rosetta_jit.errors import CacheWarning
+
+    warnings.warn(f"a cached kernel could not be loaded and is compiled again: {why}", CacheWarning, stacklevel=4)

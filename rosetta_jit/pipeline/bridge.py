@@ -1,0 +1,171 @@
+"""Bridges: two programs that meet at one type, as one. What one decodes the other encodes, from the same lanes.
+
+Bytes that no rule touches are not copied into lanes: their lane *is* the message while it is encoded (`lowering.writer.References`).
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.errors import MappingError
+from rosetta_jit.kernel.ir import Reserve
+from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.shape import is_told, our_functions, statements
+from rosetta_jit.lowering.writer import References
+from rosetta_jit.model.same_layout import have_same_fields
+from rosetta_jit.model.serial import to_plain
+from rosetta_jit.model.types import Ref, same_name
+from rosetta_jit.pipeline.build import Build, plain_site
+from rosetta_jit.pipeline.user_functions import check_compiled
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.kernel.host import UserFunction
+    from rosetta_jit.kernel.ir import Kernel
+    from rosetta_jit.language.uses import Signature
+    from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction, Request
+
+
+class BridgeBuild:
+    """A bridge in the making: `Build` for both halves at once."""
+
+    def __init__(self, request: BridgeRequest) -> None:
+        self.request = request
+
+    @cached_property
+    def halves(self) -> tuple[Build, Build]:
+        """What decodes and what encodes. MappingError where they do not meet."""
+        decode, encode = self.request.decode, self.request.encode
+        if _is_open(decode) and _is_open(encode):
+            raise MappingError((words.half_a_bridge(),))
+        first, second = Build(_closed(decode, encode)), Build(_closed(encode, decode))
+        filled, packed = first.types.holder, second.types.holder
+        is_same = same_name(filled.name, packed.name)
+        if not is_same or not have_same_fields(first.layout, second.layout):
+            span = second.checked.mapping.holder_span if second.request.mapping is not None else None
+            raise MappingError((words.do_not_meet(filled.name, packed.name, span, same_name=is_same),))
+        return self._referring(first), second
+
+    def _referring(self, build: Build) -> Build:
+        """What decodes, with bytes left in the message where nothing else is written to their lane."""
+        references = References()
+        referring = Build(build.request, references)
+        written = _written_lanes(referring.lowered)
+        if references.found & written:
+            references = References(copied=frozenset(written))
+            referring = Build(build.request, references)
+        return referring
+
+    @cached_property
+    def references(self) -> tuple[int, ...]:
+        """The lanes that become the message when it is decoded."""
+        decode, _ = self.halves
+        assert decode.references is not None
+        decode.lowered  # noqa: B018 - what is lowered says which lanes those are
+        return tuple(sorted(decode.references.found))
+
+    @cached_property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """Proven kernels: the decoder, what measures, the encoder."""
+        decode, encode = self.halves
+        writes, size = encode.kernels
+        return (*decode.kernels, size, writes)
+
+    @property
+    def backend(self) -> str:
+        """The one that was asked for of what decodes."""
+        return self.halves[0].backend
+
+    @cached_property
+    def functions(self) -> tuple[UserFunction, ...]:
+        """The functions of the user's that the kernels call."""
+        found: dict[str, UserFunction] = {}
+        for each in (function for half in self.halves for function in half.functions):
+            if found.setdefault(each.name, each).function is not each.function:
+                raise MappingError((words.two_functions(each.name),))
+        return tuple(found.values())
+
+    @cached_property
+    def called(self) -> tuple[GivenFunction, ...]:
+        """The same as they were given."""
+        return tuple(dict.fromkeys(given for half in self.halves for given in half.called))
+
+    @cached_property
+    def text(self) -> str:
+        """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
+        kernels = [to_text(kernel) for kernel in self.kernels]
+        digests = [f"{given.name} {given.identity.digest}" for given in self.called]
+        type_ = json.dumps(self.header["type"], sort_keys=True)
+        return "\n".join([self.backend, "bridge", str(self.references), str(self.halves[0].limit), type_, *kernels, *digests])
+
+    @cached_property
+    def header(self) -> dict[str, Any]:
+        """What a process needs besides the code, as JSON holds it."""
+        decode, _ = self.halves
+        return {
+            "type": to_plain(Ref(decode.types.holder.name), decode.types.schema),
+            "entry": "bridge",
+            "references": list(self.references),
+            "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
+            "told": is_told(self.kernels),
+            "host": our_functions(self.kernels),
+            "limit": decode.limit,
+        }
+
+    def check_functions(self) -> tuple[str, ...]:
+        """As of a `Build`."""
+        imported("rosetta_jit.backends.entry.link")
+        declared: Mapping[str, Signature] = {name: each for half in self.halves for name, each in half.types.functions.items()}
+        return check_compiled(self.functions, declared)
+
+    def image(self) -> bytes:
+        """The object code."""
+        imported("rosetta_jit.backends.entry.link")
+        from rosetta_jit.backends.entry.link import compile_program
+
+        return compile_program(self.kernels, "bridge", with_numba=False, functions=self.functions, references=self.references)
+
+    def stage(self, stage: str) -> str:
+        """What the halves became, one behind the other, as text; of the compiled code both together."""
+        match stage:
+            case "llvm" | "asm":
+                from rosetta_jit.backends.entry import link
+
+                print_ = link.llvm_text if stage == "llvm" else link.assembly
+                return print_(self.kernels, "bridge", with_numba=False, functions=self.functions, references=self.references)
+            case _:
+                return "\n".join(half.stage(stage) for half in self.halves)
+
+    def files(self) -> dict[str, str | None]:
+        """As of a `Build`."""
+        return {name: digest for half in self.halves for name, digest in half.files().items()}
+
+
+def _is_open(request: Request) -> bool:
+    return request.mapping is None and request.type is None and request.plain is None
+
+
+def _closed(request: Request, other: Request) -> Request:
+    """The request itself, or that for the type at which the other one ends."""
+    if not _is_open(request):
+        return request
+    build = Build(other)
+    plain = json.dumps(to_plain(Ref(build.types.holder.name), build.types.schema))
+    return replace(request, plain=plain, framework=request.framework or build.holder_framework.name)
+
+
+def _written_lanes(kernels: tuple[Kernel, ...]) -> set[int]:
+    """The lanes that a decoder takes rows of."""
+    return {
+        stmt.lane
+        for kernel in kernels
+        for block in (*kernel.bodies, *(routine.body for routine in kernel.routines))
+        for stmt, _ in statements(block)
+        if isinstance(stmt, Reserve)
+    }
