@@ -91,7 +91,7 @@ class TranscodingBuild:
         imported("rosetta_jit.backends.entry.link")
         from rosetta_jit.backends.entry.link import compile_program
 
-        return compile_program(self.kernels, "bridge", with_numba=False, references=self.references)
+        return compile_program(self.kernels, "bridge", with_numba=False, references=self.references, thorough=True)
 
     def stage(self, stage: str) -> str:
         """The kernels or their code, as text: there is neither a model nor a codec."""

@@ -75,6 +75,7 @@ def compile_program(
     with_numba: bool,
     functions: Sequence[UserFunction] = (),
     references: Sequence[int] = (),
+    thorough: bool = False,
 ) -> bytes:
     """Code for this machine's CPU, to be loaded by `runtime.code.native`: prelinked, or else an object file.
 
@@ -88,9 +89,11 @@ def compile_program(
         Those of the user's that the kernels call; they need numba.
     references
         Of a bridge, the lanes that become the message when it is decoded.
+    thorough
+        Take the time for LLVM's slow passes, whatever the kernels look like.
     """
     if not is_prelinking() or entry == "bridge":
-        image = object_file(kernels, entry, with_numba=with_numba, functions=functions, references=references)
+        image = object_file(kernels, entry, with_numba=with_numba, functions=functions, references=references, thorough=thorough)
         return (prelinked(image) if is_prelinking() else None) or image
     machine = target_machine(hurried=are_vast(kernels))
     module = linked(_own_parts(kernels, entry, with_numba=with_numba, functions=functions, references=references))
@@ -107,10 +110,12 @@ def object_file(
     with_numba: bool,
     functions: Sequence[UserFunction] = (),
     references: Sequence[int] = (),
+    thorough: bool = False,
 ) -> bytes:
     """The same as one object file, which only a linker can load."""
     machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_object(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions, references=references))
+    options = {"with_numba": with_numba, "thorough": thorough}
+    return machine.emit_object(optimised(kernels, entry, machine, **options, functions=functions, references=references))
 
 
 def llvm_text(
@@ -146,11 +151,12 @@ def optimised(
     with_numba: bool,
     functions: Sequence[UserFunction] = (),
     references: Sequence[int] = (),
+    thorough: bool = False,
 ) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
     parts = _own_parts(kernels, entry, with_numba=with_numba, functions=functions, references=references)
     module = linked((*parts, *_surrounding_texts(kernels, entry)))
-    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
+    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=thorough or bool(functions))
     return module
 
 
@@ -239,7 +245,7 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
 
 
 def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel], *inline: str) -> str:
-    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick, `#1` and `#2` of a bridge's other kernels."""
+    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick; `#1`, `#2` those of other kernels."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
