@@ -10,7 +10,7 @@ from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain
-from rosetta_jit.pipeline.request import BridgeRequest, ends
+from rosetta_jit.pipeline.request import BridgeRequest, Request, ends
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.bridge import BridgeBase, LoadedBridge
 from rosetta_jit.runtime.callable import callable_class, public_class
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.api.options import Options
     from rosetta_jit.pipeline.bridge import BridgeBuild
     from rosetta_jit.pipeline.build import Stage
+    from rosetta_jit.pipeline.transcoding import TranscodingBuild
 
 
 class BridgeOptions(TypedDict, total=False):
@@ -96,6 +97,15 @@ class Bridge(BridgeBase):
             cls, BridgeRequest(type_request("decode", type_, given["decode"]), type_request("encode", written, given["encode"]))
         )
 
+    @classmethod
+    def between(cls, source: str, target: str) -> Self:
+        """A bridge for any message that describes itself, from one encoding to another: ``Bridge.between("yarp3", "yarp4")``.
+
+        It needs neither type nor mapping, and takes bottles with whatever is in them. What is no bottle is a `DecodeError`; so is a bottle
+        with a vocab of 64 bits, which YARP 3 does not have, or with more than 256 lists within each other.
+        """
+        return _of_request(cls, BridgeRequest(Request("decode", encoding=source), Request("encode", encoding=target)))
+
     def stage(self, stage: Stage) -> str:
         """What the bridge became, as text: of both halves, or of the code, which is one."""
         return _build(self._request).stage(stage)
@@ -131,10 +141,14 @@ def bridge_of(request: BridgeRequest) -> Bridge:
     return _of_request(Bridge, request)
 
 
-def _build(request: BridgeRequest) -> BridgeBuild:
+def _build(request: BridgeRequest) -> BridgeBuild | TranscodingBuild:
     imported("rosetta_jit.pipeline.bridge")
-    from rosetta_jit.pipeline.bridge import BridgeBuild
+    from rosetta_jit.pipeline.bridge import BridgeBuild, is_open
 
+    if is_open(request.decode) and is_open(request.encode) and request.decode.encoding and request.encode.encoding:
+        from rosetta_jit.pipeline.transcoding import TranscodingBuild
+
+        return TranscodingBuild(request)
     return BridgeBuild(request)
 
 
@@ -145,7 +159,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> LoadedBridge:
     return _loaded(header, kernels, code)
 
 
-def _interpreted(build: BridgeBuild) -> LoadedBridge:
+def _interpreted(build: BridgeBuild | TranscodingBuild) -> LoadedBridge:
     """A bridge that runs in Python."""
     decode, size, write = (interpreted_kernel(build, build.backend, number) for number in range(3))
     return _loaded(build.header, (decode, size, write), None)

@@ -68,6 +68,13 @@ def half_a_bridge() -> Diagnostic:
     return Diagnostic("error", "half-a-bridge", "no side of the bridge has a mapping", help="give a mapping, or use Bridge.of for a type")
 
 
+def no_transcoding(source: str, target: str) -> Diagnostic:
+    """Two encodings between which messages cannot go without a type."""
+    what = f"nothing turns any message of `{source}` into one of `{target}`"
+    help_ = "messages that describe themselves are those of yarp3 and yarp4; between others give a type, or a mapping"
+    return Diagnostic("error", "no-transcoding", what, help=help_)
+
+
 def unknown_leniency(name: str, encoding: str, known: Sequence[str]) -> Diagnostic:
     """Something that an encoding cannot be asked to forgive."""
     help_ = f"it can forgive {', '.join(known)}" if known else "leave out lenient="

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import FrontEnd
     from rosetta_jit.runtime.holder import Manners
     from rosetta_jit.wire.codec import Encoding
+    from rosetta_jit.wire.tree import Tree
 
 ByteOrder = Literal["little", "big"]
 
@@ -46,6 +47,14 @@ class Encoder(Protocol):
 
     def __call__(self, struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
         """The encoding of that name of a struct."""
+        ...
+
+
+class TreeOf(Protocol):
+    """A function from two encodings to what messages of one become in the other."""
+
+    def __call__(self, source: str, target: str) -> Tree | None:
+        """The tree, or None."""
         ...
 
 
@@ -83,6 +92,8 @@ class Framework:
     texts
         A function that gives the file that declares a type the name that its text calls for: see `file_of`. Empty where all texts are of
         one kind.
+    transcoding
+        A function that gives the `rosetta_jit.wire.tree.Tree` of two encodings. Empty where messages do not describe themselves.
     """
 
     name: str
@@ -95,6 +106,11 @@ class Framework:
     byte_orders: tuple[str, ...] = ()
     features: str = ""
     texts: str = ""
+    transcoding: str = ""
+
+    def tree(self, source: str, target: str) -> Tree | None:
+        """What messages of one encoding become in another one, if they describe themselves and differ in codes alone."""
+        return cast("TreeOf", _found(self.transcoding))(source, target) if self.transcoding else None
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""

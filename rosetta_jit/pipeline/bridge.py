@@ -42,7 +42,7 @@ class BridgeBuild:
     def halves(self) -> tuple[Build, Build]:
         """What decodes and what encodes. MappingError where they do not meet."""
         decode, encode = self.request.decode, self.request.encode
-        if _is_open(decode) and _is_open(encode):
+        if is_open(decode) and is_open(encode):
             raise MappingError((words.half_a_bridge(),))
         first, second = Build(_closed(decode, encode)), Build(_closed(encode, decode))
         filled, packed = first.types.holder, second.types.holder
@@ -147,13 +147,14 @@ class BridgeBuild:
         return {name: digest for half in self.halves for name, digest in half.files().items()}
 
 
-def _is_open(request: Request) -> bool:
+def is_open(request: Request) -> bool:
+    """Whether one side of a bridge is the type at which the other one ends."""
     return request.mapping is None and request.type is None and request.plain is None
 
 
 def _closed(request: Request, other: Request) -> Request:
     """The request itself, or that for the type at which the other one ends."""
-    if not _is_open(request):
+    if not is_open(request):
         return request
     build = Build(other)
     plain = json.dumps(to_plain(Ref(build.types.holder.name), build.types.schema))

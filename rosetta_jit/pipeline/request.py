@@ -122,7 +122,7 @@ class BridgeRequest:
 
 def ends(request: Request) -> str:
     """One side of a bridge, for people."""
-    what = request.mapping or request.type or "the same type"
+    what = request.mapping or request.type or "the same message"
     return what if request.encoding is None else f"{what}, {request.encoding}"
 
 

@@ -181,7 +181,7 @@ def test_types_of_two_frameworks_meet_if_they_have_the_same_fields():
 
 def test_a_pickle_is_its_recipe(bridge, bottle):
     assert pickle.loads(pickle.dumps(bridge))(bottle) == bridge(bottle)  # noqa: S301 - our own bytes
-    assert repr(bridge) == "<Bridge from yarp/icub/torso_state.mapping, yarp4 to the same type>"
+    assert repr(bridge) == "<Bridge from yarp/icub/torso_state.mapping, yarp4 to the same message>"
 
 
 def test_the_cache_has_it(tmp_path, monkeypatch, bottle):

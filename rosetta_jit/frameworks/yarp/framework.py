@@ -12,5 +12,6 @@ FRAMEWORK = Framework(
     features=f"{HERE}.features:PROBES",
     idl={".bottle-schema": f"{HERE}.schema:parse", ".thrift": f"{HERE}.thrift:parse"},
     manners=f"{HERE}.manners:BOTTLE",
+    transcoding=f"{HERE}.transcoding:tree",
     encodings={"yarp": ENCODING, "yarp3": ENCODING, "yarp4": ENCODING, "yarp2012": ENCODING},
 )
