@@ -20,6 +20,7 @@ from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
+from rosetta_jit.language.function import files_of_offered
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
 from rosetta_jit.language.parse.unit_file import SUFFIX
@@ -35,6 +36,7 @@ from rosetta_jit.pipeline.request import Backend, ByteOrder
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
 from rosetta_jit.runtime import images
+from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
@@ -297,7 +299,8 @@ class Build:
         for lookup in self.reading.lookups:
             if lookup.found not in in_memory:
                 found[lookup.found] = lookup.digest
-        return found
+        offered = files_of_offered() if self.request.mapping is not None else ()
+        return found | {path: digest_file(path) for path in offered}
 
 
 @contextmanager
