@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.catalogue.pipeline import unknown_backend
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.installed import installed
 from rosetta_jit.kernel.passes import order as passes
@@ -64,7 +63,7 @@ class TranscodingBuild:
         name = self.request.decode.backend
         found = backend_named(name)
         if found is None:
-            raise SchemaError((unknown_backend(name or "", tuple(installed_backends())),))
+            raise SchemaError((words.unknown_backend(name or "", tuple(installed_backends())),))
         return found
 
     @cached_property
@@ -99,7 +98,7 @@ class TranscodingBuild:
         imported("rosetta_jit.backends.entry.link")
         from rosetta_jit.backends.entry.link import compile_program
 
-        return compile_program(self.kernels, "bridge", with_numba=False, references=self.references)
+        return compile_program(self.kernels, "bridge", with_numba=False, references=self.references, thorough=True)
 
     def stage(self, stage: str) -> str:
         """The kernels or their code, as text: there is neither a model nor a codec."""
