@@ -26,6 +26,8 @@ BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "b
 RUNTIME = {"runtime", "runtime.code", "runtime.cache", "runtime.functions"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
+FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions", "language.both_ways"}
+FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts"}
 ANYTHING = (
     COMPILER
     | API
@@ -63,6 +65,7 @@ MAY_IMPORT = {
     "language.units": READS | {"language.parse"},
     "language.arrays": READS,
     "language.functions": READS | {"language.arrays", "language.units"},
+    "functions": FUNCTIONS,
     "language.both_ways": READS | {"language.arrays", "language.functions"},
     "language.imports": READS | {"parsing", "language.parse", "language.parameters", "language.both_ways"},
     "language.resolve": READS | {"language.arrays", "language.units", "language.functions", "language.both_ways"},

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import field, replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
-from rosetta_jit.model.types import Float, Int
+from rosetta_jit.model.types import Bool, Enum, Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from rosetta_jit.language.typed import Expr
     from rosetta_jit.model.types import Type
 
@@ -26,6 +27,9 @@ SMALLEST = {32: 2.0**-126, 64: 2.0**-1022}
 
 FAR = 2.0**20
 """How far from what underflows a value is to be, for that not to count."""
+
+
+UNSHOWN = "it cannot be shown that its value comes back"
 
 
 class LostError(Exception):
@@ -51,9 +55,9 @@ class Value:
 
     type: Type
     source: Type
-    slope: Fraction = Fraction(1)
+    slope: Fraction | int = 1
     turns: int = 0
-    offsets: tuple[tuple[int, Fraction], ...] = ()
+    offsets: tuple[tuple[int, Fraction | int], ...] = ()
     errors: tuple[Error, ...] = ()
     bits: OneOf[32, 64] = 64
     limit: float = math.inf
@@ -74,12 +78,14 @@ class Value:
 
 def fraction(number: object) -> Fraction:
     """A constant, exactly."""
+    from fractions import Fraction  # takes a while to import, and only laws need it
+
     if isinstance(number, bool) or not isinstance(number, int | float) or not math.isfinite(number):
-        raise LostError("it cannot be shown that its value comes back")
+        raise LostError(UNSHOWN)
     return Fraction(number)
 
 
-def scaled(value: Value, factor: Fraction) -> Value:
+def scaled(value: Value, factor: Fraction | int) -> Value:
     """A value times a constant."""
     if not factor:
         raise LostError("it is multiplied by 0")
@@ -91,10 +97,10 @@ def turned(value: Value, turns: int) -> Value:
     return replace(value, turns=value.turns + turns, offsets=tuple((each + turns, offset) for each, offset in value.offsets))
 
 
-def shifted(value: Value, by: Fraction) -> Value:
+def shifted(value: Value, by: Fraction | int) -> Value:
     """A value plus a constant."""
     offsets = dict(value.offsets)
-    offsets[0] = offsets.get(0, Fraction(0)) + by
+    offsets[0] = offsets.get(0, 0) + by
     return replace(value, offsets=tuple((turns, offset) for turns, offset in sorted(offsets.items()) if offset))
 
 
@@ -118,7 +124,21 @@ def is_exact(value: Value, bits: int) -> bool:
     return not unit & (unit - 1) and unit * largest(value) <= 1 << PRECISION[bits]
 
 
-def largest(value: Value) -> Fraction:
+def largest(value: Value) -> Fraction | int:
     """How far what is computed of an integer may be from 0."""
     assert isinstance(value.source, Int)
     return abs(value.slope) * (1 << value.source.bits - value.source.signed) + sum(abs(offset) for _, offset in value.offsets)
+
+
+def is_whole(value: Value) -> bool:
+    """Whether integers stay integers."""
+    numbers = (value.slope, *(offset for _, offset in value.offsets))
+    return isinstance(value.source, Int | Bool | Enum) and not value.turns and all(number.denominator == 1 for number in numbers)
+
+
+def divided_by(value: Value, divisor: object, function: str, type_: Type) -> Value:
+    """A value divided by a constant; the quotient of integers has no fraction."""
+    quotient = scaled(value, 1 / fraction(divisor))
+    if isinstance(type_, Int) and not is_whole(quotient):
+        raise LostError(f"`{function}` drops remainders")
+    return rounded(quotient, 1)
