@@ -32,10 +32,15 @@ class BridgeOptions(TypedDict, total=False):
     ----------
     decode, encode : dict
         The `Options` of what is read and of what is written: ``decode={"encoding": "yarp3"}``.
+    decode_type, encode_type : str
+        In place of a mapping, the type that is read or written: that of the other mapping's data-holder, or, where that is a type of ROS 1 or
+        ROS 2, the type of the same name in the other one.
     """
 
     decode: Options
     encode: Options
+    decode_type: str
+    encode_type: str
 
 
 class Bridge(BridgeBase):
@@ -75,8 +80,9 @@ class Bridge(BridgeBase):
     ) -> None:
         given = _given(options)
         read, written = (None if each is None else os.fspath(each) for each in (decode_mapping, encode_mapping))
-        decode = request_of("decode", given["decode"], mapping=read)
-        self._make(BridgeRequest(decode, request_of("encode", given["encode"], mapping=written)))
+        decode = request_of("decode", given["decode"], mapping=read, type_=options.get("decode_type"))
+        encode = request_of("encode", given["encode"], mapping=written, type_=options.get("encode_type"))
+        self._make(BridgeRequest(decode, encode))
 
     @classmethod
     def of(cls, type_: str | type, encode_type: str | type | None = None, **options: Unpack[BridgeOptions]) -> Self:
@@ -124,7 +130,7 @@ class Bridge(BridgeBase):
 
 
 def _given(options: BridgeOptions) -> dict[str, Options]:
-    unknown = sorted(set(options) - {"decode", "encode"})
+    unknown = sorted(set(options) - BridgeOptions.__annotations__.keys())
     if unknown:
         raise TypeError(f"unknown option {unknown[0]!r}; a bridge has options of two halves: decode={{…}} and encode={{…}}")
     return {"decode": options.get("decode", {}), "encode": options.get("encode", {})}
