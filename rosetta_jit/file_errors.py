@@ -25,3 +25,16 @@ def named(path: Path) -> Generator[Path]:
         if error.filename is None:
             error.filename = str(path)
         raise
+
+
+@contextmanager
+def whole(path: Path) -> Generator[Path]:
+    """Another name for a file that is being written; it gets its own when all went well, and goes otherwise."""
+    part = path.with_name(f"{path.name}.part")
+    with named(path):
+        try:
+            yield part
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+        part.replace(path)

@@ -112,6 +112,7 @@ MAY_IMPORT = {
         "model",
         "kernel",
         "kernel.passes",
+        "language",
         "lowering",
         "lowering.rules",
         "backends",

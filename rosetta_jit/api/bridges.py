@@ -33,7 +33,7 @@ class BridgeOptions(TypedDict, total=False):
     decode, encode : dict
         The `Options` of what is read and of what is written: ``decode={"encoding": "yarp3"}``.
     decode_type, encode_type : str
-        In place of a mapping, the type that is read or written: that of the other mapping's data-holder, or, where that is a type of ROS 1 or
+        In place of a mapping, the type that is read or written: the data-holder of the other mapping, or, where that is of ROS 1 or of
         ROS 2, the type of the same name in the other one.
     """
 
@@ -85,7 +85,9 @@ class Bridge(BridgeBase):
         self._make(BridgeRequest(decode, encode))
 
     @classmethod
-    def of(cls, type_: str | type, encode_type: str | type | None = None, **options: Unpack[BridgeOptions]) -> Self:
+    def of(
+        cls, type_: str | type, encode_type: str | type | None = None, *, decode: Options | None = None, encode: Options | None = None
+    ) -> Self:
         """A bridge without a mapping, between two encodings of a type.
 
         Parameters
@@ -94,14 +96,12 @@ class Bridge(BridgeBase):
             Qualified name of the type that is read, or a message class of protobuf's Python package.
         encode_type
             The same of what is written, where another framework has a type of the same name with the same fields.
-        **options
-            See `BridgeOptions`; at least one of them must say another encoding than the framework's usual one.
+        decode, encode
+            The `Options` of what is read and of what is written.
         """
-        given = _given(options)
         written = type_ if encode_type is None else encode_type
-        return _of_request(
-            cls, BridgeRequest(type_request("decode", type_, given["decode"]), type_request("encode", written, given["encode"]))
-        )
+        request = BridgeRequest(type_request("decode", type_, decode or {}), type_request("encode", written, encode or {}))
+        return _of_request(cls, request)
 
     @classmethod
     def between(cls, source: str, target: str) -> Self:

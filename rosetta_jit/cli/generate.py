@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, encoding_of, parameters_of
-from rosetta_jit.file_errors import named
+from rosetta_jit.file_errors import whole
 
 if TYPE_CHECKING:
     import argparse
@@ -52,12 +52,12 @@ def _directions(text: str) -> tuple[str, ...]:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """All files are made before any is written; one line says what each is."""
+    """All files are made before any is written, and each is whole or not there; one line says what each is."""
     texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
     folder = Path(cast("str", arguments.output))
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
-        with named(folder / name) as path:
+        with whole(folder / name) as path:
             path.write_bytes(text if isinstance(text, bytes) else text.encode())
         print(f"wrote {folder / name}")
     return 0

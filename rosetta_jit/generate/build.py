@@ -11,6 +11,7 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.languages import installed
+from rosetta_jit.generate.origins import origins_of
 from rosetta_jit.generate.unit import Unit, UserFunction
 from rosetta_jit.kernel.ir import Digits, Nearest, Scale, Unary
 from rosetta_jit.kernel.passes import order as passes
@@ -22,8 +23,9 @@ from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import Build, within_stack
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
+    from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Kernel, Scalar
     from rosetta_jit.model.layout import Layout
@@ -69,7 +71,13 @@ def unit_of(request: Request, roles: tuple[Role, ...], name: str, *, freestandin
             kernels["size"] = build.kernels[1]
     _check(kernels, freestanding=freestanding)
     first = next(iter(builds.values()))
-    return Unit(name, tuple(_made_from(builds)), first.layout, _bounds(first, kernels), kernels, _functions(first, kernels), freestanding)
+    bounds, functions = _bounds(first, kernels), _functions(first, kernels)
+    return Unit(name, tuple(_made_from(builds)), first.layout, bounds, kernels, functions, freestanding, _origins(builds))
+
+
+def _origins(builds: Mapping[Role, AheadOfTime]) -> dict[Role, tuple[Origin, ...]]:
+    found: dict[Role, tuple[Origin, ...]] = {role: origins_of(build.types.rules or (), build.layout) for role, build in builds.items()}
+    return {**found, "size": found["encode"]} if "encode" in found else found
 
 
 def _for(request: Request, role: Role) -> Request:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.startup.dataclass import dataclass
@@ -9,6 +10,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.generate.origins import Origin
     from rosetta_jit.kernel.ir import Kernel, Scalar
     from rosetta_jit.model.layout import Layout
 
@@ -41,6 +43,8 @@ class Unit:
         How many rows of each lane a message can need; None where nothing bounds them.
     freestanding
         Only headers that a compiler has without a C library are included.
+    origins
+        Which fields of the holder the rules of the mapping name, for each kernel.
     """
 
     name: str
@@ -50,3 +54,4 @@ class Unit:
     kernels: Mapping[Role, Kernel]
     functions: tuple[UserFunction, ...] = ()
     freestanding: bool = False
+    origins: Mapping[Role, tuple[Origin, ...]] = field(default_factory=dict["Role", "tuple[Origin, ...]"])

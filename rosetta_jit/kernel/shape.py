@@ -57,8 +57,11 @@ if TYPE_CHECKING:
 MAX_BLOCKS = 100
 MAX_EXPRESSION = 100
 
-LONG = 128
-"""Statements from which on it is worth while to compile kernels another way, if that suits them."""
+SHORT = 32
+"""Statements up to which a call costs a kernel more than 5 % of its time."""
+
+MODERATE = 512
+"""Statements up to which LLVM can be asked for all that it can do."""
 
 LARGE = 4_000
 """Statements of a kernel from which on work that is done twice takes seconds."""
@@ -113,10 +116,10 @@ def are_straight_and_compute(kernels: Iterable[Kernel]) -> bool:
     return has_floats and not any(isinstance(part, IsText | Nearest | Digits | Scale) for part in parts)
 
 
-def have_loops_for_vectors(kernels: Iterable[Kernel]) -> bool:
-    """Whether kernels of moderate size have, in the first of their bodies, loops over elements that do nothing but compute and store."""
-    every = [each for kernel in kernels for each in _usual_statements(kernel)]
-    return len(every) <= LONG * 4 and any(isinstance(each, For) and _only_stores(each.body) for each in every)
+def has_loops_for_vectors(kernel: Kernel) -> bool:
+    """Whether a kernel of moderate size has, in the first of its bodies, loops over elements that do nothing but compute and store."""
+    every = list(_usual_statements(kernel))
+    return len(every) <= MODERATE and any(isinstance(each, For) and _only_stores(each.body) for each in every)
 
 
 def _only_stores(block: Block) -> bool:
@@ -132,7 +135,7 @@ def _usual_statements(kernel: Kernel) -> Iterator[Stmt]:
 def is_short_and_straight(kernel: Kernel) -> bool:
     """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
     every = [each for each, _ in statements(kernel.bodies[0])]
-    return len(every) < LONG and not any(isinstance(each, For | While) for each in every)
+    return len(every) <= SHORT and not any(isinstance(each, For | While) for each in every)
 
 
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.file_errors import named
+from rosetta_jit.file_errors import whole
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -58,16 +58,3 @@ def written(path: Path) -> Generator[Writer]:
         writer: Writer = make(str(path), file)
         yield writer
         writer.finish()
-
-
-@contextmanager
-def whole(path: Path) -> Generator[Path]:
-    """Another name for a file that is being written; it gets its own when all went well, and goes otherwise."""
-    part = path.with_name(f"{path.name}.part")
-    with named(path):
-        try:
-            yield part
-        except BaseException:
-            part.unlink(missing_ok=True)
-            raise
-        part.replace(path)

@@ -25,6 +25,15 @@ class Between(int):
     __slots__ = ()
 
 
+class Some(int):
+    """All bytes that are there, at least one."""
+
+    __slots__ = ()
+
+
+SOME = Some(1)
+
+
 @dataclass(frozen=True, slots=True)
 class Until:
     """All bytes up to a delimiter, which is part of them; a failure where there are more than ``most``."""
@@ -78,6 +87,8 @@ class Feed:
                 stop = self._start + want
                 if stop > self._end:
                     return
+                if want is SOME:
+                    stop = self._end
             elif not (stop := self._found(want)):
                 return
             piece = self._buffer[self._start : stop]

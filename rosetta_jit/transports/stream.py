@@ -149,10 +149,20 @@ class Stream:
         self._ended(self, why)
 
     def _finish(self, linger: float) -> None:
-        if not self._waiting:
+        """Half-close, and wait for the peer to do the same: a socket that is closed with unread bytes takes back what it sent last."""
+        self._finishing = True
+        if not linger:
             self.end()
         elif not self.closed:
             loop().later(linger, self.end)
+            self._half_close()
+
+    def _half_close(self) -> None:
+        if not self._waiting:
+            try:
+                self.socket.shutdown(socket.SHUT_WR)
+            except OSError:
+                self.end()
 
     def _watch(self) -> None:
         if self.closed:
@@ -176,6 +186,8 @@ class Stream:
             if not count:
                 self.end()
                 return
+            if feed.done:  # what comes after the end
+                return
             feed.filled(count)
         except BlockingIOError:
             return
@@ -186,7 +198,7 @@ class Stream:
         except Exception:
             self.end("a mistake in rosetta_jit")
             raise
-        if feed.done and not self.closed:
+        if feed.done and not self.closed and not self._finishing:
             self._finish(1.0)
 
     def _write(self) -> None:
@@ -205,8 +217,8 @@ class Stream:
         except OSError as error:
             self.end(_why(error))
             return
-        if self._finishing and not self._waiting:
-            self.end()
+        if self._finishing:
+            self._half_close()
         self._watch()
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import re
 import shutil
 import struct
@@ -157,6 +159,24 @@ def test_the_command_writes_both_files(tmp_path, capsys):
     text = (tmp_path / "joint_state.h").read_text()
     assert "joint_state_decode(" in text
     assert "joint_state_encode(" not in text
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path, capsys, monkeypatch):
+    def full(path, data):
+        with path.open("wb") as file:
+            file.write(data[:10])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "-o", str(tmp_path)]) == 1
+    assert "joint_state.h" in capsys.readouterr().err
+    assert not [*tmp_path.iterdir()]
+
+
+def test_the_lines_of_the_mapping_stand_beside_what_comes_from_them():
+    text = generated(TORSO, "c", BOTH, "torso")["torso.c"]
+    assert "(float)(roll * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */" in text
+    assert "const float element_2 = angles[start + 1]; /* torso_state.mapping:12: " in text
 
 
 @pytest.mark.parametrize(

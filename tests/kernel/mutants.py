@@ -42,7 +42,7 @@ MODULES = tuple(
 NO_PROOF = {
     "is_large",
     "are_straight_and_compute",
-    "have_loops_for_vectors",
+    "has_loops_for_vectors",
     "_usual_statements",
     "_only_stores",
     "is_short_and_straight",

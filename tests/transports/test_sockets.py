@@ -12,20 +12,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError, TransportError
+from tests.transports.free import free_port, until
 
 MESSAGES = [b"", b"a", bytes(range(256)), b"x" * 300_000, b"end"]
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as found:
-        return found.getsockname()[1]
-
-
-def until(condition, seconds=5.0):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
 
 
 @pytest.mark.parametrize("frame", ["u32", "u32be", "u64", "u64be", "varint"])

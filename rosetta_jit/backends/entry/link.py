@@ -7,8 +7,8 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder, a
     bridge            call many
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
-kernel into it. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are kept in the cache.
-A bridge is one module.
+kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are
+kept in the cache.
 """
 
 from __future__ import annotations
@@ -17,19 +17,20 @@ import os
 import sys
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NotRequired, TypedDict, Unpack
 
 from llvmlite import binding, ir
 
 from rosetta_jit.backends.entry.host_table import TABLE, table_text
 from rosetta_jit.backends.entry.references import references_text
+from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.shape import (
     are_straight_and_compute,
     are_vast,
     calls_to_host,
-    have_loops_for_vectors,
+    has_loops_for_vectors,
     is_large,
     is_short_and_straight,
     is_told,
@@ -68,100 +69,60 @@ FUNCTIONS = ("kernel", "size", "write")
 REST_SYMBOL = "any_call"
 
 
-def compile_program(
-    kernels: Sequence[Kernel],
-    entry: EntryName,
-    *,
-    with_numba: bool,
-    functions: Sequence[UserFunction] = (),
-    references: Sequence[int] = (),
-    thorough: bool = False,
-) -> bytes:
+class Options(TypedDict):
+    """What a program is compiled with, besides its kernels.
+
+    ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code
+    does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
+    that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
+    """
+
+    with_numba: bool
+    functions: NotRequired[Sequence[UserFunction]]
+    references: NotRequired[Sequence[int]]
+    thorough: NotRequired[bool]
+
+
+def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """Code for this machine's CPU, to be loaded by `runtime.code.native`: prelinked, or else an object file.
 
-    Parameters
-    ----------
-    kernels
-        Verified kernels: one, or to encode the encoder and its size kernel; of a bridge, the decoder, the size kernel and the encoder.
-    with_numba
-        Whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more. The code does the same.
-    functions
-        Those of the user's that the kernels call; they need numba.
-    references
-        Of a bridge, the lanes that become the message when it is decoded.
-    thorough
-        Take the time for LLVM's slow passes, whatever the kernels look like.
+    ``kernels`` are verified: one, or to encode the encoder and its size kernel; of a bridge, the decoder, the size kernel and the encoder.
     """
-    if not is_prelinking() or entry == "bridge":
-        image = object_file(kernels, entry, with_numba=with_numba, functions=functions, references=references, thorough=thorough)
-        return (prelinked(image) if is_prelinking() else None) or image
+    if not is_prelinking():
+        return object_file(kernels, entry, **options)
     machine = target_machine(hurried=are_vast(kernels))
-    module = linked(_own_parts(kernels, entry, with_numba=with_numba, functions=functions, references=references))
-    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=bool(functions))
-    around = _surroundings(*_surrounding_texts(kernels, entry))
-    image = prelinked(machine.emit_object(module), around)
-    return image or object_file(kernels, entry, with_numba=with_numba, functions=functions, references=references)
+    module = linked(_own_parts(kernels, entry, options, whole=False))
+    _optimise(module, kernels, entry, machine, options)
+    image = prelinked(machine.emit_object(module), *_surroundings(module, kernels, entry), gives=(*SYMBOLS[entry], TABLE))
+    return image or object_file(kernels, entry, **options)
 
 
-def object_file(
-    kernels: Sequence[Kernel],
-    entry: EntryName,
-    *,
-    with_numba: bool,
-    functions: Sequence[UserFunction] = (),
-    references: Sequence[int] = (),
-    thorough: bool = False,
-) -> bytes:
+def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
     """The same as one object file, which only a linker can load."""
     machine = target_machine(hurried=are_vast(kernels))
-    options = {"with_numba": with_numba, "thorough": thorough}
-    return machine.emit_object(optimised(kernels, entry, machine, **options, functions=functions, references=references))
+    return machine.emit_object(optimised(kernels, entry, machine, options))
 
 
-def llvm_text(
-    kernels: Sequence[Kernel],
-    entry: EntryName,
-    *,
-    with_numba: bool,
-    functions: Sequence[UserFunction] = (),
-    references: Sequence[int] = (),
-) -> str:
+def llvm_text(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The optimised LLVM module as text."""
-    return str(optimised(kernels, entry, target_machine(), with_numba=with_numba, functions=functions, references=references))
+    return str(optimised(kernels, entry, target_machine(), options))
 
 
-def assembly(
-    kernels: Sequence[Kernel],
-    entry: EntryName,
-    *,
-    with_numba: bool,
-    functions: Sequence[UserFunction] = (),
-    references: Sequence[int] = (),
-) -> str:
+def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> str:
     """The machine code as assembler text."""
     machine = target_machine(hurried=are_vast(kernels))
-    return machine.emit_assembly(optimised(kernels, entry, machine, with_numba=with_numba, functions=functions, references=references))
+    return machine.emit_assembly(optimised(kernels, entry, machine, options))
 
 
-def optimised(
-    kernels: Sequence[Kernel],
-    entry: EntryName,
-    machine: binding.TargetMachine,
-    *,
-    with_numba: bool,
-    functions: Sequence[UserFunction] = (),
-    references: Sequence[int] = (),
-    thorough: bool = False,
-) -> binding.ModuleRef:
+def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    parts = _own_parts(kernels, entry, with_numba=with_numba, functions=functions, references=references)
-    module = linked((*parts, *_surrounding_texts(kernels, entry)))
-    _optimise(module, kernels, (*SYMBOLS[entry], TABLE), machine, thorough=thorough or bool(functions))
+    module = linked((*_own_parts(kernels, entry, options, whole=True), *_surrounding_texts(kernels, entry)))
+    _optimise(module, kernels, entry, machine, options)
     return module
 
 
 def _optimise(
-    module: binding.ModuleRef, kernels: Sequence[Kernel], exported: Sequence[str], machine: binding.TargetMachine, *, thorough: bool
+    module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options
 ) -> None:
     """Run LLVM's passes once.
 
@@ -169,70 +130,79 @@ def _optimise(
     five times as long, are for loops over elements that become loops over vectors; those of O1, with vectors made of statements that stand
     side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
-    make_private(module, exported)
-    thorough = thorough or have_loops_for_vectors(kernels)
+    make_private(module, (*SYMBOLS[entry], TABLE))
+    thorough = bool(options.get("functions") or options.get("thorough")) or any(has_loops_for_vectors(kernel) for kernel in kernels)
     if are_vast(kernels) or not (thorough or are_straight_and_compute(kernels)):
         run_few_passes(module, machine)
         return
-    options = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
-    options.loop_vectorization = options.slp_vectorization = True
-    builder = binding.create_pass_builder(machine, options)
+    tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
+    tuning.loop_vectorization = tuning.slp_vectorization = True
+    builder = binding.create_pass_builder(machine, tuning)
     run_passes(builder.getModulePassManager(), module, builder)
 
 
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(
-    kernels: Sequence[Kernel], entry: EntryName, *, with_numba: bool, functions: Sequence[UserFunction], references: Sequence[int]
-) -> Iterator[str]:
-    """The modules that a program's own is linked from, as LLVM text."""
-    if with_numba and not is_large(kernels[0]) and not calls_to_host(kernels):
+def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text. `support` is defined in what is to be ``whole``."""
+    if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0])
-    yield from (_emitted(kernel, name) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
-    for function in functions:
+        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole)
+    yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+    for function in options.get("functions", ()):
         from rosetta_jit.backends.numba.user_functions import compile_function
 
         yield str(compile_function(function))
     if our_functions(kernels):
         yield table_text(kernels)
     if entry == "bridge":
-        yield _entry_text(USUAL[entry], kernels, *("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels))
-        yield references_text(references)
-    elif _is_inside(kernels):
-        yield _usual(_entry_text(USUAL[entry], kernels, "alwaysinline"))
+        yield references_text(options.get("references", ()))
+    if _is_inside(kernels, entry):
+        yield _usual(_entry_text(USUAL[entry], kernels), SYMBOLS[entry])
 
 
 def _surrounding_texts(kernels: Sequence[Kernel], entry: EntryName) -> tuple[str, ...]:
     """The modules that a program's surroundings are linked from."""
-    if entry == "bridge":
-        return ()
-    rest = _entry_text(REST[entry], kernels)
-    return (rest,) if _is_inside(kernels) else (_entry_text(USUAL[entry], kernels), rest)
+    around = (REST[entry],) if _is_inside(kernels, entry) else (USUAL[entry], REST[entry])
+    return tuple(_entry_text(templates, kernels) for templates in around if templates)
 
 
-def _is_inside(kernels: Sequence[Kernel]) -> bool:
-    """Whether the first kernel becomes a part of the usual call."""
-    return is_short_and_straight(kernels[0])
-
-
-@cache
-def _usual(text: str) -> str:
-    """The module of the usual call with nothing left to do in it but to put a kernel there."""
-    return kept("call", text, lambda: shortened(text, SYMBOLS["encode"]).encode()).decode()
+def _is_inside(kernels: Sequence[Kernel], entry: EntryName) -> bool:
+    """Whether the usual call is compiled with the kernels, of which those that are short become a part of it."""
+    return entry == "bridge" or is_short_and_straight(kernels[0])
 
 
 @cache
-def _surroundings(*texts: str) -> bytes:
-    """The object file of what stands around a program's own module."""
-    return kept("entry", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
+def _usual(text: str, exported: tuple[str, ...]) -> str:
+    """The module of the usual call with nothing left to do in it but to put kernels there."""
+    return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
-def _emitted(kernel: Kernel, name: str) -> str:
+def _surroundings(module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
+    """The object files of what stands around a program's own module."""
+    around = _surrounding_texts(kernels, entry)
+    if around:
+        yield _entries(*around)
+    wanted = {each.name for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
+    if wanted:
+        yield _support(*sorted(wanted))
+
+
+@cache
+def _entries(*texts: str) -> bytes:
+    return kept("entries", "\n".join(texts), lambda: object_of(texts, (*SYMBOLS["encode"], REST_SYMBOL)))
+
+
+@cache
+def _support(*names: str) -> bytes:
+    return kept("support", " ".join(names), lambda: object_of([definitions.text(names)], names))
+
+
+def _emitted(kernel: Kernel, name: str, *, whole: bool) -> str:
     module = ir.Module(name)
-    llvm.emit(module, kernel, name)
+    llvm.emit(module, kernel, name, whole=whole)
     return str(module)
 
 
@@ -244,12 +214,13 @@ def _typed(kernel: Kernel) -> tuple[str, str]:
     return text, _template("numba.ll").replace("@typed", f'@"{name}"')
 
 
-def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel], *inline: str) -> str:
-    """A module of an entry's functions. `#0` are the attributes of the call that is to be quick; `#1`, `#2` those of other kernels."""
+def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
+    """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
-    attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline or ("",)))
+    inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
+    attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))
 
 

@@ -1,4 +1,4 @@
-"""Floats in decimal as private LLVM functions around the C library's `snprintf` and `strtod`, which round correctly.
+"""Floats in decimal as LLVM functions around the C library's `snprintf` and `strtod`, which round correctly.
 
 Neither the point that they write nor the one that they read is looked at: the process may have set any locale.
 """
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.frame import F32, F64, I8, I32, I64, POINTER, constant, intrinsic
+from rosetta_jit.backends.llvm.support import BOTH, declared
 from rosetta_jit.kernel.decimals import FIRST, LAST, LEAST_NORMAL, MAX_DIGITS
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ ROOM = 400
 """Bytes of the longest number that is written: a float64 has 309 digits before its point."""
 
 EXPONENT_ROOM = 32
-BOTH = ir.LiteralStructType([I64, I64])
 SNPRINTF = ir.FunctionType(I32, [POINTER, I64, POINTER], var_arg=True)
 
 
@@ -27,32 +27,22 @@ def shortest(module: ir.Module, builder: ir.IRBuilder, value: ir.Value, part: in
     """Digits (part 0) or scale (part 1) of a float, as `kernel.decimals.shortest`."""
     single = value.type == F32
     name = f"rosetta_shortest_f{32 if single else 64}"
-    function = _defined(module, name, ir.FunctionType(BOTH, [F64]), lambda made: _shortest(made, single=single))
+    function = declared(module, name)
     wide = builder.fpext(value, F64) if single else value
     return builder.extract_value(builder.call(function, [wide]), part)
 
 
 def fixed(module: ir.Module, builder: ir.IRBuilder, value: ir.Value, places: int) -> ir.Value:
     """The digits of a float to a number of decimals, as an integer."""
-    function = _defined(module, "rosetta_fixed", ir.FunctionType(I64, [F64, I32]), _fixed)
+    function = declared(module, "rosetta_fixed")
     wide = builder.fpext(value, F64) if value.type == F32 else value
     return builder.call(function, [wide, ir.Constant(I32, places)])
 
 
 def nearest(module: ir.Module, builder: ir.IRBuilder, text: ir.Value, size: ir.Value, exponent: ir.Value) -> ir.Value:
     """The float64 nearest to the digits of a text times a power of ten."""
-    function = _defined(module, "rosetta_nearest", ir.FunctionType(F64, [POINTER, I64, I64]), _nearest)
+    function = declared(module, "rosetta_nearest")
     return builder.call(function, [text, size, exponent])
-
-
-def _defined(module: ir.Module, name: str, signature: ir.FunctionType, define: Callable[[ir.Function], None]) -> ir.Function:
-    if name in module.globals:
-        return module.globals[name]
-    function = ir.Function(module, signature, name)
-    function.linkage = "internal"
-    function.attributes.add("nounwind")
-    define(function)
-    return function
 
 
 def _shortest(function: ir.Function, *, single: bool) -> None:
@@ -72,7 +62,7 @@ def _shortest(function: ir.Function, *, single: bool) -> None:
     count = builder.phi(I32)
     decimals = builder.sub(count, ir.Constant(I32, 1))
     builder.call(_snprintf(module), [room, constant(ROOM), _text(module, "%.*e"), decimals, value])
-    found = builder.call(_reading(module), [room])
+    found = builder.call(declared(module, "rosetta_digits"), [room])
     digits, power = builder.extract_value(found, 0), builder.sub(builder.extract_value(found, 1), builder.sext(decimals, I64))
     last = builder.icmp_signed("==", count, ir.Constant(I32, LAST[type_]))  # whatever rounding the process has asked for
     builder.cbranch(builder.or_(last, _reads_back(module, builder, room, value, single=single)), done, other)
@@ -113,7 +103,7 @@ def _fixed(function: ir.Function) -> None:
     builder.cbranch(builder.fcmp_ordered("<", value, ir.Constant(F64, float("inf"))), finite, nothing)
     builder.position_at_end(finite)
     builder.call(_snprintf(module), [room, constant(ROOM), _text(module, "%.*f"), places, value])
-    builder.ret(builder.extract_value(builder.call(_reading(module), [room]), 0))
+    builder.ret(builder.extract_value(builder.call(declared(module, "rosetta_digits"), [room]), 0))
     builder.position_at_end(nothing)
     builder.ret(constant(0))
 
@@ -168,12 +158,8 @@ def _nearest(function: ir.Function) -> None:
     builder.ret(_strtod(module, builder, room))
 
 
-def _reading(module: ir.Module) -> ir.Function:
-    """``{digits, exponent}`` of what `snprintf` has written: every digit before an `e` counts, whatever stands between."""
-    return _defined(module, "rosetta_digits", ir.FunctionType(BOTH, [POINTER]), _read)
-
-
 def _read(function: ir.Function) -> None:
+    """Every digit before an `e` counts, whatever stands between."""
     (text,) = function.args
     entry, loop, go_on, ended, power, done = (
         function.append_basic_block(name) for name in ("entry", "loop", "go", "ended", "power", "done")
@@ -227,3 +213,13 @@ def _text(module: ir.Module, text: str) -> ir.Value:
     known = ir.GlobalVariable(module, type_, name)
     known.linkage, known.global_constant, known.initializer = "internal", True, ir.Constant(type_, data)
     return known
+
+
+DEFINITIONS: dict[str, Callable[[ir.Function], None]] = {
+    "rosetta_shortest_f64": lambda function: _shortest(function, single=False),
+    "rosetta_shortest_f32": lambda function: _shortest(function, single=True),
+    "rosetta_fixed": _fixed,
+    "rosetta_nearest": _nearest,
+    "rosetta_digits": _read,
+}
+"""What gives each of the functions of `support` that belong here its body."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, assert_never
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Variable, constant, intrinsic, is_float, is_signed
+from rosetta_jit.backends.llvm.support import declared
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -86,9 +87,7 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             values = expression(frame, then), expression(frame, otherwise)
             return frame.builder.select(expression(frame, condition), *values)
         case IsText(address, size):
-            from rosetta_jit.backends.llvm.utf8 import is_text_function
-
-            return frame.builder.call(is_text_function(frame.module), [pointer(frame, address), expression(frame, size)])
+            return frame.builder.call(declared(frame.module, "rosetta_is_text"), [pointer(frame, address), expression(frame, size)])
         case Nearest() | Digits() | Scale():
             return _decimal(frame, expr)
         case _:

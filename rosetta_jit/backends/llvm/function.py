@@ -15,6 +15,7 @@ from llvmlite import ir
 
 from rosetta_jit.backends.base import counted_lanes, statements
 from rosetta_jit.backends.llvm import checks as llvm_checks
+from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, state_word
@@ -50,10 +51,11 @@ TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
+def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) -> ir.Function:
     """Define the kernel's function in the module.
 
-    The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact.
+    The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact. Unless the module is to be ``whole``, it only
+    declares the functions of `support` that the kernel calls.
     """
     calls, routines = _calls(kernel), dict[str, "ir.Function | Routine"]()
     for routine in kernel.routines:
@@ -65,6 +67,8 @@ def emit(module: ir.Module, kernel: Kernel, name: str) -> ir.Function:
             function.attributes.add("noinline")
     function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
     _attempt(function, kernel, kernel.bodies, routines)
+    if whole:
+        definitions.define(module)
     return _behind_check(module, kernel, function, name) if kernel.hidden else function
 
 

@@ -1,4 +1,4 @@
-"""The UTF-8 check as a private LLVM function: many ASCII bytes at a time, else one character at a time by Unicode 15, table 3-7.
+"""The UTF-8 check as an LLVM function: many ASCII bytes at a time, else one character at a time by Unicode 15, table 3-7.
 
 The bytes behind the last whole word are looked at together with those before them, as the last word of the text.
 """
@@ -9,24 +9,18 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import I1, I8, I64, POINTER, constant
+from rosetta_jit.backends.llvm.frame import I1, I8, I64, constant
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-NAME = "rosetta_is_text"
 WORD = 8
 """Bytes."""
 
 
-def is_text_function(module: ir.Module) -> ir.Function:
-    """``i1 rosetta_is_text(bytes, size)``, defined in the module at the first call."""
-    if NAME in module.globals:
-        return module.globals[NAME]
-    function = ir.Function(module, ir.FunctionType(I1, [POINTER, I64]), NAME)
-    function.linkage = "internal"
+def define(function: ir.Function) -> None:
+    """``i1 rosetta_is_text(bytes, size)``."""
     _Check(function).define()
-    return function
 
 
 class _Check:

@@ -20,7 +20,10 @@ from rosetta_jit.kernel.shape import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Direction, Kernel, Routine
 
@@ -47,8 +50,11 @@ class Printed:
     hidden: frozenset[int]
 
 
-def print_kernel(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
-    """The functions of a kernel that is for a message alone (`kernel.passes.alone`); their names begin with its role."""
+def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Origin] = ()) -> Printed:
+    """The functions of a kernel that is for a message alone (`kernel.passes.alone`); their names begin with its role.
+
+    ``origins`` say which lines of the mapping stand beside the statements.
+    """
     writer, support, hidden, routines = Writer(), set[str](), set[int](), dict[str, Callable]()
     words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}
 
@@ -61,7 +67,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
         )
     numbers = {0: 0}
     attempts = tuple(
-        _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers))
+        _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers, origins=origins))
         for number in range(len(kernel.bodies))
     )
     return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden))

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
-    return as_c(unit, print_kernel)
+    return as_c(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())))
 
 
 def as_c(unit: Unit, print_function: Callable[[Kernel, Lanes, Role], Printed]) -> dict[str, str]:

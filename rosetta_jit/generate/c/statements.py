@@ -13,6 +13,7 @@ from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.c.expressions import bare, expression, location, store, written
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.kernel.ir import (
     Address,
     Advance,
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping, Sequence
 
     from rosetta_jit.generate.c.expressions import Scope
+    from rosetta_jit.generate.origins import Origin
     from rosetta_jit.kernel.ir import Effect, Site
 
 
@@ -69,7 +71,8 @@ class Function:
     """One function being printed.
 
     ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
-    returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got.
+    returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got, ``origins`` what
+    rules of the mapping name.
     """
 
     scope: Scope
@@ -79,6 +82,7 @@ class Function:
     finish: tuple[str, ...] = ()
     is_routine: bool = False
     numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
+    origins: Sequence[Origin] = ()
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
 
     def line(self, text: str) -> None:
@@ -157,7 +161,7 @@ def _statement(function: Function, stmt: Stmt) -> None:
         case Let() | Var() | Assign():
             _bind(function, stmt)
         case Store() | SetField() | Copy() | Fill():
-            function.line(_effect(scope, stmt))
+            function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case Reserve() | Advance():
             _rows(function, stmt)
         case Return(position):
@@ -180,7 +184,13 @@ def _bind(function: Function, stmt: Let | Var | Assign) -> None:
         return
     name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, stmt.value))
     declared = "" if isinstance(stmt, Assign) else f"{C_TYPES[type_of(stmt.value)]} "
-    function.line(f"{'const ' if isinstance(stmt, Let) else ''}{declared}{name} = {value};")
+    function.line(f"{'const ' if isinstance(stmt, Let) else ''}{declared}{name} = {value};{_origin(function, stmt)}")
+
+
+def _origin(function: Function, stmt: Stmt) -> str:
+    """The line of the mapping that a statement comes from, as a comment behind it."""
+    line = origin_of(stmt, function.origins) if function.origins else None
+    return "" if line is None else f" {comment(line)}"
 
 
 def _effect(scope: Scope, stmt: Effect) -> str:

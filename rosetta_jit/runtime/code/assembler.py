@@ -61,15 +61,19 @@ def run_few_passes(module: binding.ModuleRef, machine: binding.TargetMachine) ->
 
 def assembled(text: str, exported: Sequence[str]) -> bytes:
     """Code of a module that a person wrote, for `runtime.code.native`: it says itself what is inlined, and needs few passes."""
-    image = object_of([text], exported)
+    machine, module = target_machine(), linked([text])
+    make_private(module, exported)
+    run_few_passes(module, machine)
+    image = machine.emit_object(module)
     return prelinked(image) or image
 
 
 def object_of(texts: Iterable[str], exported: Sequence[str]) -> bytes:
-    """The same of several modules, as one object file."""
+    """Code of modules that many programs use, optimised as far as LLVM can, as an object file."""
     machine, module = target_machine(), linked(texts)
     make_private(module, exported)
-    run_few_passes(module, machine)
+    builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=3))
+    run_passes(builder.getModulePassManager(), module, builder)
     return machine.emit_object(module)
 
 

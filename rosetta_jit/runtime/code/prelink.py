@@ -19,7 +19,7 @@ from rosetta_jit.runtime.code.prelinked import PAGE, Prelinked, data_offset, to_
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Container, Mapping, Sequence
 
     from rosetta_jit.runtime.code.object_file import ObjectFile, Section, Symbol
 
@@ -58,20 +58,23 @@ def is_prelinking() -> bool:
     return sys.platform == "linux" and os.uname().machine == "x86_64"
 
 
-def prelinked(*images: bytes) -> bytes | None:
-    """Object files as one piece of prelinked code, in which each may call functions of the others; None where that cannot be."""
+def prelinked(*images: bytes, gives: Container[str] | None = None) -> bytes | None:
+    """Object files as one piece of prelinked code, in which each may call functions of the others; None where that cannot be.
+
+    ``gives`` are the symbols that whoever loads it can ask for: all by default.
+    """
     if sys.platform != "linux" or not all(image.startswith(object_file.MAGIC) for image in images):
         return None
     files = [object_file.read(image) for image in images]
     if any(file.machine != X86_64 for file in files):
         return None
     try:
-        return to_bytes(_laid_out(files))
+        return to_bytes(_laid_out(files, gives))
     except _UnknownError:
         return None
 
 
-def _laid_out(files: Sequence[ObjectFile]) -> Prelinked:
+def _laid_out(files: Sequence[ObjectFile], asked: Container[str] | None) -> Prelinked:
     sections = _in_memory(files)
     code, data = bytearray(), bytearray()
     places = _append(code, 0, {key: each for key, each in sections.items() if not each.flags & WRITABLE})
@@ -89,7 +92,7 @@ def _laid_out(files: Sequence[ObjectFile]) -> Prelinked:
         if place >= len(code):
             raise _UnknownError  # an address among the data: it depends on where they lie
         struct.pack_into("<i", code, place, _target(relocation.kind, number, symbol, places, tables) + relocation.addend - place)
-    gives = {name: _place(number, symbol, places) for name, (number, symbol) in given.items()}
+    gives = {name: _place(number, symbol, places) for name, (number, symbol) in given.items() if asked is None or name in asked}
     return Prelinked(bytes(code), bytes(data), tables.slots, tables.wants, gives)
 
 

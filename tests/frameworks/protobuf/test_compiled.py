@@ -25,6 +25,7 @@ RST = [
     "geometry.Pose",
     "generic.Value",
     "generic.Dictionary",
+    "kinematics.Posture3DFloat",
     "math.MatrixDouble",
     "xml.Attachment",
 ]

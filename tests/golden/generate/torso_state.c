@@ -313,11 +313,11 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     }
     const int64_t start = angles_used;
     angles_used += 3;
-    message->angles.start = start;
-    message->angles.count = 3;
-    angles[start] = (float)(yaw * 0.017453292519943295);
-    angles[start + 1] = (float)(roll * 0.017453292519943295);
-    angles[start + 2] = (float)(pitch * 0.017453292519943295);
+    message->angles.start = start; /* torso_state.mapping:10: len(.angles) <-> 3 */
+    message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
+    angles[start] = (float)(yaw * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start + 1] = (float)(roll * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start + 2] = (float)(pitch * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     if (32 != end) {
         return fail(failure, 5, 32); /* trailing: bytes are left over */
     }
@@ -385,11 +385,11 @@ static int64_t decode_2(torso_state_holder *holder, const unsigned char *restric
     }
     const int64_t start_2 = angles_used;
     angles_used += 3;
-    message->angles.start = start_2;
-    message->angles.count = 3;
-    angles[start_2] = (float)(yaw_2 * 0.017453292519943295);
-    angles[start_2 + 1] = (float)(roll_2 * 0.017453292519943295);
-    angles[start_2 + 2] = (float)(pitch_2 * 0.017453292519943295);
+    message->angles.start = start_2; /* torso_state.mapping:10: len(.angles) <-> 3 */
+    message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
+    angles[start_2] = (float)(yaw_2 * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start_2 + 1] = (float)(roll_2 * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start_2 + 2] = (float)(pitch_2 * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     if (next != end) {
         return fail(failure, 5, next); /* trailing: bytes are left over */
     }
@@ -489,21 +489,21 @@ static int64_t encode_message(const torso_state_holder *holder, unsigned char *r
         failure->indices[0] = 0;
         return fail(failure, 3, 8); /* index .angles[{}]: no such element (torso_state.mapping:11:3) */
     }
-    const float element = angles[start];
+    const float element = angles[start]; /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
     const double yaw = (double)element * 57.29577951308232;
     store_f64_le(bytes, 8, yaw);
     if (1 >= count) {
         failure->indices[0] = 1;
         return fail(failure, 4, 16); /* index .angles[{}]: no such element (torso_state.mapping:12:3) */
     }
-    const float element_2 = angles[start + 1];
+    const float element_2 = angles[start + 1]; /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
     const double roll = (double)element_2 * 57.29577951308232;
     store_f64_le(bytes, 16, roll);
     if (2 >= count) {
         failure->indices[0] = 2;
         return fail(failure, 5, 24); /* index .angles[{}]: no such element (torso_state.mapping:13:3) */
     }
-    const float element_3 = angles[start + 2];
+    const float element_3 = angles[start + 2]; /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     const double pitch = (double)element_3 * 57.29577951308232;
     store_f64_le(bytes, 24, pitch);
     if (count != 3) {

@@ -67,6 +67,7 @@ class GlobalVariable(Value):
 class Function(Value):
     @property
     def module(self) -> Module: ...
+    blocks: list[Block]
     args: tuple[Argument, ...]
     attributes: AttributeSet
     linkage: str

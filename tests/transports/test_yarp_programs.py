@@ -1,0 +1,122 @@
+"""Ports of ours with YARP's own programs: yarpserver, yarp write, read, connect, rpc and rpcserver; `make yarp` builds them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.transports.opening import names as names_at
+from rosetta_jit.transports.yarp.bottles import from_text, to_text
+from tests.transports.free import answers, free_port, running, until
+
+BUILT = str(Path(os.environ.get("YARP_DIR", ""), "bin")) if os.environ.get("YARP_DIR") else None
+YARP, SERVER = (shutil.which(name, path=f"{BUILT}:{os.environ['PATH']}" if BUILT else None) for name in ("yarp", "yarpserver"))
+
+pytestmark = pytest.mark.skipif(not (YARP and SERVER), reason="YARP's programs are not built: `make yarp`")
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    """A name server of its own on loopback, and the environment in which programs find it."""
+    home, port = tmp_path_factory.mktemp("yarp"), free_port()
+    (home / "yarp.conf").write_text(f"127.0.0.1 {port} yarp\n")
+    env = {**os.environ, "YARP_CONFIG_HOME": str(home), "YARP_DATA_HOME": str(home), "HOME": str(home), "YARP_CONF": str(home)}
+    with running(SERVER, "--read", "--socket", port, "--portdb", ":memory:", "--subdb", ":memory:", env=env, cwd=home):
+        until(lambda: answers(port))
+        yield port, env
+
+
+@pytest.fixture
+def at(server):
+    return lambda name, more="": f"yarp:{name}?server=127.0.0.1:{server[0]}{more}"
+
+
+def obeyed(server, *command):
+    """A command of YARP succeeded: a port may be registered a moment before it listens."""
+    return lambda: subprocess.run([YARP, *command], env=server[1], capture_output=True, check=False, timeout=10).returncode == 0
+
+
+def registered(at, name):
+    return lambda: (name, None) in names_at(at("/"))
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp"])
+def test_what_yarp_writes_arrives(at, server, carrier):
+    with (
+        running(YARP, "write", "/w", env=server[1], stdin=subprocess.PIPE, text=True) as writer,
+        rj.subscribe(at("/w", f"&carrier={carrier}")) as source,
+    ):
+        until(lambda: source.connections)
+        for line in ("1 2 3", 'hello 2.5 "a b" [set] (1 (2.5 x))'):
+            writer.stdin.write(f"{line}\n")
+            writer.stdin.flush()
+            message = source.take(5)
+            assert message.data == from_text(line, "yarp3")
+            assert message.attributes == {"sender": "/w", "carrier": carrier}
+        source.close()
+        writer.stdin.close()
+        assert writer.wait(5) == 0
+
+
+def test_yarp_writes_as_text_to_a_port_of_ours(at, server):
+    with (
+        rj.subscribe(at("/r", "&open=yes")) as source,
+        running(YARP, "write", "/w", env=server[1], stdin=subprocess.PIPE, text=True) as writer,
+    ):
+        until(registered(at, "/w"))
+        for carrier in ("text", "text_ack"):
+            until(obeyed(server, "connect", "/w", "/r", carrier))
+            until(lambda: source.connections)
+            writer.stdin.write("1 2.5 hello\n")
+            writer.stdin.flush()
+            message = source.take(5)
+            assert (message.data, message.attributes["carrier"]) == (from_text("1 2.5 hello", "yarp3"), carrier)
+            until(obeyed(server, "disconnect", "/w", "/r"))
+            until(lambda: not source.connections)
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp"])
+def test_yarp_reads_what_is_written(at, server, carrier):
+    with running(YARP, "read", "/r", env=server[1], stdout=subprocess.PIPE, text=True) as reader:
+        until(registered(at, "/r"))
+        with rj.publish(at("/out")) as sink:
+            until(obeyed(server, "connect", "/out", "/r", carrier))
+            assert sink.connections == 1
+            for number in range(3):
+                sink.send(from_text(f"{number} 0.5 (x [set])", "yarp3"), time=10**18 + number)
+            assert sink.flush()
+        until(registered(at, "/r"))
+        reader.terminate()
+        lines = [each for each in reader.communicate(timeout=5)[0].splitlines() if "[set]" in each]
+        assert lines == [f"{number} 0.5 (x [set])" for number in range(3)]
+
+
+def test_questions_go_both_ways(at, server):
+    with rj.serve(at("/srv"), lambda message: from_text(f"[ok] {to_text(message.data, 'yarp3')}", "yarp3")):
+        asked = subprocess.run(
+            [YARP, "rpc", "/srv"], env=server[1], input="set 1.5\nget\n", capture_output=True, text=True, timeout=10, check=False
+        )
+        assert asked.stdout.splitlines() == ["Response: [ok] set 1.5", "Response: [ok] get"]
+    with running(YARP, "rpcserver", "/rs", env=server[1], stdin=subprocess.PIPE, text=True) as program:
+        until(registered(at, "/rs"))
+        program.stdin.write("fine 2.5 (1 2)\n")
+        program.stdin.flush()
+        with rj.call(at("/rs")) as ask:
+            assert to_text(ask(from_text("how are you", "yarp3")).data, "yarp3") == "fine 2.5 (1 2)"
+
+
+def test_a_reader_that_is_killed_costs_nobody_else(at, server):
+    with rj.publish(at("/out")) as sink, rj.subscribe(at("/out")) as source:
+        with running(YARP, "read", "/killed", "/out", env=server[1]):
+            until(lambda: sink.connections == 2)
+            sink.send(b"1")
+            assert source.take(5).data == b"1"
+        for _ in range(20):
+            sink.send(from_text("2", "yarp3"))
+            assert source.take(5) is not None
+        until(lambda: sink.connections == 1)
