@@ -25,8 +25,8 @@ class Options(TypedDict, total=False):
     framework : str
         Whose type it is, where neither its name nor its file nor ``encoding`` tells: ``sensor_msgs/Imu`` is one of ROS 1 and of ROS 2.
     imports : iterable of str
-        For a type without a mapping: the files that declare it, by their names on the search path; by default those in ``schema``, or
-        what the name suggests.
+        For a type without a mapping: the files that declare it, as paths or by their names on the search path; by default those in
+        ``schema``, or what the name suggests.
     schema : mapping of str to str, str, or bytes
         File names and texts, as if they lay on the search path. Without a mapping also the one text that declares the type, such as a
         bag or an MCAP file carries (``encoding`` or ``framework`` say in which language), or a serialised ``FileDescriptorSet``.

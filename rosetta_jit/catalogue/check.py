@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.catalogue.mapping import error, shorten, warning
 
@@ -15,12 +15,21 @@ if TYPE_CHECKING:
 BEYOND = "indices count from 0 and stay below the length: correct the index, or the length"
 
 
-def never_set(span: Span | None, side: str, path: str, declared: Span | None, *, kind: str) -> Diagnostic:
+Block = Literal["rules", "unpack-rules", "pack-rules", ""]
+"""Where a missing rule is to be written; empty where the mapping has blocks for one direction alone, and it goes without saying."""
+
+
+def never_set(span: Span | None, side: str, path: str, declared: Span | None, *, kind: str, block: Block) -> Diagnostic:
     """A field that cannot be absent and has no rule."""
     place = path.replace("[]", "[i]")
-    empty = f", or say that it is empty: `len({place}) = 0`" if kind == "array" else ""
-    meant = f", or say that it is meant: `default {path}`" if "[" not in path and kind != "array" else ""
-    hint = f"add a rule: `{place} = ...`{empty}{meant}"
+    if block == "rules":
+        relation, word = (f"... <-> {place}", "ignore") if side == "wire" else (f"{place} <-> ...", "default")
+        meant = f", or say that it is meant: `{word} {path}`" if "[" not in path and (kind != "array" or side == "wire") else ""
+        hint = f"relate it to a field: `{relation}`{meant}"
+    else:
+        empty = f", or say that it is empty: `len({place}) = 0`" if kind == "array" else ""
+        meant = f", or say that it is meant: `default {path}`" if "[" not in path and kind != "array" else ""
+        hint = f"add a rule{_under(block)}: `{place} = ...`{empty}{meant}"
     notes = (f"declared at {declared}",) if declared else ()
     return error("never-set", f"`{path}` of the {side} is never set", span, notes=notes, help_=hint)
 
@@ -95,14 +104,24 @@ def in_one_way(problem: Diagnostic) -> Diagnostic:
     return replace(problem, notes=(*problem.notes, "in one way through the `when` blocks, not in all: an `else` may be missing"))
 
 
-def never_read(span: Span | None, path: str) -> Diagnostic:
+def never_read(span: Span | None, side: str, path: str, block: Block) -> Diagnostic:
     """A field whose value goes nowhere."""
-    return warning("never-read", f"no rule reads `{path}`: its value is lost", span, help_=f"say that it is meant: `ignore {path}`")
+    word = "default" if block == "rules" and side == "holder" else "ignore"
+    return warning("never-read", f"no rule reads `{path}`: its value is lost", span, help_=_meant(word, path, block))
 
 
-def left_out(span: Span | None, path: str) -> Diagnostic:
+def left_out(span: Span | None, side: str, path: str, block: Block) -> Diagnostic:
     """An optional field without a rule."""
-    return warning("left-out", f"no rule sets `{path}`", span, help_=f"say that it is meant: `default {path}`")
+    word = "ignore" if block == "rules" and side == "wire" else "default"
+    return warning("left-out", f"no rule sets `{path}`", span, help_=_meant(word, path, block))
+
+
+def _meant(word: str, path: str, block: Block) -> str:
+    return f"say{_under(block) if block != 'rules' else ''} that it is meant: `{word} {path}`"
+
+
+def _under(block: Block) -> str:
+    return f" under `{block}:`" if block else ""
 
 
 def other_length(span: Span | None, array: str, other: str) -> Diagnostic:

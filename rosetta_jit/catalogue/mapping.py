@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -49,7 +50,24 @@ def unexpected(span: Span, kind: str, expected: frozenset[str]) -> Diagnostic:
     found = span.source.text[span.start : span.end]
     name = "the end of the file" if kind == "$END" else f"`{shorten(found)}`"
     message = f"expected {_listed(_expected(expected))}, found {name}"
-    return error("syntax", message, span, "not expected here", help_=_hint(found, kind, expected))
+    return error("syntax", message, span, "not expected here", help_=_undotted(span, kind, expected) or _hint(found, kind, expected))
+
+
+BEFORE = {"RSQB": r"(?<![\w.])([A-Za-z_]\w*)\[$", "MEMBER": r"(?<![\w.])([A-Za-z_]\w*\[[^][\n]*\])$"}
+"""What stands before a token, by kind, where the dot of a field was forgotten."""
+
+SET_HERE = r"[A-Za-z_]\w*(\.\w+|\[[^][\n]*\])*[ \t]*(=|<->)"
+
+
+def _undotted(span: Span, kind: str, expected: frozenset[str]) -> str:
+    """A hint where a field lacks its dot; empty where none does."""
+    text = span.source.text
+    if kind == "NAME" and "START" in expected and ("FOR" not in expected or re.match(SET_HERE, text[span.start : span.end + 100])):
+        name = text[span.start : span.end]
+    else:
+        found = re.search(BEFORE[kind], text[max(0, span.start - 100) : span.start]) if kind in BEFORE else None
+        name = found[1] if found else ""
+    return f"a field begins with a dot: `.{shorten(name)}`" if name else ""
 
 
 def _expected(kinds: frozenset[str]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
@@ -106,7 +107,7 @@ def no_rules(span: Span | None, direction: str) -> Diagnostic:
 
 def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
     """A type that no file declares."""
-    near = closest(name, known)
+    near = closest(name, known) or next((each for each in known if re.split(r"[./:]", each)[-1].casefold() == name.casefold()), None)
     help_ = f"did you mean `{near}`?" if near else "name the files that declare it: imports=[…]"
     return Diagnostic("error", "unknown-type", f"no file declares a message `{name}`", help=help_)
 

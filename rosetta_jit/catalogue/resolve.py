@@ -127,6 +127,12 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
     )
 
 
+def undotted_field(span: Span | None, name: str) -> Diagnostic:
+    """The name of a field without the dot before it."""
+    message = f"there is no loop variable or constant `{shorten(name)}`, but a field"
+    return error("unknown-name", message, span, "a dot is missing", help_=f"a field begins with a dot: `.{shorten(name)}`")
+
+
 def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Diagnostic:
     """A call of nothing that is known."""
     return error(
@@ -198,7 +204,7 @@ def written_at(span: Span | None) -> str:
 
 def type_clash(span: Span | None, source: str, target: str, how: str = "") -> Diagnostic:
     """A value that no conversion makes fit."""
-    help_ = how or "assign another field, or compute what is meant from it"
+    help_ = how.replace("(...)", f"({written_at(span)})", 1) or "assign another field, or compute what is meant from it"
     return error("type-clash", f"{source} cannot become {target}", span, f"this is {source}", help_=help_)
 
 
@@ -221,6 +227,8 @@ def operand(span: Span | None, operator: str, found: str) -> Diagnostic:
     hint = f"convert it first: `int64({written_at(span)})`" if convertible else "only numbers can be computed with"
     if found.startswith("float"):
         hint = OF_FLOATS.get(operator, hint)
+    if found == "text":
+        hint = f"`number({written_at(span)})` is the number that a text spells"
     return error("operand", f"`{operator}` cannot take {found}", span, f"this is {found}", help_=hint)
 
 
@@ -279,6 +287,9 @@ def condition_needed(span: Span | None, found: str) -> Diagnostic:
 def not_comparable(span: Span | None, operator: str, left: str, right: str) -> Diagnostic:
     """Two values that no comparison relates."""
     hint = "texts are compared with a text in quotes, by `==` or `!=`" if "text" in {left, right} else "convert one of them first"
+    others = {left, right} - {"text"}
+    if len(others) == 1 and others.pop().startswith(("int", "uint", "float")):
+        hint = "make both of them texts, `text(x)`, or both numbers, `number(x)`"
     return error("not-comparable", f"`{operator}` does not compare {left} with {right}", span, help_=hint)
 
 

@@ -9,7 +9,9 @@ if TYPE_CHECKING:
 
 
 def closest(name: str, known: Sequence[str]) -> str | None:
-    """The name that is most like the one written, if one is like it. The work grows with their lengths: callers bound both."""
+    """The name most like the one written, in whatever case, if one is like it. The work grows with their lengths: callers bound both."""
     from difflib import get_close_matches  # whoever writes all names right does not import it
 
-    return next(iter(get_close_matches(name, known, 1)), None)
+    folded = {each.casefold(): each for each in reversed(known)}
+    near = get_close_matches(name, known, 1) or get_close_matches(name.casefold(), list(folded), 1)
+    return folded.get(name.casefold()) or (folded.get(near[0].casefold()) if near else None)

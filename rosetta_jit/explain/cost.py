@@ -13,7 +13,7 @@ from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.explain.counts import count_text, named_counts
+from rosetta_jit.explain.counts import count_text, factored, named_counts
 from rosetta_jit.kernel import ir
 from rosetta_jit.kernel.shape import operands
 from rosetta_jit.kernel.terms import END, type_of
@@ -140,6 +140,8 @@ class _Counter:
 
     def times(self, count: ir.Expr, cost: Cost) -> Cost:
         """A cost so many times; a known number of times it is multiplied."""
+        count, factor = factored(count, self.values)
+        cost = _scaled(cost, factor)
         if isinstance(count, ir.Const):
             return _scaled(cost, int(count.value))
         return Cost(repeated=(Repeated(count_text(count, self.values, self.names), cost),)) if cost != FREE else FREE

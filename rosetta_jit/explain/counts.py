@@ -7,6 +7,7 @@ number that a message or a holder said of an array is named by the field that th
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import ir
@@ -22,8 +23,11 @@ MAX_DEPTH = 12
 
 MAX_TEXT = 120
 
-ROUNDS = "rounds"
+ROUNDS = "round of a loop"
 """How often a loop runs of which no more is known."""
+
+OWN = re.compile(r"len\([^()]*\)|\.[A-Za-z_][\w.\[\]]*|\b(?:min|max)\b")
+"""In the text of a count: lengths, fields and functions. What is left are locals of the kernel, whose names say nothing to a user."""
 
 TIGHT = frozenset(("mul", "div", "rem"))
 
@@ -50,9 +54,32 @@ def named_counts(block: ir.Block, sites: Sequence[ir.Site]) -> dict[str, str]:
     return names
 
 
+def factored(expr: ir.Expr, values: Mapping[str, ir.Expr]) -> tuple[ir.Expr, int]:
+    """A count, and by which constant it is multiplied."""
+    factor = 1
+    for _ in range(MAX_DEPTH):
+        match expr:
+            case ir.Local(_, name) if name in values and _is_product(values[name]):
+                expr = values[name]
+            case ir.Binary("mul", inner, ir.Const(_, number)) | ir.Binary("mul", ir.Const(_, number), inner) if int(number) > 0:
+                expr, factor = inner, factor * int(number)
+            case ir.Binary("mul" as op, ir.Binary("mul", inner, ir.Const(_, number)), other) if int(number) > 0:
+                expr, factor = replace(expr, op=op, left=inner, right=other), factor * int(number)
+            case _:
+                break
+    return expr, factor
+
+
+def _is_product(value: ir.Expr) -> bool:
+    return isinstance(value, ir.Binary) and value.op == "mul"
+
+
 def count_text(expr: ir.Expr, values: Mapping[str, ir.Expr], names: Mapping[str, str]) -> str:
-    """A count as text, at most `MAX_TEXT` long."""
-    text = _text(expr, values, names, 0)
+    """A count as text, at most `MAX_TEXT` long; `ROUNDS` where it is no product of fields, lengths and what is made of them."""
+    text = _text(expr, values, names, 0).replace(" + -", " - ")
+    bare = OWN.sub("", text)
+    if re.search(r"[A-Za-z_]", bare) and (text.isidentifier() or re.search(r" [-+&] |\(", bare)):
+        return ROUNDS
     return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT - 1]}…"
 
 

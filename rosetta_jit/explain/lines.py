@@ -11,8 +11,8 @@ from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
 from rosetta_jit.language.both_ways.inverse_texts import as_written, for_type
 from rosetta_jit.language.places import shown_fields
-from rosetta_jit.model.expr import Member
-from rosetta_jit.model.mapping import Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
+from rosetta_jit.model.expr import Member, Path
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.explain.nodes import Key
     from rosetta_jit.language.typed import Place, Rule
     from rosetta_jit.language.uses import Use
-    from rosetta_jit.model.expr import Expr, Path, Side
+    from rosetta_jit.model.expr import Expr, Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.mapping import Rule as Untyped
     from rosetta_jit.source import Span
@@ -134,11 +134,14 @@ class Lines:
                 yield self.line(rule, f"{'ignore' if isinstance(rule, Ignore) else 'default'} {show_expr(place)}", depth)
             case Reject(text):
                 yield self.line(rule, self.text(rule.span) or f'reject "{text}"', depth)
+            case Arranged(place, flag, ((key, value), *_)):
+                text = f"{show_expr(place)} by {show_expr(flag)} = {{ {_expr(key)} = {_expr(value)} }}"
+                yield self.line(rule, self.text(rule.span) or text, depth)
             case _:
                 yield self.line(rule, self.text(rule.span), depth)
 
     def line(self, rule: Untyped, text: str, depth: int, found: list[Rule] | None = None, use: Use | None = None) -> Line:
-        rules = [each for each in self.typed.get(span_of(rule.span), []) if self.is_here(each)] if found is None else found
+        rules = _own(rule, [each for each in self.typed.get(span_of(rule.span), []) if self.is_here(each)]) if found is None else found
         heads = tuple(_head(each) for each in rules)
         origin: Side = "wire" if self.target == "holder" else "holder"
         number = None if rule.span is None else rule.span.source.line_column(rule.span.start)[0]
@@ -195,6 +198,32 @@ def _within(span: Span | None, rules: tuple[Untyped, ...] | None) -> bool:
     if span is None or not rules or rules[0].span is None or rules[-1].span is None:
         return False
     return rules[0].span.start <= span.start < rules[-1].span.end
+
+
+def _own(rule: Untyped, found: list[Rule]) -> list[Rule]:
+    """Of the typed rules that one text became, those that a rule made of it stands for: a relation may set several fields."""
+    match rule:
+        case Assign(Path(steps=steps)) | SetLength(Path(steps=steps)):
+            wanted = tuple(step.name for step in steps if isinstance(step, Member))
+            own = [each for each in found if any(names_of(place)[-len(wanted) :] == wanted for place in _set_by(each))]
+        case Reject():
+            own = [each for each in found if not _set_by(each)]
+        case _:
+            own = found
+    return own or found
+
+
+def _set_by(rule: Rule) -> list[Place]:
+    """The places that a rule sets, those of its blocks included."""
+    match rule:
+        case typed.Assign(place) | typed.SetLength(place):
+            return [place]
+        case typed.For(body=body):
+            return [place for each in body for place in _set_by(each)]
+        case typed.When(then=then, otherwise=otherwise):
+            return [place for each in (*then, *otherwise) for place in _set_by(each)]
+        case _:
+            return []
 
 
 def _head(rule: Rule) -> object:

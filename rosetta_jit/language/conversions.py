@@ -192,6 +192,16 @@ def other_way(source: Type, target: Type) -> str:
             return "assign its elements in a loop, and convert each"
         case Struct(), Struct():
             return "assign its fields one by one"
+        case ((Bool() | Int() | Float()), String()):
+            return "`text(...)` spells it as a text"
+        case String(), Int(bits, signed):
+            call = "integer(...)" if bits == 64 and signed else f"{describe(target)}(integer(...))"
+            return f"`{call}` is the integer that a text spells"
+        case String(), Float(bits):
+            return f"`{'number(...)' if bits == 64 else 'float32(number(...))'}` is the number that a text spells"
+        case (String(), Enum(name=name, values=((first, _), *_))) | (Enum(name=name, values=((first, _), *_)), String()):
+            pairs = f'"..." = {name}.{first}' if isinstance(target, Enum) else f'{name}.{first} = "..."'
+            return f"a table says which text is which constant: `table(...) {{ {pairs}, ... }}`"
         case _:
             return ""
 

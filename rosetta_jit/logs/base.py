@@ -13,7 +13,7 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -80,6 +80,31 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
+class Piece:
+    """A stretch of a log that is read without the rest: a chunk, or records between chunks. Each message is in one piece.
+
+    Attributes
+    ----------
+    size
+        The bytes that it takes in the file.
+    times
+        Of its first and its last message; None where only reading it would tell.
+    connections
+        The numbers of those that have messages in it; None where only reading it would tell.
+    """
+
+    size: int
+    times: tuple[int, int] | None = None
+    connections: frozenset[int] | None = None
+
+    def has(self, wanted: Wanted) -> bool:
+        """Whether it may have messages that are wanted."""
+        if self.times is not None and not wanted.overlaps(*self.times):
+            return False
+        return wanted.connections is None or self.connections is None or not wanted.connections.isdisjoint(self.connections)
+
+
+@dataclass(frozen=True, slots=True)
 class Wanted:
     """Which messages are asked for. A reader may give more; it leaves out what costs it to read.
 
@@ -89,11 +114,14 @@ class Wanted:
         Their numbers; None for all.
     start_ns, end_ns
         From when on, and until before when; by the time at which they were logged.
+    pieces
+        The places of the pieces to read, of those that the reader has; None for all. Of these no others are given.
     """
 
     connections: frozenset[int] | None = None
     start_ns: int | None = None
     end_ns: int | None = None
+    pieces: range | None = None
 
     def overlaps(self, first_ns: int, last_ns: int) -> bool:
         """Whether a stretch of time has some that are wanted."""
@@ -114,6 +142,11 @@ class Reader(Protocol):
     @property
     def facts(self) -> Mapping[str, str]:
         """What is to be known of the file: version, chunks, compression."""
+        ...
+
+    @property
+    def pieces(self) -> Sequence[Piece]:
+        """What can be read alone, in the order in which `blocks` reads it; one at least."""
         ...
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:

@@ -115,10 +115,12 @@ class Channel:
         """
         return _decoder(self._log, self.connections[0], self._target, self._options)
 
-    def parts(self, *, start: Moment | None = None, end: Moment | None = None, on_error: OnError = "raise") -> Iterator[Part]:
+    def parts(
+        self, *, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None, on_error: OnError = "raise"
+    ) -> Iterator[Part]:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again."""
         decoder, staging, batch, first = self.decoder, Staging(), None, 0
-        for staged in staging.filled(ahead(self._blocks(start, end))):
+        for staged in staging.filled(ahead(self._blocks(start, end, pieces))):
             batch = _many(decoder, staged, batch, on_error, first)
             kept = batch.kept
             yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first, staged)
@@ -153,16 +155,20 @@ class Channel:
             when = shown(int(rows.log_ns[int(number)]))
             raise DecodeError(error.kind, path, f"{error.detail} (a message of {self.topic}, logged {when})", error.offset) from None
 
-    def _blocks(self, start: Moment | None, end: Moment | None) -> Iterator[Block]:
-        numbers = frozenset(each.number for each in self.connections)
-        return self._log.blocks(Wanted(numbers, nanoseconds(start), nanoseconds(end)))
+    def _blocks(self, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None) -> Iterator[Block]:
+        return self._log.blocks(Wanted(self.numbers, nanoseconds(start), nanoseconds(end), pieces))
+
+    @property
+    def numbers(self) -> frozenset[int]:
+        """The numbers of its connections."""
+        return frozenset(each.number for each in self.connections)
 
     def __iter__(self) -> Iterator[Any]:
         """The messages, each a holder of its own."""
         return (each.message for each in self._log.messages([self]))
 
     def __len__(self) -> int:
-        return self.count if self.count is not None else sum(len(each.rows) for each in self._blocks(None, None))
+        return self.count if self.count is not None else sum(len(each.rows) for each in self._blocks())
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A field of all messages as an array, ``imu["angular_velocity.x"]``; the times as ``["log_time"]``, ``["publish_time"]``.
@@ -175,7 +181,7 @@ class Channel:
             The field is not a number: take `to_arrow`.
         """
         if name in CLOCKS:
-            stamps = [each.rows.log_ns if name == "log_time" else each.rows.publish_ns for each in self._blocks(None, None)]
+            stamps = [each.rows.log_ns if name == "log_time" else each.rows.publish_ns for each in self._blocks()]
             return (np.concatenate(stamps) if stamps else np.empty(0, np.int64)).view("datetime64[ns]")
         found: list[Any] = []
         for part in self.parts():
@@ -197,6 +203,7 @@ class Channel:
         clocks: Iterable[str] = CLOCKS,
         start: Moment | None = None,
         end: Moment | None = None,
+        pieces: range | None = None,
         on_error: OnError = "raise",
         **form: Any,
     ) -> Iterator[tuple[Part, pa.Table]]:
@@ -204,7 +211,7 @@ class Channel:
         from rosetta_jit.logs.tables import with_clocks
 
         names, chosen, given = None if columns is None else list(columns), tuple(clocks), False
-        for part in self.parts(start=start, end=end, on_error=on_error):
+        for part in self.parts(start=start, end=end, pieces=pieces, on_error=on_error):
             yield part, with_clocks(part.batch.to_arrow(names, **form), chosen, part)
             given = True
         if not given:
@@ -229,6 +236,8 @@ class Channel:
             Columns of times that come first: ``log_time``, ``publish_time``, and ``header_time`` where messages have a ``header.stamp``.
         start, end
             From when on, and until before when: nanoseconds since 1970, a `datetime` or a `numpy.datetime64`.
+        pieces
+            The places of those of the log's pieces (`Log.pieces`) that are read: ``range(0, 10)``; all by default.
         on_error
             As of `Decoder.many`.
 
@@ -259,9 +268,17 @@ class Channel:
         """For whoever reads Arrow's stream interface: pyarrow, polars, DuckDB."""
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """By the log, which is opened anew, and the numbers of the connections in it."""
+        return _channel_of, (self._log, self.numbers, self._target, self._options)
+
     def __repr__(self) -> str:
         through = f" through {self._target}" if self._target else ""
         return f"<Channel {self.topic} of {self.type or '?'}{through}, {'?' if self.count is None else self.count} messages>"
+
+
+def _channel_of(log: Log, numbers: frozenset[int], target: str | None, options: Options) -> Channel:
+    return Channel(log, tuple(each for each in log.connections if each.number in numbers), target, options)
 
 
 def _many(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnError, first: int) -> Batch:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.api.options import Options
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Format, Reader
+    from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader
     from rosetta_jit.logs.storage import Storage
 
 MAGIC_BYTES = 64
@@ -57,7 +57,7 @@ class Log:
     ) -> None:
         self.name, self.format = storage.name, form.name
         self.problems: list[Diagnostic] = []
-        self._on_problem, self._options = on_problem, options
+        self._on_problem, self._options, self._check = on_problem, options, check
         self._storage = storage
         self._reader: Reader = form.opener()(storage, self._tell, check=check)
 
@@ -141,9 +141,16 @@ class Log:
             raise LogError((words.several_types(self.name, topic, sorted({each.type for each in found})),))
         return Channel(self, tuple(named), target, cast("Options", {**self._options, **options}))
 
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The stretches of the log that can be read alone, of which each message is in one: the chunks, where it has any."""
+        return tuple(self._reader.pieces)
+
     def blocks(self, wanted: Wanted | None = None) -> Iterator[Block]:
         """The messages as bytes, many at a time, in the order in which they lie; a block is good until the next is asked for."""
         wanted = wanted or Wanted()
+        if wanted.pieces is not None and not wanted.pieces:
+            return
         for block in self._reader.blocks(wanted):
             rows = block.rows
             kept = np.ones(len(rows), np.bool_)
@@ -222,6 +229,12 @@ class Log:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """By its name: whoever unpickles it opens the file. Problems are then warnings, whoever was told of them before."""
+        if self.name == "-":
+            raise TypeError("standard input cannot be opened a second time: no other process can read this log")
+        return _reopened, (self.name, self.format, self._check, self._options)
+
     def __repr__(self) -> str:
         """The topics with their types and counts, and the time from the first message to the last."""
         times = "" if self.start is None or self.end is None else f", {shown(self.start)} to {shown(self.end)}"
@@ -271,6 +284,10 @@ def open_log(
     except BaseException:
         storage.close()
         raise
+
+
+def _reopened(name: str, form: str, check: bool, options: Options) -> Log:
+    return open_log(name, format=form, check=check, **options)
 
 
 def format_of(storage: Storage, wanted: str | None = None) -> Format:

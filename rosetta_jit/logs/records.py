@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 import numpy as np
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.logs.base import Block, Wanted
+from rosetta_jit.logs.base import Block, Piece
 from rosetta_jit.logs.compression import Scratch, decompressed
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES
 from rosetta_jit.logs.walking import Why, walk
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.base import Wanted
     from rosetta_jit.logs.storage import Storage
     from rosetta_jit.logs.walking import Rows, Stop
 
@@ -55,11 +56,10 @@ class Chunk:
     times: tuple[int, int] | None = None
     counts: Mapping[int, int | None] | None = None
 
-    def has(self, wanted: Wanted) -> bool:
-        """Whether it may have messages that are wanted."""
-        if self.times is not None and not wanted.overlaps(*self.times):
-            return False
-        return wanted.connections is None or not self.counts or not wanted.connections.isdisjoint(self.counts)
+    @property
+    def piece(self) -> Piece:
+        """What others know of it."""
+        return Piece(self.size, self.times, frozenset(self.counts) if self.counts else None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +68,11 @@ class Region:
 
     at: int
     end: int
+
+    @property
+    def piece(self) -> Piece:
+        """What others know of it: nothing but its size."""
+        return Piece(self.end - self.at)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,42 +127,61 @@ class Grammar(Protocol):
 class Records:
     """Reads the records of one log."""
 
-    def __init__(self, storage: Storage, grammar: Grammar, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
+    def __init__(self, storage: Storage, grammar: Grammar, tell: Callable[[Diagnostic], None], start: int, *, check: bool) -> None:
+        self.start = start
         self._storage, self._grammar, self._tell, self._check = storage, grammar, tell, check
 
     def blocks(self, segments: Sequence[Chunk | Region], wanted: Wanted, end: int) -> Iterator[Block]:
-        """The messages of segments, which lie in order; the log's records end at ``end``."""
-        done, scratch = segments[0].at if segments else 0, Scratch()
-        for segment in segments:
+        """The messages of segments, which lie in order; the log's records end at ``end``.
+
+        A segment's own are those of the records that begin between it and the next. Where the index lies, they are looked for from the
+        last chunk on that it told truly; so they are the same whether segments are read together or one by one.
+        """
+        scratch = Scratch()
+        chosen = range(len(segments)) if wanted.pieces is None else range(len(segments))[wanted.pieces.start : wanted.pieces.stop]
+        for number in chosen:
+            segment = segments[number]
+            if not segment.piece.has(wanted):
+                continue
             match segment:
                 case Region(at, stop):
                     yield from self._region(at, stop, wanted, scratch)
-                    done = stop
                 case Chunk(at, size):
-                    if segment.has(wanted):
-                        record = self._storage.read(at, size)
-                        head = self._grammar.head(record[:PEEK]) if len(record) > 9 else Head("damaged")
-                        if head.kind != "chunk" or head.size > size:
-                            self._tell(words.index_lies(self._storage.name, at))
-                            yield from self._region(done, end, wanted, scratch)
-                            return
-                        yield from self._content(record, at, scratch)
-                        if head.size < size:
-                            yield from self._region(at + head.size, at + size, wanted, scratch)
-                    done = at + size
+                    record = self._storage.read(at, size)
+                    head = self._grammar.head(record[:PEEK]) if len(record) > 9 else Head("damaged")
+                    if head.kind != "chunk" or head.size > size:
+                        self._tell(words.index_lies(self._storage.name, at))
+                        own = range(at, segments[chosen.stop].at if chosen.stop < len(segments) else end)
+                        yield from self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
+                        return
+                    yield from self._content(record, at, scratch)
+                    if head.size < size:
+                        yield from self._region(at + head.size, at + size, wanted, scratch)
 
-    def _region(self, at: int, end: int, wanted: Wanted, scratch: Scratch) -> Iterator[Block]:
-        for item in self.items(at, end):
+    def _true_place(self, before: Sequence[Chunk | Region]) -> int:
+        """Where the last chunk begins that is where the index says; the log's first record, if there is none."""
+        for segment in reversed(before):
+            peek = self._storage.read(segment.at, PEEK)
+            if isinstance(segment, Chunk) and len(peek) > 9 and self._grammar.head(peek).kind == "chunk":
+                return segment.at
+        return before[0].at if before else self.start
+
+    def _region(self, at: int, end: int, wanted: Wanted, scratch: Scratch, own: range | None = None) -> Iterator[Block]:
+        for item in self.items(at, end, own):
             match item:
                 case Block():
                     yield item
                 case Chunk():
-                    if item.has(wanted):
+                    if item.piece.has(wanted):
                         yield from self._content(self._storage.read(item.at, item.size), item.at, scratch)
 
-    def items(self, at: int, end: int) -> Iterator[Chunk | Block]:
-        """Go from record to record: the chunks, and the messages outside of chunks. Definitions are learned on the way."""
-        while at < end:
+    def items(self, at: int, end: int, own: range | None = None) -> Iterator[Chunk | Block]:
+        """Go from record to record: the chunks, and the messages outside of chunks. Definitions are learned on the way.
+
+        Only those are given that begin within ``own``.
+        """
+        own = own or range(at, end)
+        while at < min(end, own.stop):
             peek = self._storage.read(at, min(PEEK, end - at))
             head = self._grammar.head(peek) if len(peek) >= 9 else Head("damaged")
             left = end - at
@@ -170,9 +194,10 @@ class Records:
                     if head.size > left:
                         self._tell(words.log_cut(self._storage.name, at))
                     chunk, at = self._described(Chunk(at, min(head.size, left), head.times), end)
-                    yield chunk
+                    if chunk.at in own:
+                        yield chunk
                 case "message":
-                    at = yield from self._messages(at, end)
+                    at = yield from self._messages(at, end, own)
                 case "definition":
                     self._define(self._storage.read(at, head.size), at)
                     at += head.size
@@ -240,12 +265,15 @@ class Records:
             self._define(data[stop.at : stop.at + head.size].tobytes(), at)
         return stop.at + head.size
 
-    def _messages(self, at: int, end: int) -> Generator[Block, None, int]:
+    def _messages(self, at: int, end: int, own: range) -> Generator[Block, None, int]:
         """The messages from a place on, as far as they lie together, window by window; the place behind them."""
         needed = 0
-        while at < end:
+        while at < min(end, own.stop):
             data = np.frombuffer(self._storage.read(at, min(max(WINDOW, needed), end - at)), np.uint8)
             rows, stop = walk(self._grammar.walk, data, 0)
+            if len(rows):
+                begins = rows.begins + at
+                rows = rows.only((begins >= own.start) & (begins < own.stop)) if at < own.start or at + stop.at > own.stop else rows
             if len(rows):
                 yield Block(data, rows)
             at += stop.at
@@ -273,6 +301,11 @@ def add_counts(counts: dict[int, int | None], rows: Rows) -> None:
     channels, numbers = np.unique(rows.channels, return_counts=True)
     for channel, number in zip(channels.tolist(), numbers.tolist(), strict=True):
         counts[channel] = (counts.get(channel) or 0) + number
+
+
+def pieces_of(segments: Sequence[Chunk | Region]) -> tuple[Piece, ...]:
+    """Segments as what can be read alone; of a log without records one that is empty."""
+    return tuple(each.piece for each in segments) or (Piece(0),)
 
 
 def segments_of(chunks: Iterable[Chunk], start: int, end: int, behind: Mapping[int, int]) -> list[Chunk | Region] | None:

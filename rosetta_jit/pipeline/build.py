@@ -32,6 +32,7 @@ from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, same_name
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 from rosetta_jit.pipeline.request import Backend, ByteOrder
+from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
 from rosetta_jit.runtime import images
 from rosetta_jit.runtime.run import GRACE_BYTES
@@ -354,7 +355,8 @@ def _own_types(build: Build) -> Types:
     found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
     if not found:
         why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
-        raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", tuple(schema.types)),))
+        near = () if request.imports or build.files_given else similar_types(request.type or "", _readers(request), build.search)
+        raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", (*schema.types, *near)),))
     return Types(found[0], found[0], schema, None)
 
 
@@ -393,10 +395,11 @@ def _imported(build: Build) -> Schema:
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}
-    load = build.search.loader(build.reading)
+    find = build.search.named if request.imports else build.search.find
     for name in names:
-        source = load(name)
+        source = find(name)
         if source is not None:
+            build.reading.record(name, None, source)
             end = readers.find(source.name)
             if end is None:
                 raise SchemaError((words.unknown_suffix(name, readers.suffixes),))

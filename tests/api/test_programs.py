@@ -329,6 +329,35 @@ def test_errors_of_making_programs():
         rj.Decoder.of("rst.vision.Imag", imports=["rst/vision/Image.proto"])
 
 
+@pytest.mark.parametrize(
+    ("asked", "options", "meant"),
+    [
+        ("sensor_msgs/IMU", {"encoding": "ros1"}, "sensor_msgs/Imu"),
+        ("IMU", {"encoding": "ros1"}, "sensor_msgs/Imu"),
+        ("sensor_msgs/msg/IMU", {"encoding": "cdr"}, "sensor_msgs/Imu"),
+        ("jointangles", {"encoding": "protobuf"}, "rst.kinematics.JointAngles"),
+        ("rst.kinematics.JointAngle", {"encoding": "protobuf"}, "rst.kinematics.JointAngles"),
+        ("lab.Pt", {"schema": {"lab.proto": 'syntax = "proto3"; package lab; message PT { double x = 1; }'}}, "lab.PT"),
+    ],
+)
+def test_a_type_that_there_is_not_is_told_from_one_like_it(asked, options, meant):
+    with pytest.raises(rj.SchemaError, match=f"no file declares a message `{asked}`\n.*did you mean `{meant}`"):
+        rj.Decoder.of(asked, **options)
+
+
+def test_files_of_types_are_named_as_files_of_mappings_are(tmp_path, monkeypatch):
+    (tmp_path / "lab.proto").write_text('syntax = "proto3"; package lab; message Point { double x = 1; }')
+    monkeypatch.chdir(tmp_path)
+    for name in ("lab.proto", "./lab.proto", str(tmp_path / "lab.proto")):
+        assert rj.Decoder.of("lab.Point", imports=[name], backend="python")(b"").x == 0
+    (tmp_path / "m.mapping").write_text("data-holder: lab.Point\nwire-schema: geometry_msgs/Point\nunpack-rules:\n  .x = .x\n")
+    with pytest.raises(rj.MappingError, match=r"""`import "ros1/geometry_msgs/Point.msg"`"""):
+        rj.Decoder("m.mapping")
+    text = (tmp_path / "m.mapping").read_text()
+    (tmp_path / "m.mapping").write_text(f'import "lab.proto"\nimport "ros1/geometry_msgs/Point.msg"\n{text}')
+    assert rj.Decoder("m.mapping", backend="python").holder_type().to_dict() == {"x": 0.0}
+
+
 AT_THE_END = """
 import builtins, struct, sys
 import rosetta_jit as rj

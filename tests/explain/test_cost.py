@@ -72,7 +72,12 @@ def test_a_loop_is_named_by_the_fields_in_its_count():
     product = Let("product", Binary("mul", height, width))
     copy = Copy(Place(1, ROW), Wire(BEGIN), Binary("mul", Local("i64", "product"), index(3)))
     found = cost(product, copy, size_height=".size.height", width=".width")
-    assert found.repeated == (Repeated(".size.height * .width * 3", Cost(1, 1)),)
+    assert found.repeated == (Repeated(".size.height * .width", Cost(3, 3)),)
+
+
+def test_a_loop_whose_count_is_no_product_of_fields_is_not_named_by_locals():
+    size = Binary("sub", Binary("add", Local("i64", "text"), index(21)), Local("i64", "first_digit"))
+    assert cost(Copy(Place(1, ROW), Wire(BEGIN), size)).repeated == (Repeated("round of a loop", Cost(1, 1)),)
 
 
 def test_of_branches_the_dearest_counts():

@@ -321,3 +321,26 @@ pack-rules:
     assert "_u." not in as_page(found)
     laws = rj.check("m.mapping").laws
     assert [loss.place for loss in laws.messages.losses] == [".u.n", ".u._d", ".u.a"]
+
+
+def test_each_rule_of_a_relation_is_noted_by_what_it_does(mapping, tmp_path):
+    """One line of text sets several fields, each with a conversion of its own, or none."""
+    mapping()
+    (tmp_path / "w.bottle-schema").write_text('"w" (("secs" :int64) ("nanos" :int) ("a" (:list :int)) ("b" (:list :int)))')
+    proto = "message S { enum Order { UP = 0; DOWN = 1; } required int64 ns = 1; required Order order = 2; repeated int32 a = 3; }"
+    (tmp_path / "s.proto").write_text(f'syntax = "proto2"; package s; {proto}')
+    text = """import "w.bottle-schema"
+import "s.proto"
+data-holder: s.S
+wire-schema: w
+rules:
+  .ns <-> nanoseconds(.secs, .nanos)
+  .a by .order <-> { s.S.Order.UP = .a, s.S.Order.DOWN = reversed(.a) }
+  ignore .b
+"""
+    (tmp_path / "m.mapping").write_text(text)
+    unpack, pack = explanation("m.mapping", encoding="yarp4").directions
+    assert unpack.lines[1].text == ".a by .order = { s.S.Order.UP = .a }"
+    secs, nanos = pack.lines[:2]
+    assert (secs.text, secs.sets, secs.notes) == (".secs = floor_divide(.ns, 1000000000)", (("secs",),), ())
+    assert (nanos.sets, [note.text for note in nanos.notes]) == ((("nanos",),), ["int64 → int32, refused where it does not fit"])

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.imports.search import MAX_FILE_BYTES, Reading, SearchPath, shipped_folders
 from rosetta_jit.source import Source
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def put(folder: Path, name: str, text: str) -> Path:
@@ -42,7 +39,23 @@ def test_order(tmp_path: Path) -> None:
 
 
 def test_shipped_folders_come_last() -> None:
-    assert SearchPath.of(environment={}).folders == shipped_folders()
+    assert SearchPath.of(environment={}).folders == (*shipped_folders(), Path())
+
+
+def test_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Imports find what lies there and nowhere else; what the user names may be a path of any form."""
+    put(tmp_path, "x.proto", "here")
+    put(tmp_path, "rst/vision/Image.proto", "here")
+    monkeypatch.chdir(tmp_path)
+    search = SearchPath.of(environment={})
+    assert (
+        text_of(search.find("x.proto")) == text_of(search.named("./x.proto")) == text_of(search.named(str(tmp_path / "x.proto"))) == "here"
+    )
+    assert text_of(search.find("rst/vision/Image.proto")) != "here"
+    assert text_of(search.named("rst/vision/Image.proto")) == "here"
+    assert search.named("../none.proto") is None
+    with pytest.raises(SchemaError):
+        search.find(str(tmp_path / "x.proto"))
 
 
 @pytest.mark.parametrize("name", ["../x", "a/../../x", "/etc/passwd", "", "a\0b", "a\nb", "c:/x", "a\\b", "~/x", "."])

@@ -29,15 +29,16 @@ if TYPE_CHECKING:
     from rosetta_jit.language.resolve.rules import TypedRules
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Field, Type
     from rosetta_jit.source import Span
 
 
-def check_complete(rules: TypedRules, target: Message, side: str, span: Span | None) -> list[Diagnostic]:
-    """What is wrong with a block as a whole; ``span`` is where missing rules are reported."""
+def check_complete(rules: TypedRules, target: Message, missing: Missing) -> list[Diagnostic]:
+    """What is wrong with a block as a whole; ``missing`` says how missing rules are reported."""
     shared: list[Diagnostic] = []
     try:
-        found = [_check_way(way, rules, target, side, span) for way in ways(rules.rules, shared)]
+        found = [_check_way(way, rules, target, missing) for way in ways(rules.rules, shared)]
     except TooManyWaysError as error:
         return [words.too_many_ways(error.span, MAX_WAYS)]
     ways_with = Counter(problem for problems in found for problem in dict.fromkeys(problems))
@@ -46,15 +47,24 @@ def check_complete(rules: TypedRules, target: Message, side: str, span: Span | N
     return [*shared, *(problem for problem, count in ways_with.items() if count == len(found)), *some]
 
 
-def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, side: str, span: Span | None) -> list[Diagnostic]:
+def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, missing: Missing) -> list[Diagnostic]:
     """What is wrong with one way through a block."""
     problems: list[Diagnostic] = []
     broken = set(rules.broken)
     writes = writes_of(way, problems, broken)
     told = frozenset(field_names(place) for place in places_in(rules.rules))
-    checker = _Checker(target, side, span, broken, problems, told)
+    checker = _Checker(target, missing, broken, problems, told)
     checker.struct(_Where("", (), 0), target.root, writes)
     return problems
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """How a missing rule is reported: the side that it would set, where its type is named, and the block in which to write it."""
+
+    side: Side
+    span: Span | None
+    block: words.Block
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +103,7 @@ class _Checker:
     """Descends along the places that are written; the depth is bounded by the longest path of a rule."""
 
     target: Message
-    side: str
-    span: Span | None
+    missing: Missing
     broken: set[tuple[str, ...]]
     problems: list[Diagnostic]
     told: frozenset[tuple[str, ...]]
@@ -119,7 +128,8 @@ class _Checker:
         elif self.must_be_set(field) and not self.is_broken(where):
             type_ = self.target.value_type(field.type)
             kind = "value" if not isinstance(type_, Array) else "array" if type_.length is None else "fixed"
-            self.problems.append(words.never_set(self.span, self.side, where.text, field.span, kind=kind))
+            missing = self.missing
+            self.problems.append(words.never_set(missing.span, missing.side, where.text, field.span, kind=kind, block=missing.block))
 
     def constant(self, where: _Where, constant: object, writes: list[Write]) -> None:
         known = constant.value if isinstance(constant, Literal) else None
@@ -222,7 +232,7 @@ class _Checker:
                 return []
             groups.setdefault(entered[0], []).append(entered[1])
         try:
-            self.problems.extend(coverage(where.text, list(groups), extent.length, extent.span or self.span, optional=optional))
+            self.problems.extend(coverage(where.text, list(groups), extent.length, extent.span or self.missing.span, optional=optional))
         except TooComplexError:
             self.problems.append(words.too_complex(extent.span))
         return list(groups.values())

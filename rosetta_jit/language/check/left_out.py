@@ -16,17 +16,25 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Field
     from rosetta_jit.source import Span
 
 Names = tuple[str, ...]
 
 
-def left_out(rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None]) -> list[Diagnostic]:
-    """Warnings about one direction; ``spans`` are where the types of source and target are named."""
+def left_out(
+    rules: tuple[Rule, ...], source: Message, target: Message, spans: tuple[Span | None, Span | None], where: tuple[Side, words.Block]
+) -> list[Diagnostic]:
+    """Warnings about one direction; ``spans`` are where the types of source and target are named.
+
+    ``where`` is the side of the target, and the block in which what is missing is to be written.
+    """
+    side, block = where
+    other = "holder" if side == "wire" else "wire"
     return [
-        *(words.never_read(spans[0], shown_names(names, source)) for names in unread(rules, source)),
-        *(words.left_out(spans[1], shown_names(names, target)) for names in unset(rules, target)),
+        *(words.never_read(spans[0], other, shown_names(names, source), block) for names in unread(rules, source)),
+        *(words.left_out(spans[1], side, shown_names(names, target), block) for names in unset(rules, target)),
     ]
 
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.both_ways.directions import in_each_direction
-from rosetta_jit.language.check.completeness import check_complete
+from rosetta_jit.language.check.causes import causes, relations_of, unclear
+from rosetta_jit.language.check.completeness import Missing, check_complete
 from rosetta_jit.language.check.default_counts import defaulted_counts
 from rosetta_jit.language.check.discriminators import discriminators_of
 from rosetta_jit.language.check.file_name import misnamed
@@ -32,12 +33,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping as Dictionary
     from collections.abc import Sequence
 
+    from rosetta_jit.catalogue.check import Block
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.imports.declarations import Imported
     from rosetta_jit.language.imports.search import SearchPath
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Others, Signature, Use
+    from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.parsing.idl import FrontEnds
 
@@ -85,7 +88,8 @@ def check(
     problems: list[Diagnostic] = []
     bound: list[Diagnostic] = []
     underived: list[Diagnostic] = []
-    mapping, reading = in_each_direction(bind(mapping, parameters, bound), underived), reading or Reading()
+    written, reading = bind(mapping, parameters, bound), reading or Reading()
+    relations, mapping = relations_of(written.rules or ()), in_each_direction(written, underived)
     others = read_others(mapping, search, reading, problems, handed_on(mapping, parameters))
     imports = Imports(mapping.source, front_ends, search, reading)
     imported = read_imports(mapping, imports, problems)
@@ -96,18 +100,26 @@ def check(
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
-        raise MappingError(_sorted([*problems, *resolved]))
+        raise MappingError(_sorted([*problems, *(_with_import(each, mapping, imports) for each in resolved)]))
     problems += resolved.problems
-    problems += _directions(mapping, resolved, packs=not _errors(underived))
+    packs = not _errors(underived) and not unclear(resolved.problems, relations)
+    problems = causes(problems, relations) + _directions(mapping, resolved, _blocks(written), packs=packs)
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += _unused(imported, resolved)
     problems += misnamed(mapping, schema)
     if _errors(problems):
         raise MappingError(_sorted(problems))
-    problems += _silent_losses(mapping, resolved)
+    problems += _silent_losses(mapping, resolved, _blocks(written))
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     functions, uses = dict(resolved.functions), tuple(others.uses)
     return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(problems), uses)
+
+
+def _with_import(problem: Diagnostic, mapping: Mapping, imports: Imports) -> Diagnostic:
+    """The report of a type that no import declares, with the import that would."""
+    named = {mapping.holder_span: mapping.holder_type, mapping.wire_span: mapping.wire_type}
+    home = imports.home(named[problem.span]) if problem.code == "unknown-type" and problem.span in named else None
+    return problem if home is None else replace(problem, help=f'import the file that declares it: `import "{home}"`')
 
 
 def _errors(problems: list[Diagnostic]) -> list[Diagnostic]:
@@ -121,8 +133,15 @@ def _without_handed_on(problems: list[Diagnostic], mapping: Mapping, others: Oth
     return [each for each in problems if each.code != "parameter-unused" or each.span not in spans]
 
 
-def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Diagnostic]:
-    """Each direction as a whole; ``packs`` unless rules to pack are missing that could not be derived.
+def _blocks(written: Mapping) -> tuple[Block, Block]:
+    """The blocks in which rules that are missing for unpacking, and for packing, are to be written."""
+    if not written.rules:
+        return "", ""
+    return ("unpack-rules", "pack-rules") if written.unpack_rules or written.pack_rules else ("rules", "rules")
+
+
+def _directions(mapping: Mapping, resolved: Resolved, blocks: tuple[Block, Block], *, packs: bool) -> list[Diagnostic]:
+    """Each direction as a whole; ``packs`` unless rules to pack are missing that could not be derived, or are open.
 
     An empty block says that the direction is not meant to exist.
     """
@@ -131,9 +150,9 @@ def _directions(mapping: Mapping, resolved: Resolved, *, packs: bool) -> list[Di
     problems: list[Diagnostic] = []
     holder, wire = resolved.holder, resolved.wire
     if mapping.unpack_rules and resolved.unpack is not None:
-        problems += check_complete(resolved.unpack, holder, "holder", mapping.holder_span)
+        problems += check_complete(resolved.unpack, holder, Missing("holder", mapping.holder_span, blocks[0]))
     if packs and mapping.pack_rules and resolved.pack is not None:
-        problems += check_complete(resolved.pack, wire, "wire", mapping.wire_span)
+        problems += check_complete(resolved.pack, wire, Missing("wire", mapping.wire_span, blocks[1]))
     for block, target in ((resolved.unpack, holder), (resolved.pack, wire)):
         if block is not None:
             problems += defaulted_counts(block.rules, target)
@@ -150,13 +169,15 @@ def _check_order(rules: tuple[Rule, ...], target: Message, problems: list[Diagno
         discriminators_first(rules, unions, problems)
 
 
-def _silent_losses(mapping: Mapping, resolved: Resolved) -> list[Diagnostic]:
+def _silent_losses(mapping: Mapping, resolved: Resolved, blocks: tuple[Block, Block]) -> list[Diagnostic]:
     """What rules without errors leave out."""
     warnings: list[Diagnostic] = []
     holder, wire = (resolved.holder, mapping.holder_span), (resolved.wire, mapping.wire_span)
-    for block, (source, read_at), (target, set_at) in ((resolved.unpack, wire, holder), (resolved.pack, holder, wire)):
+    unpack: tuple[Side, Block] = ("holder", blocks[0])
+    pack: tuple[Side, Block] = ("wire", blocks[1])
+    for block, (source, read_at), (target, set_at), where in ((resolved.unpack, wire, holder, unpack), (resolved.pack, holder, wire, pack)):
         if block is not None and block.rules:
-            warnings += left_out(block.rules, source, target, (read_at, set_at))
+            warnings += left_out(block.rules, source, target, (read_at, set_at), where)
             warnings += [*other_lengths(block.rules), *rounded(block.rules)]
     return warnings
 

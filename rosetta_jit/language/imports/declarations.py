@@ -42,7 +42,12 @@ class Imports:
 
     def has(self, type_: str) -> bool:
         """Whether there is a file that a type of this name is likely declared in."""
-        return any(not refusal(name) and self.search.find(name, self.importer) is not None for name in self.front_ends.homes(type_))
+        return self.home(type_) is not None
+
+    def home(self, type_: str) -> str | None:
+        """That file, as an import names it."""
+        names = (name for name in self.front_ends.homes(type_) if not refusal(name))
+        return next((name for name in names if self.search.find(name, self.importer) is not None), None)
 
     def read(self, statement: Import) -> Imported | Diagnostic:
         source = self.search.loader(self.reading, self.importer)(statement.path)

@@ -1,7 +1,8 @@
 """The search path: where a mapping and what it imports are found.
 
 In this order: texts given by the caller, the importing file's folder, the user's folders (argument, then the environment
-variable ROSETTA_JIT_PATH), and what is shipped with the package.
+variable ROSETTA_JIT_PATH), what is shipped with the package, and the current folder. A file that the user names himself, in an
+argument, may also be a path of any form; one that a text imports never leaves the search path.
 """
 
 from __future__ import annotations
@@ -77,10 +78,10 @@ class SearchPath:
         files: Mapping[str, str] | None = None,
         environment: Mapping[str, str] = os.environ,
     ) -> SearchPath:
-        """The user's search path: ``folders``, those of the environment, then the shipped ones."""
+        """The user's search path: ``folders``, those of the environment, the shipped ones, then the current one."""
         named = [folder for folder in environment.get(ENVIRONMENT_VARIABLE, "").split(os.pathsep) if folder]
         users = tuple(Path(folder) for folder in (*folders, *named))
-        return cls(users + shipped_folders(), tuple((files or {}).items()))
+        return cls((*users, *shipped_folders(), Path()), tuple((files or {}).items()))
 
     def find(self, name: str, importer: Source | None = None) -> Source | None:
         """The file that an import names, or None.
@@ -108,8 +109,21 @@ class SearchPath:
         candidates = [str(folder / lookup.asked) for folder in (*beside, *self.folders)]
         return tuple(candidates[: candidates.index(lookup.found)]) if lookup.found in candidates else ()
 
+    def named(self, name: str) -> Source | None:
+        """The file that the user names: a text in memory, a path of any form, or a name on the search path; None if there is none.
+
+        Raises
+        ------
+        SchemaError
+            The file or text is too large or no text.
+        """
+        texts = dict(self.files)
+        if name in texts:
+            return _given(name, texts[name])
+        return _read(Path(name)) if _is_file(Path(name)) else None if refusal(name) else self.find(name)
+
     def open(self, path: str | os.PathLike[str]) -> Source:
-        """The mapping that the user names: a text in memory, a path of any form, or a name on the search path.
+        """The mapping that the user names, as `named` finds it.
 
         Raises
         ------
@@ -117,11 +131,8 @@ class SearchPath:
             There is none, or it cannot be read.
         """
         name = os.fspath(path)
-        texts = dict(self.files)
         try:
-            if name in texts:
-                return _given(name, texts[name])
-            found = _read(Path(name)) if _is_file(Path(name)) else None if refusal(name) else self.find(name)
+            found = self.named(name)
         except SchemaError as error:
             raise MappingError(error.diagnostics) from error
         if found is None:

@@ -22,7 +22,7 @@ from rosetta_jit.language.resolve.absent_texts import length_there, text_there
 from rosetta_jit.language.resolve.held_values import type_held, type_nearest
 from rosetta_jit.language.resolve.key_search import is_found, type_search
 from rosetta_jit.language.resolve.list_items import compared_text, type_listed
-from rosetta_jit.language.scope import Broken, Sought, resolve_path
+from rosetta_jit.language.scope import Broken, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model import expr as model
@@ -121,7 +121,9 @@ def _name(expr: model.Name, scope: Scope) -> Expr | None:
         scope.named_enums.add(enum.name)
         return Const(number, enum, expr.span)
     known = {*scope.locals, *CONSTANTS, *scope.constants}
-    scope.problems.append(words.unknown_name(expr.span, expr.name, known))
+    origin = scope.messages[scope.origin]
+    undotted = expr.name in members_of(origin.root, origin.schema)
+    scope.problems.append(words.undotted_field(expr.span, expr.name) if undotted else words.unknown_name(expr.span, expr.name, known))
     return None
 
 

@@ -401,10 +401,11 @@ def _mismatch(value: Expr, target: Type) -> Diagnostic:
             return words.no_number(value.span, source, aim, word_for(value.type, target))
         case _:
             how = word_for(value.type, target)
+            spelt = isinstance(value, Const) and isinstance(value.type, String)
             return (
                 words.needs_word(value.span, source, aim, how)
                 if how
-                else words.type_clash(value.span, source, aim, other_way(value.type, target))
+                else words.type_clash(value.span, source, aim, "" if spelt else other_way(value.type, target))
             )
 
 

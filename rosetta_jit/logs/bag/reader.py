@@ -10,14 +10,14 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.bag.grammar import CHUNK_INFO, CONNECTION, BagGrammar, header_of, number, time_ns
 from rosetta_jit.logs.base import Extent
-from rosetta_jit.logs.records import PEEK, Chunk, Records, Region, Scanned, segments_of
+from rosetta_jit.logs.records import PEEK, Chunk, Records, Region, Scanned, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Wanted
+    from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
     from rosetta_jit.logs.storage import Storage
 
 MAGIC = b"#ROSBAG V2.0\n"
@@ -45,7 +45,7 @@ class BagReader:
             raise LogError((words.old_version(storage.name, start.partition(b"\n")[0].decode("ascii", "replace")),))
         self._storage, self._tell = storage, tell
         self._grammar = BagGrammar(storage.name, tell)
-        self._records = Records(storage, self._grammar, tell, check=check)
+        self._records = Records(storage, self._grammar, tell, len(MAGIC), check=check)
         self._contents = self._indexed() or self._scanned()
 
     @property
@@ -68,6 +68,10 @@ class BagReader:
         except ValueError:
             return facts
         return facts | {"compression": header.get(b"compression", b"?").decode("ascii", "replace")}
+
+    @property
+    def pieces(self) -> Sequence[Piece]:
+        return pieces_of(self._contents.segments)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return self._records.blocks(self._contents.segments, wanted, self._contents.end)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
-from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES
 from rosetta_jit.logs.varints import MAX_BYTES, varint
@@ -38,6 +38,10 @@ class DelimitedReader:
     @property
     def facts(self) -> Mapping[str, str]:
         return {}
+
+    @property
+    def pieces(self) -> tuple[Piece]:
+        return (Piece(self._storage.size),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         del wanted

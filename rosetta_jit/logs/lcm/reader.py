@@ -10,13 +10,13 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.records import WINDOW, add_counts
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES
 from rosetta_jit.logs.walking import Rows, Why, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.storage import Storage
 
 SYNC = bytes.fromhex("eda1da01")
+PIECE = 64 << 20
+"""Bytes of the file that are read alone, or somewhat more."""
+
 HEAD = 28
 """Bytes of an event before its channel's name."""
 
@@ -41,7 +44,10 @@ class LcmReader:
         self._known: dict[int, Connection] = {}
         counts: dict[int, int | None] = {}
         self._extent: Extent | None = None
-        for block in self.blocks(Wanted()):
+        self._marks = [0]
+        for at, block in self._walked(0, storage.size):
+            if at - self._marks[-1] >= PIECE:
+                self._marks.append(at)
             add_counts(counts, block.rows)
             self._time(int(block.rows.log_ns.min()), int(block.rows.log_ns.max()))
         self._known = {number: replace(each, count=counts.get(number, 0)) for number, each in self._known.items()}
@@ -58,15 +64,25 @@ class LcmReader:
     def facts(self) -> Mapping[str, str]:
         return {}
 
+    @property
+    def pieces(self) -> Sequence[Piece]:
+        ends = [*self._marks[1:], self._storage.size]
+        return [Piece(end - at) for at, end in zip(self._marks, ends, strict=True)]
+
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
-        del wanted  # nothing tells where which messages are
-        at, needed, end = 0, WINDOW, self._storage.size
+        marks = [*self._marks, self._storage.size]
+        pieces = wanted.pieces or range(len(self._marks))
+        return (block for _, block in self._walked(marks[pieces.start], marks[min(pieces.stop, len(marks) - 1)]))
+
+    def _walked(self, at: int, end: int) -> Iterator[tuple[int, Block]]:
+        """The messages between two places at which events begin, and where each block of them does."""
+        needed = WINDOW
         while at < end:
             data = self._storage.array(at, min(needed, end - at))
             rows, stop = walk("lcm", data, 0, seed=self._seed)
             needed = WINDOW
             if len(rows):
-                yield Block(data, self._numbered(data, rows))
+                yield at, Block(data, self._numbered(data, rows))
             at += stop.at
             if stop.why is Why.CUT and at + max(stop.size, HEAD) <= end and stop.size <= MAX_RECORD_BYTES:
                 needed = max(WINDOW, stop.size)
@@ -88,8 +104,10 @@ class LcmReader:
     def _numbered(self, data: NDArray[np.uint8], rows: Rows) -> Rows:
         """Rows with the numbers of channels in place of their names' hashes."""
         hashes, first, inverse = np.unique(rows.channels, return_index=True, return_inverse=True)
-        numbers = [self._number(key, data, rows, row) for key, row in zip(hashes.tolist(), first.tolist(), strict=True)]
-        return replace(rows, channels=np.array(numbers, np.int64)[inverse])
+        numbers = np.empty(len(hashes), np.int64)
+        for place in np.argsort(first).tolist():  # as they come: the hashes are others in each process
+            numbers[place] = self._number(int(hashes[place]), data, rows, int(first[place]))
+        return replace(rows, channels=numbers[inverse])
 
     def _number(self, key: int, data: NDArray[np.uint8], rows: Rows, row: int) -> int:
         number = self._numbers.setdefault(key, len(self._numbers))

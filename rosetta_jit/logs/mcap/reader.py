@@ -11,14 +11,14 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Extent
 from rosetta_jit.logs.fields import Fields
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
-from rosetta_jit.logs.records import Chunk, Records, Region, Scanned, segments_of
+from rosetta_jit.logs.records import Chunk, Records, Region, Scanned, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Wanted
+    from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
     from rosetta_jit.logs.storage import Storage
 
 FOOTER_SIZE = PREFIX.size + 20
@@ -44,7 +44,7 @@ class McapReader:
             raise LogError((words.not_a(storage.name, "MCAP file"),))
         self._storage, self._tell, self._check = storage, tell, check
         self._grammar = McapGrammar(storage.name, tell)
-        self._records = Records(storage, self._grammar, tell, check=check)
+        self._records = Records(storage, self._grammar, tell, len(MAGIC), check=check)
         self._summary = self._summarised() or self._scanned()
 
     @property
@@ -59,6 +59,10 @@ class McapReader:
     @property
     def facts(self) -> Mapping[str, str]:
         return self._summary.facts
+
+    @property
+    def pieces(self) -> Sequence[Piece]:
+        return pieces_of(self._summary.segments)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return self._records.blocks(self._summary.segments, wanted, self._summary.end)

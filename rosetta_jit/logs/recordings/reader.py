@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.recording import RecordingError, read_messages
 
@@ -36,6 +36,10 @@ class RecordingReader:
     @property
     def facts(self) -> Mapping[str, str]:
         return {}
+
+    @property
+    def pieces(self) -> tuple[Piece]:
+        return (Piece(0),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         del wanted

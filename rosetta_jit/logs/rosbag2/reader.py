@@ -12,7 +12,7 @@ from weakref import finalize
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Block, Connection, Extent, Reader, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Reader, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.compression import Scratch, decompressed, zstd_size
 from rosetta_jit.logs.mcap.reader import McapReader
@@ -20,7 +20,7 @@ from rosetta_jit.logs.rosbag2.sqlite import SqliteReader
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES, open_storage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.storage import Storage
@@ -63,15 +63,30 @@ class Rosbag2Reader:
     def facts(self) -> Mapping[str, str]:
         return {"files": str(len(self._parts)), **self._parts[0].facts}
 
-    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+    @property
+    def pieces(self) -> Sequence[Piece]:
+        found = list[Piece]()
         for place, part in enumerate(self._parts):
-            base = place * PART
+            for each in part.pieces:
+                numbers = None if each.connections is None else frozenset(place * PART + number for number in each.connections)
+                found.append(Piece(each.size, each.times, numbers))
+        return found
+
+    def blocks(self, wanted: Wanted) -> Iterator[Block]:
+        before = 0
+        for place, part in enumerate(self._parts):
+            base, pieces = place * PART, range(len(part.pieces))
+            if wanted.pieces is not None:
+                pieces = pieces[max(wanted.pieces.start - before, 0) : max(wanted.pieces.stop - before, 0)]
+            before += len(part.pieces)
+            if not pieces:
+                continue
             own = None
             if wanted.connections is not None:
                 own = frozenset(each - base for each in wanted.connections if base <= each < base + PART)
                 if not own:
                     continue
-            blocks = part.blocks(Wanted(own, wanted.start_ns, wanted.end_ns))
+            blocks = part.blocks(Wanted(own, wanted.start_ns, wanted.end_ns, pieces if wanted.pieces is not None else None))
             for block in blocks_of(self._unpacked(blocks)) if self._compressed else blocks:
                 yield Block(block.data, replace(block.rows, channels=block.rows.channels + base))
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES
 
@@ -30,7 +30,7 @@ class SqliteReader:
 
     def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
         del check  # it has no checksums
-        self._name, self._tell = storage.name, tell
+        self._name, self._tell, self._size = storage.name, tell, storage.size
         try:
             self._database = sqlite3.connect(f"{storage.path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False)
             self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_RECORD_BYTES)
@@ -52,6 +52,10 @@ class SqliteReader:
     @property
     def facts(self) -> Mapping[str, str]:
         return {"storage": "sqlite3"}
+
+    @property
+    def pieces(self) -> tuple[Piece]:
+        return (Piece(self._size),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(self._messages(wanted))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.fields import Fields
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES
@@ -70,6 +70,10 @@ class TideReader:
     @property
     def facts(self) -> Mapping[str, str]:
         return {"chunks": str(len(self._chunks))}
+
+    @property
+    def pieces(self) -> tuple[Piece]:
+        return (Piece(self._storage.size),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         return blocks_of(self._messages(wanted))

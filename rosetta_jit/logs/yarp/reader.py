@@ -16,7 +16,7 @@ from rosetta_jit.errors import EncodeError, LogError
 from rosetta_jit.frameworks.yarp import bottle
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.frameworks.yarp.text import parse_text
-from rosetta_jit.logs.base import Block, Connection, Extent, Wanted
+from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.yarp.images import ImageError, image_message
 from rosetta_jit.startup.dataclass import dataclass
@@ -87,6 +87,10 @@ class DumperReader:
     @property
     def facts(self) -> Mapping[str, str]:
         return {"ports": str(len(self._ports))}
+
+    @property
+    def pieces(self) -> tuple[Piece]:
+        return (Piece(0),)
 
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         for number, port in enumerate(self._ports):

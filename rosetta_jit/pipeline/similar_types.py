@@ -1,0 +1,56 @@
+"""Types whose names are like one that there is not: by the files that lie where its own would."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from rosetta_jit.errors import ReportError
+from rosetta_jit.language.imports.search import shipped_folders
+from rosetta_jit.model.types import name_parts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+    from rosetta_jit.language.imports.search import SearchPath
+    from rosetta_jit.parsing.idl import FrontEnds
+
+MAX_FILES = 5000
+"""Files of a folder that are looked at; a search path may have any number."""
+
+MAX_GUESSES = 50
+MAX_READ = 8
+
+
+def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list[str]:
+    """The names of types that are declared where ``asked`` would be; for a name without a package, in all packages that are shipped."""
+    package = name_parts(asked)[:-1]
+    guesses = tuple(islice(front_ends.guesses(asked), MAX_GUESSES))
+    if not package:
+        return list(dict.fromkeys(name for name in _packaged(asked, guesses, front_ends, search)))
+    separator = next(each for each in ("::", ".", "/") if each in asked)
+    stems = [stem for folder in search.folders for guess in guesses for stem in _stems(folder / guess)]
+    return [separator.join((*package, stem)) for stem in dict.fromkeys(stems)]
+
+
+def _stems(path: Path) -> Iterator[str]:
+    return (each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES))
+
+
+def _packaged(asked: str, guesses: Iterable[str], front_ends: FrontEnds, search: SearchPath) -> Iterator[str]:
+    """Types with that last name, of any package."""
+    for path in islice(_named(asked, guesses), MAX_READ):
+        source, front_end = search.named(str(path)), front_ends.find(str(path))
+        if source is not None and front_end is not None:
+            with suppress(ReportError):  # of another framework
+                types = front_end(source, search.find).types
+                yield from [name for name in types if name_parts(name)[-1].casefold() == asked.casefold()]
+
+
+def _named(asked: str, guesses: Iterable[str]) -> Iterator[Path]:
+    """Shipped files that are named as the type, whatever the case."""
+    folders = dict.fromkeys(((folder / guess).parent, (folder / guess).suffix) for guess in guesses for folder in shipped_folders())
+    found = (path for place, suffix in folders for path in islice(place.rglob(f"*{suffix}"), MAX_FILES))
+    return (path for path in dict.fromkeys(found) if path.stem.casefold() == asked.casefold())
