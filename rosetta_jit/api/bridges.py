@@ -32,10 +32,15 @@ class BridgeOptions(TypedDict, total=False):
     ----------
     decode, encode : dict
         The `Options` of what is read and of what is written: ``decode={"encoding": "yarp3"}``.
+    decode_type, encode_type : str
+        In place of a mapping, the type that is read or written: the data-holder of the other mapping, or, where that is of ROS 1 or of
+        ROS 2, the type of the same name in the other one.
     """
 
     decode: Options
     encode: Options
+    decode_type: str
+    encode_type: str
 
 
 class Bridge(BridgeBase):
@@ -75,11 +80,14 @@ class Bridge(BridgeBase):
     ) -> None:
         given = _given(options)
         read, written = (None if each is None else os.fspath(each) for each in (decode_mapping, encode_mapping))
-        decode = request_of("decode", given["decode"], mapping=read)
-        self._make(BridgeRequest(decode, request_of("encode", given["encode"], mapping=written)))
+        decode = request_of("decode", given["decode"], mapping=read, type_=options.get("decode_type"))
+        encode = request_of("encode", given["encode"], mapping=written, type_=options.get("encode_type"))
+        self._make(BridgeRequest(decode, encode))
 
     @classmethod
-    def of(cls, type_: str | type, encode_type: str | type | None = None, **options: Unpack[BridgeOptions]) -> Self:
+    def of(
+        cls, type_: str | type, encode_type: str | type | None = None, *, decode: Options | None = None, encode: Options | None = None
+    ) -> Self:
         """A bridge without a mapping, between two encodings of a type.
 
         Parameters
@@ -88,14 +96,12 @@ class Bridge(BridgeBase):
             Qualified name of the type that is read, or a message class of protobuf's Python package.
         encode_type
             The same of what is written, where another framework has a type of the same name with the same fields.
-        **options
-            See `BridgeOptions`; at least one of them must say another encoding than the framework's usual one.
+        decode, encode
+            The `Options` of what is read and of what is written.
         """
-        given = _given(options)
         written = type_ if encode_type is None else encode_type
-        return _of_request(
-            cls, BridgeRequest(type_request("decode", type_, given["decode"]), type_request("encode", written, given["encode"]))
-        )
+        request = BridgeRequest(type_request("decode", type_, decode or {}), type_request("encode", written, encode or {}))
+        return _of_request(cls, request)
 
     @classmethod
     def between(cls, source: str, target: str) -> Self:
@@ -124,7 +130,7 @@ class Bridge(BridgeBase):
 
 
 def _given(options: BridgeOptions) -> dict[str, Options]:
-    unknown = sorted(set(options) - {"decode", "encode"})
+    unknown = sorted(set(options) - BridgeOptions.__annotations__.keys())
     if unknown:
         raise TypeError(f"unknown option {unknown[0]!r}; a bridge has options of two halves: decode={{…}} and encode={{…}}")
     return {"decode": options.get("decode", {}), "encode": options.get("encode", {})}

@@ -59,6 +59,12 @@ def do_not_meet(filled: str, packed: str, span: Span | None, *, same_name: bool)
     )
 
 
+def unlike(older: str, newer: str, path: str, why: str) -> Diagnostic:
+    """Types of a framework and of the one that followed it that do not have the same fields."""
+    what = f"`{older}` and `{newer}` do not have the same fields: `{path}` {why}"
+    return Diagnostic("error", "unlike-types", what, help="write a mapping between the two")
+
+
 def two_functions(name: str) -> Diagnostic:
     """Both halves of a bridge were given a function of the same name, and not the same one."""
     return Diagnostic("error", "two-functions", f"there are two functions `{name}`", help="give one of them another name")

@@ -50,6 +50,14 @@ class Encoder(Protocol):
         ...
 
 
+class Successors(Protocol):
+    """A function from a struct of an older framework and the one that followed it to what became of its fields."""
+
+    def __call__(self, older: Struct, newer: Struct, shown: str) -> Mapping[str, str | None]:
+        """The newer name of each older field, None of what was dropped."""
+        ...
+
+
 class TreeOf(Protocol):
     """A function from two encodings to what messages of one become in the other."""
 
@@ -94,6 +102,8 @@ class Framework:
         one kind.
     transcoding
         A function that gives the `rosetta_jit.wire.tree.Tree` of two encodings. Empty where messages do not describe themselves.
+    follows
+        Older frameworks whose types this one has under the same names, and for each a function that says what became of a type's fields.
     """
 
     name: str
@@ -107,6 +117,11 @@ class Framework:
     features: str = ""
     texts: str = ""
     transcoding: str = ""
+    follows: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def successors(self, older: str) -> Successors | None:
+        """What became of types of an older framework's in this one; None where it does not follow that."""
+        return cast("Successors", _found(self.follows[older])) if older in self.follows else None
 
     def tree(self, source: str, target: str) -> Tree | None:
         """What messages of one encoding become in another one, if they describe themselves and differ in codes alone."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 import numpy as np
@@ -17,11 +18,12 @@ from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Generator, Iterable, Iterator
 
     import pyarrow as pa
     from numpy.typing import NDArray
 
+    from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder
     from rosetta_jit.logs.base import Block, Connection
@@ -127,8 +129,27 @@ class Channel:
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
         """Messages of a block, in a batch of their own; an error says of which topic and time the message is."""
         data, offsets = gathered(block.data, rows.begins, rows.ends)
-        try:
+        with self._named(rows):
             return self.decoder.many(data.data, offsets, on_error=on_error)
+
+    def bridge_to(self, type_: str, encode: Options) -> Bridge:
+        """What turns the messages into those of another type, which has the same fields (`rosetta_jit.api.bridges.Bridge.of`)."""
+        from rosetta_jit.api.bridges import Bridge
+
+        own, options = _type_and_options(self._log, self.connections[0], None, self._options)
+        return Bridge.of(own, type_, decode=cast("Options", options), encode=encode)
+
+    def bridged(self, block: Block, rows: Rows, bridge: Bridge) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+        """What messages of a block become, and where each of them begins; an error says of which topic and time the message is."""
+        data, offsets = gathered(block.data, rows.begins, rows.ends)
+        with self._named(rows):
+            return bridge.many(data.data, offsets)
+
+    @contextmanager
+    def _named(self, rows: Rows) -> Generator[None]:
+        """Around what is done with messages by their numbers among some rows."""
+        try:
+            yield
         except DecodeError as error:
             number, _, path = error.path.removeprefix("[").partition("]")
             when = shown(int(rows.log_ns[int(number)]))
@@ -271,6 +292,13 @@ def _many(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnErr
 
 def _decoder(log: Log, connection: Connection, target: str | None, options: Options) -> Decoder:
     from rosetta_jit.api.programs import Decoder
+
+    name, chosen = _type_and_options(log, connection, target, options)
+    return Decoder(name, **chosen) if name == target and name.endswith(".mapping") else Decoder.of(name, **chosen)
+
+
+def _type_and_options(log: Log, connection: Connection, target: str | None, options: Options) -> tuple[str, dict[str, Any]]:
+    """The mapping or type of a decoder, and the options that it is made with."""
     from rosetta_jit.frameworks.installed import installed
 
     encodings = {name for framework in installed().values() for name in framework.encodings}
@@ -279,7 +307,7 @@ def _decoder(log: Log, connection: Connection, target: str | None, options: Opti
         raise LogError((words.unknown_encoding(log.name, connection.topic, connection.encoding),))
     chosen.setdefault("encoding", connection.encoding)
     if target is not None and target.endswith(".mapping"):
-        return Decoder(target, **chosen)
+        return target, chosen
     type_ = target or connection.type
     if not type_ and "fingerprint" in connection.details and "imports" not in chosen:
         type_, chosen["imports"] = _of_fingerprint(connection, chosen)
@@ -289,7 +317,7 @@ def _decoder(log: Log, connection: Connection, target: str | None, options: Opti
     if connection.schema_encoding and type_ == connection.type and "schema" not in chosen:
         chosen.pop("imports", None)  # they are for types that the log does not define
         chosen["schema"] = connection.schema if connection.schema_encoding == "protobuf" else connection.schema.decode("utf-8", "replace")
-    return Decoder.of(type_, **chosen)
+    return type_, chosen
 
 
 def _of_fingerprint(connection: Connection, options: dict[str, Any]) -> tuple[str, tuple[str, ...]]:

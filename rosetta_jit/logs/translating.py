@@ -1,4 +1,4 @@
-"""A log of ROS 1 as a log of ROS 2: each message is decoded, its fields get their new names, and it is encoded as CDR.
+"""A log of ROS 1 as a log of ROS 2: a bridge for each topic gives fields their new names, and writes CDR.
 
 A definition of ROS 2 is needed of each type: those that are shipped, and those on the search path. Nothing is altered: a value that the
 new field cannot hold, or a field that has no successor but a header's `seq`, is an error.
@@ -12,7 +12,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.frameworks.ros2.successors import DROPPED, definition, predecessor, successor
+from rosetta_jit.frameworks.ros2.successors import definition, successor
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.logs.base import Connection
 from rosetta_jit.logs.writing import written
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
-    import pyarrow as pa
-
-    from rosetta_jit.api.programs import Encoder
+    from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.logs.base import Block, Wanted
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
@@ -32,22 +30,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stream:
-    """The messages of a topic on their way: where they come from, what encodes them, which columns that takes."""
+    """The messages of a topic on their way: where they come from, and what they become."""
 
     channel: Channel
     connection: Connection
-    encode: Encoder
-    schema: pa.Schema
+    bridge: Bridge
 
     def translated(self, block: Block) -> dict[int, bytes]:
         """Those of a block, by their rows."""
-        from rosetta_jit.runtime.arrow.renamed import renamed
-
         chosen = np.flatnonzero(np.isin(block.rows.channels, [each.number for each in self.channel.connections]))
         if not len(chosen):
             return {}
-        table = self.channel.decoded(block, block.rows.only(chosen)).to_arrow()
-        buffer, places = self.encode.many(renamed(table, self.schema, predecessor, DROPPED))
+        buffer, places = self.channel.bridged(block, block.rows.only(chosen), self.bridge)
         octets, ends = buffer.tobytes(), places.tolist()
         return {row: octets[ends[index] : ends[index + 1]] for index, row in enumerate(chosen.tolist())}
 
@@ -68,9 +62,9 @@ def translate_log(
     LogError
         A topic is not of ROS 1, or there is no definition of its type in ROS 2.
     DecodeError
-        A message is not what its type promises.
-    ValuesError
-        A field has no successor, or a value does not fit into it.
+        A message is not what its type promises, or has a value that does not fit into a field's successor.
+    SchemaError
+        A field has no successor.
     """
     search = SearchPath.of(folders)
     streams = [_stream(log, channel, search) for channel in channels]
@@ -87,15 +81,12 @@ def translate_log(
 
 
 def _stream(log: Log, channel: Channel, search: SearchPath) -> Stream:
-    from rosetta_jit.api.programs import Encoder
-    from rosetta_jit.runtime.batch import Batch
-
     if channel.encoding != "ros1":
         raise LogError((words.not_of_ros1(log.name, channel.topic, channel.encoding),))
     type_ = successor(channel.type)
     text = definition(type_, search.loader(Reading()))
     if text is None:
         raise LogError((words.no_successor(log.name, channel.topic, type_),))
-    encode = Encoder.of(type_, encoding="cdr", schema=text)
+    bridge = channel.bridge_to(type_, {"encoding": "cdr", "schema": text})
     connection = Connection(0, channel.topic, type_, "cdr", "ros2msg", text.encode())
-    return Stream(channel, connection, encode, Batch.new(encode.holder_type, 0).to_arrow().schema)
+    return Stream(channel, connection, bridge)

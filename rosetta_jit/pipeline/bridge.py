@@ -19,6 +19,7 @@ from rosetta_jit.model.same_layout import have_same_fields
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
+from rosetta_jit.pipeline.held import joined
 from rosetta_jit.pipeline.user_functions import check_compiled
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
@@ -48,6 +49,8 @@ class BridgeBuild:
         first, second = Build(_closed(decode, encode)), Build(_closed(encode, decode))
         filled, packed = first.types.holder, second.types.holder
         is_same = same_name(filled.name, packed.name)
+        if is_same and not have_same_fields(first.layout, second.layout):
+            first, second = joined(first, second)
         if not is_same or not have_same_fields(first.layout, second.layout):
             span = second.checked.mapping.holder_span if second.request.mapping is not None else None
             raise MappingError((words.do_not_meet(filled.name, packed.name, span, same_name=is_same),))
@@ -56,11 +59,11 @@ class BridgeBuild:
     def _referring(self, build: Build) -> Build:
         """What decodes, with bytes left in the message where nothing else is written to their lane."""
         references = References()
-        referring = Build(build.request, references)
+        referring = build.referring(references)
         written = _written_lanes(referring.lowered)
         if references.found & written:
             references = References(copied=frozenset(written))
-            referring = Build(build.request, references)
+            referring = build.referring(references)
         return referring
 
     @cached_property

@@ -69,6 +69,10 @@ class Build:
         self.files_given = _named_files(self.request)
         self.search = SearchPath.of(self.request.folders, files=self.files_given)
 
+    def referring(self, references: References) -> Build:
+        """The same, with bytes left in the message."""
+        return Build(self.request, references)
+
     @cached_property
     def checked(self) -> Checked:
         """The mapping, with the parameters of the request."""

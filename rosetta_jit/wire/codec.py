@@ -26,12 +26,16 @@ Order = Literal["<", ">"]
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A fixed-width scalar, stored as it is; ``absent`` where it is in a member of a mutable struct that did not come."""
+    """A fixed-width scalar, stored as it is; ``absent`` where it is in a member of a mutable struct that did not come.
+
+    ``held`` is the integer that the holder has for it, where that is another one: a value that does not fit is refused.
+    """
 
     path: Path
     scalar: str
     order: Order = "<"
     absent: int | float = 0
+    held: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,7 +74,7 @@ class Options(TypedDict):
 
     ``with_numba`` says whether the first kernel is typed by numba on its way, unless it is large: that optimises it once more; the code
     does the same. ``functions`` are those of the user's that the kernels call; they need numba. ``references`` are, of a bridge, the lanes
-    that become the message when it is decoded. ``thorough`` asks LLVM for all that it can do.
+    that become the message when it is decoded. ``thorough`` takes the time for LLVM's slow passes, whatever the kernels look like.
     """
 
     with_numba: bool
@@ -131,8 +131,7 @@ def _optimise(
     side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
     make_private(module, (*SYMBOLS[entry], TABLE))
-    asked = options.get("thorough", False) or bool(options.get("functions"))
-    thorough = asked or any(has_loops_for_vectors(kernel) for kernel in kernels)
+    thorough = bool(options.get("functions") or options.get("thorough")) or any(has_loops_for_vectors(kernel) for kernel in kernels)
     if are_vast(kernels) or not (thorough or are_straight_and_compute(kernels)):
         run_few_passes(module, machine)
         return

@@ -34,6 +34,7 @@ FRAMEWORK = Framework(
             "",
         ),
     },
+    follows={"ros1": f"{HERE}.successors:fields_of"},
     encodings={"cdr": CDR, "cdr2": CDR},
     manners=f"{HERE}.manners:RCLPY",
     files=("*/msg/*.msg", "*/msg/*.idl", "*/srv/*.srv", "*/action/*.action", "*ros2/*.*"),

@@ -8,16 +8,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import gathered
-from rosetta_jit.frameworks.ros2.idl import ROS2
+from rosetta_jit.frameworks.ros2.idl import DUMMY, ROS2
+from rosetta_jit.wire.held import UnlikeError
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from rosetta_jit.model.types import Struct
     from rosetta_jit.parsing.idl import Load
 
 RENAMED = {"sec": "secs", "nanosec": "nsecs"}
-DROPPED = frozenset({"seq"})
-"""Fields of ROS 1 that have no successor: the number of a header."""
+DROPPED = frozenset({"seq", DUMMY})
+"""Fields that only one of them has: the number of a header in ROS 1, and what stands for nothing in ROS 2."""
 
 LINE = "=" * 80
 
@@ -35,6 +37,26 @@ def predecessor(field: str, there: Collection[str]) -> str | None:
     if RENAMED.get(field) in there:
         return RENAMED[field]
     return next((each for each in there if each.lower() == field), None)
+
+
+def fields_of(older: Struct, newer: Struct, shown: str) -> dict[str, str | None]:
+    """For a struct of ROS 1 and the one of ROS 2 that followed it: what became of each field of the older one; None of what was dropped.
+
+    Raises
+    ------
+    UnlikeError
+        A field has no successor, or none that it comes from.
+    """
+    there = [each.name for each in older.fields]
+    origins = {each.name: predecessor(each.name, there) for each in newer.fields}
+    for name, origin in origins.items():
+        if origin is None and name not in DROPPED:
+            raise UnlikeError(f"{shown}.{name}", "nothing of the message is called so")
+    found: dict[str, str | None] = dict.fromkeys(there) | {origin: name for name, origin in origins.items() if origin is not None}
+    for name, became in found.items():
+        if became is None and name not in DROPPED:
+            raise UnlikeError(f"{shown}.{name}", "the other type has no such field")
+    return found
 
 
 def definition(type_: str, load: Load) -> str | None:

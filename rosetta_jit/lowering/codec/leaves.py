@@ -51,8 +51,8 @@ SHOWN_NUMBERS = 12
 def leaf(codec: Leaf, fields: Fields, writer: Writer) -> None:
     """Read or write a leaf at the current position."""
     match codec:
-        case Number(path, scalar, order):
-            _number(writer, fields, path, scalar_name(scalar), order)
+        case Number():
+            _number(writer, fields, codec)
         case Table():
             _table(writer, fields, codec)
         case Constant(_, bytes(value)):
@@ -73,17 +73,34 @@ def leaf(codec: Leaf, fields: Fields, writer: Writer) -> None:
             assert_never(codec)
 
 
-def _number(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Scalar, order: str) -> None:
-    where = fields.shown(path)
+def _number(writer: Writer, fields: Fields, number: Number) -> None:
+    where, scalar = fields.shown(number.path), scalar_name(number.scalar)
     if writer.direction == "decode":
-        fields.put(path, writer.load(scalar, where, order))
+        at, value = writer.position, writer.load(scalar, where, number.order)
+        fields.put(number.path, value if number.held is None else _fitting(writer, where, value, number.held, at))
         return
-    value = fields.get(path) if writer.direction == "encode" else None
+    value = fields.get(number.path) if writer.direction == "encode" else None
     if value is None:
         writer.require(WIDTH[scalar], where, "no room for the message")
         writer.advance(WIDTH[scalar])
     else:
-        writer.store(_as(scalar, value), where, order)
+        fitting = value if number.held is None else _fitting(writer, where, value, scalar, writer.position)
+        writer.store(_as(scalar, fitting), where, number.order)
+
+
+def _fitting(writer: Writer, where: Where, value: Expr, target: str, at: Expr) -> Expr:
+    """An integer that another type of integer has, too."""
+    low, high = (choose(ends) for choose, ends in zip((max, min), zip(bounds(type_of(value)), bounds(target), strict=True), strict=True))
+    known = writer.let("number", integer(value))
+    fits = Binary("and", Compare("ge", known, index(low)), Compare("le", known, index(min(high, (1 << 63) - 1))))
+    writer.expect(fits, "range", where, f"does not fit {target.replace('i', 'int').replace('u', 'uint')}", at=at)
+    return known
+
+
+def bounds(scalar: str) -> tuple[int, int]:
+    """The least and the greatest value of a type of integer, by its name in kernels."""
+    bits = int(scalar[1:])
+    return (-(1 << bits - 1), (1 << bits - 1) - 1) if scalar[0] == "i" else (0, (1 << bits) - 1)
 
 
 def _table(writer: Writer, fields: Fields, table: Table) -> None:

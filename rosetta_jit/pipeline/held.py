@@ -1,0 +1,82 @@
+"""Types of a framework and of the one that followed it: messages of one, held in the type of the other. No mapping is needed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.model.types import Schema
+from rosetta_jit.pipeline.build import Build, Types
+from rosetta_jit.startup.cached import cached_property
+from rosetta_jit.wire.held import UnlikeError, held_in
+
+if TYPE_CHECKING:
+    from rosetta_jit.frameworks.base import Successors
+    from rosetta_jit.lowering.writer import References
+    from rosetta_jit.model.types import Struct
+    from rosetta_jit.wire.codec import Encoding
+    from rosetta_jit.wire.held import Pairs
+
+
+class HeldBuild(Build):
+    """A program of a type whose holder is of another one."""
+
+    def __init__(self, build: Build, other: Build, pairs: Pairs, references: References | None = None) -> None:
+        super().__init__(build.request, references)
+        self._own, self._other, self._pairs = build, other, pairs
+
+    def referring(self, references: References) -> Build:
+        return HeldBuild(self._own, self._other, self._pairs, references)
+
+    @cached_property
+    def types(self) -> Types:
+        own, other = self._own.types, self._other.types
+        schema = Schema({**own.schema.types, **other.schema.types}, constants={**own.schema.constants, **other.schema.constants})
+        return Types(other.holder, own.wire, schema, None)
+
+    @cached_property
+    def encoding(self) -> Encoding:
+        types = self.types
+        return held_in(self._own.encoding, types.wire, types.holder, types.schema, self._pairs)
+
+    def files(self) -> dict[str, str | None]:
+        return self._own.files()
+
+
+def joined(first: Build, second: Build) -> tuple[Build, Build]:
+    """Two halves of a bridge that meet at one type, if theirs are of a framework and of the one that followed it; else as they are.
+
+    Raises
+    ------
+    SchemaError
+        They are, and do not have the same fields.
+    """
+    one, other = first.holder_framework, second.holder_framework
+    follow = other.successors(one.name)
+    is_first_older = follow is not None
+    follow = follow or one.successors(other.name)
+    if follow is None:
+        return first, second
+
+    try:
+        if first.request.mapping is None and (is_first_older or second.request.mapping is not None):
+            return _held(first, second, follow, is_older=is_first_older), second
+        if second.request.mapping is None:
+            return first, _held(second, first, follow, is_older=not is_first_older)
+    except UnlikeError as error:
+        names = first.types.holder.name, second.types.holder.name
+        raise SchemaError((words.unlike(*names, error.path, error.why),)) from error
+    return first, second
+
+
+def _held(build: Build, other: Build, follow: Successors, *, is_older: bool) -> Build:
+    """A half held in the type of the other one."""
+
+    def of_newer(wire: Struct, holder: Struct, shown: str) -> dict[str, str | None]:
+        became = follow(holder, wire, shown)
+        return dict.fromkeys(each.name for each in wire.fields) | {name: old for old, name in became.items() if name is not None}
+
+    held = HeldBuild(build, other, follow if is_older else of_newer)
+    held.encoding  # noqa: B018 - here it is found out that fields have no partner
+    return held

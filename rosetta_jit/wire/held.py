@@ -1,0 +1,135 @@
+"""Codecs of one type for holders of another: the same fields under other names, in another order, in integers of another size.
+
+A codec names fields by their paths, and does not say where they lie. With other paths it fills another type, as long as that has a field
+for each. What it has not, and need not have, is padding: any number is read, zero is written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.model.types import Array, Bool, Float, Int, Struct
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.wire.codec import Align, Blob, Constant, Number, Padding, Repeat, Seq, Table
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.wire.codec import Codec, Encoding, Path
+
+Pairs = Callable[[Struct, Struct, str], Mapping[str, str | None]]
+"""For a struct of the wire, the holder's, and the path of both: which field of the holder each field of the wire is; None for none."""
+
+
+class UnlikeError(Exception):
+    """Two types that cannot stand for each other: ``path`` says where, ``why`` what differs."""
+
+    def __init__(self, path: str, why: str) -> None:
+        super().__init__(f"{path}: {why}")
+        self.path, self.why = path, why
+
+
+def held_in(encoding: Encoding, wire: Struct, holder: Struct, schema: Schema, pairs: Pairs) -> Encoding:
+    """An encoding of ``wire`` that fills, or reads, holders of ``holder``.
+
+    Raises
+    ------
+    UnlikeError
+        A field has no partner, or one of another kind.
+    """
+    held = _Held(schema, pairs)
+    codecs = tuple(held.codec(each, wire, holder, "") for each in encoding.attempts)
+    written = encoding.written
+    return replace(encoding, attempts=codecs, written=None if written is None else held.codec(written, wire, holder, ""))
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A place of the holder, and what is there and on the wire."""
+
+    path: Path
+    wire: Type
+    holder: Type
+    shown: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Held:
+    schema: Schema
+    pairs: Pairs
+
+    def codec(self, codec: Codec, wire: Type, holder: Type, shown: str) -> Codec:
+        """The same codec with the paths of the holder."""
+        match codec:
+            case Seq(items):
+                self.check(wire, holder, shown)
+                return Seq(tuple(self.codec(each, wire, holder, shown) for each in items))
+            case Align() | Padding():
+                return codec
+            case Repeat(path, _, item):
+                found = self.find(path, wire, holder, shown)
+                element = self.elements(found)
+                return replace(codec, path=found.path, item=self.codec(item, *element, f"{found.shown}[]"))
+            case Number(path, scalar, order):
+                found = self.look(path, wire, holder, shown)
+                if found is None:
+                    return Padding(scalar, 0, order)
+                return replace(codec, path=found.path, held=self.scalar(found, scalar))
+            case Blob(path) | Table(path) | Constant(path):
+                found = self.find(path, wire, holder, shown)
+                if path and type(self.schema.resolve(found.wire)) is not type(self.schema.resolve(found.holder)):
+                    raise UnlikeError(found.shown, "is of another kind")
+                return replace(codec, path=found.path)
+            case _:
+                raise UnlikeError(shown or ".", "messages of this encoding cannot be held in another type")
+
+    def check(self, wire: Type, holder: Type, shown: str) -> None:
+        """All fields of a struct have partners, also those that the wire leaves out."""
+        one, other = self.schema.resolve(wire), self.schema.resolve(holder)
+        if isinstance(one, Struct) and isinstance(other, Struct):
+            self.pairs(one, other, shown)
+
+    def find(self, path: Path, wire: Type, holder: Type, shown: str) -> _Found:
+        found = self.look(path, wire, holder, shown)
+        if found is None:
+            raise UnlikeError("".join((shown, *(f".{name}" for name in path))), "the other type has no such field")
+        return found
+
+    def look(self, path: Path, wire: Type, holder: Type, shown: str) -> _Found | None:
+        """The place of a field, None where the holder has none."""
+        found = list[str]()
+        for name in path:
+            one, other = self.schema.resolve(wire), self.schema.resolve(holder)
+            if not isinstance(one, Struct) or not isinstance(other, Struct):
+                raise UnlikeError(shown or ".", "is a message in one type, and none in the other")
+            partner = self.pairs(one, other, shown)[name]
+            if partner is None:
+                return None
+            found.append(partner)
+            wire, holder = _field(one, name), _field(other, partner)
+            shown = f"{shown}.{name}"
+        return _Found(tuple(found), wire, holder, shown)
+
+    def elements(self, found: _Found) -> tuple[Type, Type]:
+        one, other = self.schema.resolve(found.wire), self.schema.resolve(found.holder)
+        if not isinstance(one, Array) or not isinstance(other, Array) or one.length != other.length:
+            raise UnlikeError(found.shown, "is an array in one type, and in the other none, or one of another length")
+        return one.element, other.element
+
+    def scalar(self, found: _Found, scalar: str) -> str | None:
+        """The scalar that the holder has, if it is another one than the wire's."""
+        match self.schema.resolve(found.holder):
+            case Int(bits, signed) if scalar[0] in "iu":
+                held = f"{'i' if signed else 'u'}{bits}"
+                return None if held == scalar else held
+            case Float(bits) if scalar == f"f{bits}":
+                return None
+            case Bool() if scalar == "bool":
+                return None
+            case _:
+                raise UnlikeError(found.shown, "is of another kind")
+
+
+def _field(struct: Struct, name: str) -> Type:
+    return next(each.type for each in struct.fields if each.name == name)

@@ -1,0 +1,95 @@
+"""Messages of ROS 1 become those of ROS 2, and back, by the names of their fields."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.pipeline.bridge import BridgeBuild
+from rosetta_jit.pipeline.request import BridgeRequest, Request
+
+IDL = Path(__file__).resolve().parents[3] / "idl"
+TYPES = sorted(f"{path.parent.name}/{path.stem}" for path in (IDL / "ros1").glob("*/*.msg"))
+BOTH = [name for name in TYPES if (IDL / "ros2" / name.replace("/", "/msg/")).with_suffix(".msg").exists()]
+MARKER = "texture_resource"
+UNLIKE = {
+    "sensor_msgs/Range": "variance",
+    "shape_msgs/SolidPrimitive": "polygon",
+    "std_msgs/ByteMultiArray": "data",
+    **dict.fromkeys((f"visualization_msgs/{name}" for name in ("Marker", "MarkerArray")), MARKER),
+    **dict.fromkeys((f"visualization_msgs/InteractiveMarker{name}" for name in ("", "Control", "Init", "Update")), MARKER),
+}
+"""What ROS 2 has added to types of ROS 1, and a list of signed bytes that became one of unsigned bytes."""
+
+
+def build(older):
+    one, two = Request("decode", type=older, encoding="ros1"), Request("encode", type=older.replace("/", "/msg/"), encoding="cdr")
+    return BridgeBuild(BridgeRequest(one, two))
+
+
+def test_all_common_types():
+    """Which meet, and which do not: lowered, not compiled, since there are a hundred."""
+    assert len(BOTH) > 80
+    refused = {}
+    for name in BOTH:
+        try:
+            assert build(name).halves
+        except rj.SchemaError as error:
+            refused[name] = str(error)
+    assert refused.keys() == UNLIKE.keys()
+    assert all(f"{field}`" in refused[name] for name, field in UNLIKE.items())
+
+
+def bridges(name, backend=None):
+    newer = name.replace("/", "/msg/")
+    one, two = {"encoding": "ros1", "backend": backend}, {"encoding": "cdr", "backend": backend}
+    return rj.Bridge.of(name, newer, decode=one, encode=two), rj.Bridge.of(newer, name, decode=two, encode=one)
+
+
+@pytest.mark.parametrize("backend", [None, "python"])
+def test_names_numbers_and_headers(backend):
+    there, back = bridges("sensor_msgs/CameraInfo", backend)
+    header = {"seq": 7, "stamp": {"secs": 1_700_000_000, "nsecs": 5}, "frame_id": "left"}
+    values = {"header": header, "height": 480, "D": [0.5, 1.5], "K": list(range(9)), "P": list(range(12)), "roi": {"do_rectify": True}}
+    older = rj.Encoder.of("sensor_msgs/CameraInfo", encoding="ros1")(values)
+    found = rj.Decoder.of("sensor_msgs/msg/CameraInfo", encoding="cdr")(there(older))
+    assert (found.header.stamp.sec, found.header.stamp.nanosec, found.header.frame_id) == (1_700_000_000, 5, "left")
+    assert (list(found.d), list(found.k), found.roi.do_rectify, found.height) == ([0.5, 1.5], list(range(9)), True, 480)
+    again = rj.Decoder.of("sensor_msgs/CameraInfo", encoding="ros1")(back(there(older)))
+    assert again.header.seq == 0
+    assert np.array_equal(again.P, range(12))
+    assert there(back(there(older))) == there(older)
+
+
+def test_a_time_that_does_not_fit():
+    there, back = bridges("std_msgs/Header")
+    late = rj.Encoder.of("std_msgs/Header", encoding="ros1")({"stamp": {"secs": 1 << 31}})
+    with pytest.raises(rj.DecodeError, match="does not fit int32") as found:
+        there(late)
+    assert (found.value.path, found.value.offset) == (".stamp.sec", 4)
+    early = rj.Encoder.of("std_msgs/msg/Header", encoding="cdr")({"stamp": {"sec": -1}})
+    with pytest.raises(rj.EncodeError, match="does not fit uint32"):
+        back(early)
+
+
+def test_a_mapping_to_a_type_of_ros_1_reaches_ros_2():
+    """The data-holder is of ROS 1, and what is written the type of ROS 2 that followed it."""
+    rules = """
+import "a/State.bottle-schema"
+import "ros1/std_msgs/Header.msg"
+data-holder: std_msgs/Header
+wire-schema: a.State
+unpack-rules:
+  .seq = 3
+  .stamp.secs = uint32(.secs)
+  .stamp.nsecs = 0
+  .frame_id = .frame
+"""
+    schema = {"state.mapping": rules, "a/State.bottle-schema": '"a.State"\n( ("secs" :int) ("frame" :string) )\n'}
+    bridge = rj.Bridge("state.mapping", encode_type="std_msgs/msg/Header", decode={"encoding": "yarp3", "schema": schema})
+    bottle = rj.Encoder.of("a.State", encoding="yarp3", schema={"a/State.bottle-schema": schema["a/State.bottle-schema"]})
+    found = rj.Decoder.of("std_msgs/msg/Header", encoding="cdr")(bridge(bottle({"secs": 5, "frame": "arm"})))
+    assert (found.stamp.sec, found.frame_id) == (5, "arm")
