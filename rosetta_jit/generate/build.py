@@ -55,6 +55,13 @@ class AheadOfTime(Build):
         return postpone(alone(passes.run(kernel, passes.ANY_MACHINE)))
 
 
+class LowByteFirst(AheadOfTime):
+    """The same for machines whose numbers lie as most encodings have them: arrays of them are copied as they are."""
+
+    def _optimised(self, kernel: Kernel) -> Kernel:
+        return postpone(alone(passes.run(kernel)))
+
+
 @dataclass(frozen=True, slots=True)
 class Wishes:
     """What a user wants besides: ``freestanding`` source, classes of a ``holder``, the header to ``include`` for them."""
@@ -67,7 +74,9 @@ class Wishes:
 NO_WISHES = Wishes()
 
 
-def unit_of(request: Request, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES) -> Unit:
+def unit_of(
+    request: Request, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES, machine: type[AheadOfTime] = AheadOfTime
+) -> Unit:
     """The unit of a request's mapping or type, for some directions whatever its own is.
 
     Raises
@@ -77,7 +86,7 @@ def unit_of(request: Request, roles: tuple[Role, ...], name: str, wishes: Wishes
     """
     if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
-    builds: dict[Role, AheadOfTime] = {role: AheadOfTime(_for(request, role)) for role in roles}
+    builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}
     for role, build in builds.items():
         kernels[role] = build.kernels[0]
@@ -206,4 +215,5 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     if language not in known:
         raise SchemaError((words.unknown_language(language, tuple(known)),))
     with within_stack():
-        return known[language].files(unit_of(request, known[language].roles(roles), name, wishes))
+        machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
+        return known[language].files(unit_of(request, known[language].roles(roles), name, wishes, machine))

@@ -39,12 +39,15 @@ class Language:
         The function that prints units (`Files`), as ``module:name``.
     borrows
         Its decoders leave bytes in the message, from where the code around them takes them.
+    low_byte_first
+        What it prints need not run on machines whose numbers have their high byte first.
     """
 
     name: str
     summary: str
     printer: str
     borrows: bool = False
+    low_byte_first: bool = False
 
     def roles(self, wanted: tuple[Role, ...]) -> tuple[Role, ...]:
         """The kernels that the printer needs for what is wanted."""
@@ -58,7 +61,13 @@ class Language:
 
 LANGUAGES = (
     Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),
-    Language("cpp", "C++17: NAME.hpp and NAME.cpp, which fill classes", "rosetta_jit.generate.cpp.language:files", borrows=True),
+    Language(
+        "cpp",
+        "C++17: NAME.hpp and NAME.cpp, which fill classes",
+        "rosetta_jit.generate.cpp.language:files",
+        borrows=True,
+        low_byte_first=True,
+    ),
 )
 
 

@@ -8,6 +8,9 @@ $includes
 static_assert(static_cast<unsigned char>(-1) == 255 && sizeof(int) >= 4, "bytes of eight bits, and an int of 32 at least, are needed");
 static_assert(sizeof(float) == 4 && sizeof(double) == 8, "floating-point numbers of IEEE 754 are needed");
 static_assert(FLT_EVAL_METHOD != 2, "floating-point numbers must not be computed with more digits: use SSE, not x87");
+#if !defined(__BYTE_ORDER__) || __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "numbers must have their low byte first; source in C runs on any machine"
+#endif
 static_assert(-1 >> 1 == -1 && static_cast<std::int8_t>(255u) == -1, "integers must be two's complement throughout");
 
 namespace $name {
