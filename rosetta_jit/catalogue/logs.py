@@ -218,6 +218,55 @@ def no_successor(name: str, topic: str, type_: str) -> Diagnostic:
     )
 
 
+def without_definition(topic: str) -> Diagnostic:
+    """A topic that is written without the definition of its type."""
+    return Diagnostic(
+        "warning",
+        "log-definition",
+        f"the messages of `{topic}` are written without the definition of their type, which is not known",
+        help=f"--type {topic}=package.type names it; its definition is looked for on the search path",
+    )
+
+
+def no_bytes(topic: str, type_: str) -> Diagnostic:
+    """A mapping into data of which nobody has bytes."""
+    return Diagnostic("error", "log-encoding", f"`{topic}`: messages of {type_} have no usual encoding, in which a log could keep them")
+
+
+def not_empty(folder: str) -> Diagnostic:
+    """A folder that is to be written, and has something in it."""
+    return Diagnostic("error", "log-output", f"{folder} is there already", help="--resume continues a conversion; else name another folder")
+
+
+def folder_is_there(folder: str) -> Diagnostic:
+    """A log that is a folder, where there is one already."""
+    return Diagnostic("error", "log-output", f"{folder} is there already, and not empty", help="name another folder")
+
+
+def other_conversion(folder: str, what: str) -> Diagnostic:
+    """A folder of another conversion."""
+    return Diagnostic(
+        "error", "log-output", f"{folder} was begun with another {what}", help="name another folder, or give the same log and options"
+    )
+
+
+def bad_journal(path: str, why: str) -> Diagnostic:
+    """A journal that cannot be read."""
+    return Diagnostic("error", "log-output", f"{path} does not say how far the conversion is: {why}", help="name another folder")
+
+
+def many_stretches(folder: str, count: int) -> Diagnostic:
+    """Times that are too far from each other."""
+    return Diagnostic(
+        "error", "log-time", f"{folder} would have more than {count} stretches of time", help="--every names longer ones: --every 1d"
+    )
+
+
+def not_written(name: str, topic: str, index: int, why: str) -> Diagnostic:
+    """A message that a format has no form for."""
+    return Diagnostic("error", "log-message", f"{name}: message {index} of `{topic}` cannot be written: {why}")
+
+
 def no_time(name: str, time_ns: int) -> Diagnostic:
     """A time that a bag cannot have."""
     return Diagnostic("error", "log-time", f"{name}: bags have no time {time_ns} ns: it is before 1970 or after 2106")

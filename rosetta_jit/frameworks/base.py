@@ -13,6 +13,7 @@ from rosetta_jit.startup.garbage import imported
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
     from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.parsing.idl import FrontEnd
@@ -46,6 +47,14 @@ class Encoder(Protocol):
 
     def __call__(self, struct: Struct, schema: Schema, name: str, choices: Choices) -> Encoding:
         """The encoding of that name of a struct."""
+        ...
+
+
+class Define(Protocol):
+    """A function from a struct to its definition."""
+
+    def __call__(self, struct: Struct, schema: Schema) -> Definition | None:
+        """The definition of a struct."""
         ...
 
 
@@ -83,6 +92,8 @@ class Framework:
     texts
         A function that gives the file that declares a type the name that its text calls for: see `file_of`. Empty where all texts are of
         one kind.
+    definition
+        A function from a struct and its schema to its `Definition`; empty where logs carry none.
     """
 
     name: str
@@ -95,10 +106,15 @@ class Framework:
     byte_orders: tuple[str, ...] = ()
     features: str = ""
     texts: str = ""
+    definition: str = ""
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""
         return cast("Probes", _found(self.features)) if self.features else {}
+
+    def definition_of(self, struct: Struct, schema: Schema) -> Definition | None:
+        """The definition of a struct as logs carry it; None where that cannot be had."""
+        return cast("Define", _found(self.definition))(struct, schema) if self.definition else None
 
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""

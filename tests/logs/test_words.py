@@ -22,6 +22,8 @@ EXAMPLES = {
     "why": "it is cut short",
     "what": "schema 3",
     "file": "part_2.db3",
+    "folder": "drive",
+    "path": "drive/_conversion.json",
     "package": "zstandard",
     "extra": "logs",
     "version": "#ROSBAG V1.2",
