@@ -34,7 +34,7 @@ def old_version(name: str, version: str) -> Diagnostic:
         "error",
         "log-version",
         f"{name} says that it is `{version}`",
-        help="version 2.0 is read; `rosbag fix` and `rosbag migrate` make it of older ones",
+        help="versions 2.0 and 1.2 are read; ROS's own `rosbag fix` makes 2.0 of older ones",
     )
 
 

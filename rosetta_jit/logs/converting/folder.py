@@ -18,7 +18,7 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.channel import CLOCKS, decoded_staged
-from rosetta_jit.logs.converting.journal import NAME, Journal, Progress
+from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
 from rosetta_jit.logs.converting.rejected import Damaged, Rejected
 from rosetta_jit.logs.folder_names import folder_names
@@ -136,8 +136,8 @@ class FolderConversion:
 
     def _check_empty(self) -> None:
         output = self.output
-        there = [] if not output.exists() else sorted(each.name for each in output.iterdir()) if output.is_dir() else [output.name]
-        if there and not (self.resume and NAME in there):
+        there = {each.name for each in output.iterdir()} if output.is_dir() else {output.name} if output.exists() else set[str]()
+        if there - {PART} and not (self.resume and NAME in there):
             raise LogError((words.not_empty(str(output)),))
 
     def _convert(self, journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 NAME = "_conversion.json"
 """Readers of folders of tables leave out what begins with `_`."""
 
+PART = "_conversion.json.part"
+"""While it is written."""
+
 
 @dataclass(slots=True)
 class Progress:
@@ -81,7 +84,7 @@ class Journal:
     def write(self, progress: Progress) -> None:
         """Keep what is done, so that it is there whatever happens next."""
         plain = {name: getattr(progress, name) for name in Progress.__match_args__}
-        part = self.path.with_suffix(".part")
+        part = self.folder / PART
         with part.open("w", encoding="utf-8") as file:
             json.dump({"request": self.request, "progress": plain}, file, indent=1)
             file.flush()
