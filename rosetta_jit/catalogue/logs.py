@@ -143,6 +143,19 @@ def unknown_topic(name: str, topic: str, known: Iterable[str]) -> Diagnostic:
     )
 
 
+def unknown_field(name: str, topic: str, field: str, known: Iterable[str]) -> Diagnostic:
+    """A field that messages of a topic do not have, or that is no number."""
+    fields = tuple(known)
+    near = closest(field, fields)
+    listed = ", ".join(fields[:20]) or "none"
+    return Diagnostic(
+        "error",
+        "log-field",
+        f"{name}: messages of `{topic}` have no number `{field}`",
+        help=f"did you mean `{near}`?" if near else f"they have {listed}",
+    )
+
+
 def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
     """A topic with messages of several types."""
     found = ", ".join(f"`{each}`" for each in types)

@@ -27,6 +27,11 @@ def add_log(command: ArgumentParser) -> None:
 def add_selection(command: ArgumentParser) -> None:
     """Which of its messages."""
     command.add_argument("--topic", metavar="TOPIC", action="append", default=[], help="a topic; several by giving it again (default: all)")
+    add_times(command)
+
+
+def add_times(command: ArgumentParser) -> None:
+    """From when to when."""
     command.add_argument("--start", metavar="TIME", type=_moment, help="from when on: seconds since 1970, or 2024-05-01T12:00:00")
     command.add_argument("--end", metavar="TIME", type=_moment, help="until before when")
 

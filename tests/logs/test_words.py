@@ -22,6 +22,7 @@ EXAMPLES = {
     "why": "it is cut short",
     "what": "schema 3",
     "file": "part_2.db3",
+    "field": "angular_velocity.q",
     "folder": "drive",
     "path": "drive/_conversion.json",
     "package": "zstandard",
