@@ -107,6 +107,8 @@ MAY_IMPORT = {
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
     "logs": REPORTS
     | {"api", "api.options", "file_errors", "recording", "language.imports", "frameworks", "runtime", "runtime.cache", "runtime.code"},
+    "ray": REPORTS | {"logs"},
+    "dask": REPORTS | {"logs"},
     "generate": REPORTS
     | {
         "model",

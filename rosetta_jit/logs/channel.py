@@ -95,6 +95,11 @@ class Channel:
         return schema if self.schema_encoding == "protobuf" else schema.decode("utf-8", "replace")
 
     @property
+    def log(self) -> Log:
+        """The log that it is of."""
+        return self._log
+
+    @property
     def target(self) -> str | None:
         """The mapping, or the type, that was named."""
         return self._target
