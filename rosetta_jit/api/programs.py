@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.api.options import Options
+    from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.pipeline.build import Build
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
     from rosetta_jit.pipeline.stages import StageName
@@ -47,6 +48,12 @@ class _Made:
         from rosetta_jit.pipeline.checked_mapping import CheckedMapping
 
         return None if self._request.mapping is None else CheckedMapping(_build(self._request).checked)
+
+    @property
+    def definition(self) -> Definition | None:
+        """The definition of the holder's type as logs carry it beside messages; None where that cannot be had. It is made anew."""
+        build = _build(self._request)
+        return build.holder_framework.definition_of(build.types.holder, build.types.schema)
 
     def stage(self, stage: StageName | str) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""

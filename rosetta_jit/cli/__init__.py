@@ -29,6 +29,7 @@ from rosetta_jit.cli import (
     infer,
     info,
     operations,
+    plot,
     prove,
     stubs,
 )
@@ -49,6 +50,7 @@ COMMANDS = (
     info,
     cat,
     convert,
+    plot,
     doctor,
     dump,
     infer,

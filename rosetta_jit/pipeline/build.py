@@ -172,13 +172,13 @@ class Build:
         return self._framework(self.types.wire)
 
     @cached_property
+    def holder_framework(self) -> Framework:
+        return self._framework(self.types.holder)
+
+    @property
     def manners(self) -> str:
         """Where the manners of the holder's framework are found."""
         return self.holder_framework.manners
-
-    @property
-    def holder_framework(self) -> Framework:
-        return self._framework(self.types.holder)
 
     def _framework(self, struct: Struct) -> Framework:
         """The framework whose IDL declares a type."""
