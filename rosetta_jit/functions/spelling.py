@@ -14,6 +14,7 @@ from rosetta_jit.language.both_ways.inverse_texts import WRITTEN
 from rosetta_jit.language.conversions import FLOAT64, describe
 from rosetta_jit.language.function import Texts
 from rosetta_jit.language.functions.texts import BYTES, TEXT, argument, is_textual
+from rosetta_jit.language.limits import MAX_DECIMALS
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.texts.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.texts.number_reading import read_float, read_integer
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.texts.number_reading import Read
     from rosetta_jit.lowering.texts.views import View
 
-MAX_DECIMALS = 17
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
 

@@ -21,6 +21,7 @@ from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key
 from rosetta_jit.language.both_ways.learning import learn
 from rosetta_jit.language.folding import FALSE, TRUE, folded
 from rosetta_jit.language.function import written
+from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -36,9 +37,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Span
-
-MAX_BLOCKS = 200
-"""Blocks that conditions in expressions are split into: a sum of them doubles with each."""
 
 
 NOTHING: Mapping[Field, Expr] = MappingProxyType({})
