@@ -14,7 +14,7 @@ from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
-from rosetta_jit.language.both_ways.inverse_texts import for_type
+from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
