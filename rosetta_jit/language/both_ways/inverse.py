@@ -25,7 +25,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, Function, written
-from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.types import String
 from rosetta_jit.model.walk import parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -189,9 +190,9 @@ def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
 def _without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:
     """The field of a sum of texts of which one is written down."""
     match sum_:
-        case Binary("+", Literal(str()) as start, inner, span):
+        case Binary("+", Literal(str()) | Given(type=String()) as start, inner, span):
             return inner, Call("behind", (value, start), span)
-        case Binary("+", inner, Literal(str()) as end, span):
+        case Binary("+", inner, Literal(str()) | Given(type=String()) as end, span):
             return inner, Call("before", (value, end), span)
         case _:
             return None
