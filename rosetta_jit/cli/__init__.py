@@ -14,6 +14,7 @@ import sys
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli import (
+    bridge,
     cache,
     cat,
     check,
@@ -49,6 +50,7 @@ COMMANDS = (
     info,
     cat,
     convert,
+    bridge,
     doctor,
     dump,
     infer,
