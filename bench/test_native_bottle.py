@@ -13,11 +13,13 @@ from bench.contest import Contender
 from bench.figures import Spread
 from bench.messages import batch, joints_mapping, repeated, specialised, tagged
 from bench.peers import bottle_by_hand
-from bench.peers.generated import generated_c
+from bench.peers.generated import generated_c, generated_cpp
 from bench.peers.yarp_native import Peers
 from bench.processes import run
 
 CHAPTER = "Native bottle parsing"
+CPP, ADDS, RESIZES = "rosetta_jit, generated C++", "C++ by hand, add_angles", "C++ by hand, into resized memory"
+INTO_PROTOBUF = {CPP: "codec", ADDS: "add", RESIZES: "resize"}
 MESSAGES, SERIES = 1_000_000, 20
 OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED, GENERATED = (
     "rosetta_jit",
@@ -108,7 +110,7 @@ def in_cpp(who, makes, timed, target, wanted, count):
     """A decoder by hand in C++, which fills a target."""
     timed(1)
     same(target, wanted)
-    return Contender(who, "ours" if who == GENERATED else "peer", makes, partial(timed, count))
+    return Contender(who, "ours" if who in (GENERATED, CPP) else "peer", makes, partial(timed, count))
 
 
 def by_struct(effort, message, makes):
@@ -164,6 +166,26 @@ def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
     record("24 specialised doubles, against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)
 
 
+def test_24_specialised_doubles_into_protobuf(decoders, effort, compare, record, tmp_path):
+    """The experiment of the paper as it was: into the class that protoc generates."""
+    message, count, angles = specialised(24), series(effort), np.zeros(24, np.float32)
+    timed = generated_cpp(joints_mapping(24, tmp_path), tmp_path, message, angles)
+    if not timed:
+        pytest.skip("protoc and its library are not installed")
+    makes, wanted, peers = "protoc's JointAngles, used again, in C++", np.radians(degrees_of(message)), Peers()
+    contenders = [Contender(OURS, "ours", HOLDER, effort.call(decoders[24], message, count=count))]
+    contenders += [in_cpp(who, makes, timed[which], angles, wanted, count) for who, which in INTO_PROTOBUF.items()]
+    contenders.append(
+        Contender(peers.dynamic_decoder, "peer", "one heap object an element, in C++", partial(peers.dynamic(message), count))
+    )
+    contenders += yarp_vector(peers, message, count)
+    outcome = compare(CHAPTER, f"24 specialised doubles into protoc's class, {decodes(effort)}", contenders, rounds=SERIES)
+    detail = f"{outcome.took(CPP).median:.1f} ns, g++ -O2"
+    record("generated C++ into protoc's class against a loop over add_angles", outcome.ratio(CPP, ADDS), 1.15, "x", detail, against=ADDS)
+    record("the same against a loop into resized memory", outcome.ratio(CPP, RESIZES), None, "x", detail, against=RESIZES)
+    against_dynamic(record, outcome, peers, "generated C++ into protoc's class, against a dynamic C++ decoder", 1 / 45, ours=CPP)
+
+
 def test_16_tagged_doubles(decoders, effort, compare, record):
     decoder, message, peers = decoders[16], tagged(16), Peers()
     angles = np.zeros(16, np.float32)
@@ -189,9 +211,9 @@ def test_16_tagged_doubles(decoders, effort, compare, record):
     record("16 tagged doubles, against a C++ loop by hand", outcome.ratio(OURS, TAGGED), None, "x", f"loop {loop:.1f} ns")
 
 
-def against_dynamic(record, outcome, peers, what, at_most):
+def against_dynamic(record, outcome, peers, what, at_most, *, ours=OURS):
     who = peers.dynamic_decoder
-    record(what, outcome.ratio(OURS, who), at_most, "of it", f"{who}: {outcome.took(who).median:.0f} ns", against=who)
+    record(what, outcome.ratio(ours, who), at_most, "of it", f"{who}: {outcome.took(who).median:.0f} ns", against=who)
 
 
 def test_encode(decoders, effort, compare):

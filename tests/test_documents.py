@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -30,6 +32,22 @@ def test_the_example_in_c_runs(tmp_path, monkeypatch):
     assert main(generate.split()[1:]) == 0
     Path("main.c").write_text(source)
     assert subprocess.run(["sh", "-ec", build], capture_output=True, text=True, check=True).stdout == said
+
+
+@pytest.mark.skipif(shutil.which("cmake") is None or shutil.which("g++") is None, reason="CMake and g++ build the example in C++")
+def test_the_example_in_cpp_runs(tmp_path, monkeypatch):
+    """The project of the page, as its reader builds it."""
+    text = (ROOT / "docs" / "cpp.md").read_text()
+    (build,), (project,), (source,), (said,) = (
+        re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "cmake", "cpp", "text")
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    Path("CMakeLists.txt").write_text(project)
+    Path("main.cpp").write_text(source)
+    done = subprocess.run(["sh", "-ec", build], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith(said)
 
 
 def test_the_documented_mapping_is_the_shipped_one():

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.api.options import Options
     from rosetta_jit.pipeline.bridge import BridgeBuild
-    from rosetta_jit.pipeline.build import Stage
+    from rosetta_jit.pipeline.stages import StageName
     from rosetta_jit.pipeline.transcoding import TranscodingBuild
 
 
@@ -112,7 +112,7 @@ class Bridge(BridgeBase):
         """
         return _of_request(cls, BridgeRequest(Request("decode", encoding=source), Request("encode", encoding=target)))
 
-    def stage(self, stage: Stage) -> str:
+    def stage(self, stage: StageName | str) -> str:
         """What the bridge became, as text: of both halves, or of the code, which is one."""
         return _build(self._request).stage(stage)
 
@@ -167,7 +167,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> LoadedBridge:
 
 def _interpreted(build: BridgeBuild | TranscodingBuild) -> LoadedBridge:
     """A bridge that runs in Python."""
-    decode, size, write = (interpreted_kernel(build, build.backend, number) for number in range(3))
+    decode, size, write = (interpreted_kernel(build, number) for number in range(3))
     return _loaded(build.header, (decode, size, write), None)
 
 

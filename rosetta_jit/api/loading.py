@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
 
-PYTHON = ("python", "interpreter")
-"""Backends that compile nothing."""
-
 RECENT = 8
 """How many programs of the cache are kept loaded though nobody uses them, for who makes the same one again and again."""
 
@@ -46,7 +43,7 @@ def answer(
     interpreted
         One that runs in Python.
     """
-    if backend in PYTHON:
+    if backend is not None and _runs_in_python(backend):
         build = build_of(request)
         with _within_stack():
             return interpreted(build)
@@ -58,6 +55,14 @@ def answer(
     build = build_of(request)
     with seldom_collected(), _within_stack():
         return _compiled(build, cache, link)
+
+
+def _runs_in_python(name: str) -> bool:
+    """Whether a backend compiles nothing."""
+    from rosetta_jit.backends.installed import backend_named
+
+    found = backend_named(name)
+    return found is not None and bool(found.runner)
 
 
 def _within_stack() -> AbstractContextManager[None]:
@@ -113,8 +118,9 @@ def library(image: bytes, symbols: Sequence[str], called: Sequence[str]) -> nati
     return native.load(image, (*symbols, "host"), lambda addresses: fill(addresses["host"], called, functions))
 
 
-def interpreted_kernel(build: Any, backend: str | None, number: int) -> run.Run:
+def interpreted_kernel(build: Any, number: int) -> run.Run:
     """A kernel of a program that runs in Python: slowly, but anywhere."""
+    from rosetta_jit.backends.backend import runner_of
     from rosetta_jit.kernel.host import in_python
 
     kernel = build.kernels[number]
@@ -123,16 +129,7 @@ def interpreted_kernel(build: Any, backend: str | None, number: int) -> run.Run:
         from rosetta_jit.runtime.images import image_functions
 
         functions |= image_functions()
-    if backend == "python":
-        from rosetta_jit.backends.python.function import compile_python
-
-        with suppress(SyntaxError):  # Python nests twenty loops and no more; the interpreter does the same as its code would
-            return run.python_run(compile_python(kernel, functions))
-    from functools import partial
-
-    from rosetta_jit.kernel.interpret import run as interpret
-
-    return run.python_run(partial(interpret, kernel, functions=functions))
+    return run.python_run(runner_of(build.backend)(kernel, functions))
 
 
 def sites_of(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:

@@ -42,8 +42,9 @@ class Options(TypedDict, total=False):
         Leave bytes fields in the message: the holder keeps it alive and shows views. Decoders only.
     functions : mapping of str to callable
         The functions that the mapping declares, by name: Python functions of numbers, or numba's. They are compiled into the kernel.
-    backend : {"numba", "llvm", "python", "interpreter"}
-        What runs the kernel; LLVM by default. numba types it on its way to LLVM, which takes longer and gives the same code.
+    backend : {"numba", "llvm", "python", "interpreter"} or str
+        What runs the kernel, also an installed one by its name; LLVM by default. numba types it on its way to LLVM, which takes longer
+        and gives the same code.
     """
 
     encoding: str | None

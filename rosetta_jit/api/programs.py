@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.api.options import Options
-    from rosetta_jit.pipeline.build import Build, Stage
+    from rosetta_jit.frameworks.definitions import Definition
+    from rosetta_jit.pipeline.build import Build
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+    from rosetta_jit.pipeline.stages import StageName
     from rosetta_jit.runtime.holder import Holder
 
 
@@ -47,7 +49,13 @@ class _Made:
 
         return None if self._request.mapping is None else CheckedMapping(_build(self._request).checked)
 
-    def stage(self, stage: Stage) -> str:
+    @property
+    def definition(self) -> Definition | None:
+        """The definition of the holder's type as logs carry it beside messages; None where that cannot be had. It is made anew."""
+        build = _build(self._request)
+        return build.holder_framework.definition_of(build.types.holder, build.types.schema)
+
+    def stage(self, stage: StageName | str) -> str:
         """What the program became, as text: ``model``, ``codec``, ``kernel``, ``python``, ``llvm`` or ``asm``."""
         return _build(self._request).stage(stage)
 
@@ -185,7 +193,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
 
 def _interpreted(build: Build) -> Loaded:
     """A program that runs in Python: slowly, but anywhere."""
-    kernels = [interpreted_kernel(build, build.request.backend, number) for number in range(len(build.kernels))]
+    kernels = [interpreted_kernel(build, number) for number in range(len(build.kernels))]
     return Loaded(
         holder_type=_holder_type(build.header),
         sites=sites_of(build.header, 0),

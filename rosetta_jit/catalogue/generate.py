@@ -15,6 +15,18 @@ def unknown_language(name: str, known: Sequence[str]) -> Diagnostic:
     return Diagnostic("error", "unknown-language", f"nothing prints `{name}`", help=f"choose one of {', '.join(known)}")
 
 
+def unknown_holder(name: str, known: Sequence[tuple[str, str]]) -> Diagnostic:
+    """Classes that nothing is known of."""
+    help_ = "choose " + ", ".join(f"{each} ({summary})" for each, summary in known)
+    return Diagnostic("error", "unknown-holder", f"`{name}` are no classes that can be filled", help=help_)
+
+
+def no_manner(holder: str, kind: str, where: str) -> Diagnostic:
+    """A field of a kind that the framework's classes do not have."""
+    message = f"classes of `{holder}` have no fields as `{where}` ({kind.split(maxsplit=1)[0]})"
+    return Diagnostic("error", "not-in-holder", message, help="choose another --holder, as own")
+
+
 def unusable_name(name: str) -> Diagnostic:
     """A name that files and identifiers cannot begin with."""
     help_ = "letters, digits and underscores, of which a letter comes first, up to 40; and not the name of a header of C"

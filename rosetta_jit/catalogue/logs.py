@@ -34,7 +34,7 @@ def old_version(name: str, version: str) -> Diagnostic:
         "error",
         "log-version",
         f"{name} says that it is `{version}`",
-        help="version 2.0 is read; `rosbag fix` and `rosbag migrate` make it of older ones",
+        help="versions 2.0 and 1.2 are read; ROS's own `rosbag fix` makes 2.0 of older ones",
     )
 
 
@@ -143,6 +143,19 @@ def unknown_topic(name: str, topic: str, known: Iterable[str]) -> Diagnostic:
     )
 
 
+def unknown_field(name: str, topic: str, field: str, known: Iterable[str]) -> Diagnostic:
+    """A field that messages of a topic do not have, or that is no number."""
+    fields = tuple(known)
+    near = closest(field, fields)
+    listed = ", ".join(fields[:20]) or "none"
+    return Diagnostic(
+        "error",
+        "log-field",
+        f"{name}: messages of `{topic}` have no number `{field}`",
+        help=f"did you mean `{near}`?" if near else f"they have {listed}",
+    )
+
+
 def several_types(name: str, topic: str, types: Iterable[str]) -> Diagnostic:
     """A topic with messages of several types."""
     found = ", ".join(f"`{each}`" for each in types)
@@ -216,6 +229,55 @@ def no_successor(name: str, topic: str, type_: str) -> Diagnostic:
         f"{name}: there is no definition of {type_}, which the messages of `{topic}` would be",
         help="--search-path names the folder of its `.msg` file",
     )
+
+
+def without_definition(topic: str) -> Diagnostic:
+    """A topic that is written without the definition of its type."""
+    return Diagnostic(
+        "warning",
+        "log-definition",
+        f"the messages of `{topic}` are written without the definition of their type, which is not known",
+        help=f"--type {topic}=package.type names it; its definition is looked for on the search path",
+    )
+
+
+def no_bytes(topic: str, type_: str) -> Diagnostic:
+    """A mapping into data of which nobody has bytes."""
+    return Diagnostic("error", "log-encoding", f"`{topic}`: messages of {type_} have no usual encoding, in which a log could keep them")
+
+
+def not_empty(folder: str) -> Diagnostic:
+    """A folder that is to be written, and has something in it."""
+    return Diagnostic("error", "log-output", f"{folder} is there already", help="--resume continues a conversion; else name another folder")
+
+
+def folder_is_there(folder: str) -> Diagnostic:
+    """A log that is a folder, where there is one already."""
+    return Diagnostic("error", "log-output", f"{folder} is there already, and not empty", help="name another folder")
+
+
+def other_conversion(folder: str, what: str) -> Diagnostic:
+    """A folder of another conversion."""
+    return Diagnostic(
+        "error", "log-output", f"{folder} was begun with another {what}", help="name another folder, or give the same log and options"
+    )
+
+
+def bad_journal(path: str, why: str) -> Diagnostic:
+    """A journal that cannot be read."""
+    return Diagnostic("error", "log-output", f"{path} does not say how far the conversion is: {why}", help="name another folder")
+
+
+def many_stretches(folder: str, count: int) -> Diagnostic:
+    """Times that are too far from each other."""
+    return Diagnostic(
+        "error", "log-time", f"{folder} would have more than {count} stretches of time", help="--every names longer ones: --every 1d"
+    )
+
+
+def not_written(name: str, topic: str, index: int, why: str) -> Diagnostic:
+    """A message that a format has no form for."""
+    return Diagnostic("error", "log-message", f"{name}: message {index} of `{topic}` cannot be written: {why}")
 
 
 def no_time(name: str, time_ns: int) -> Diagnostic:

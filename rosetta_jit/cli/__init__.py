@@ -30,6 +30,7 @@ from rosetta_jit.cli import (
     infer,
     info,
     operations,
+    plot,
     prove,
     stubs,
 )
@@ -50,6 +51,7 @@ COMMANDS = (
     info,
     cat,
     convert,
+    plot,
     bridge,
     doctor,
     dump,
@@ -101,10 +103,22 @@ def parser() -> argparse.ArgumentParser:
         prog="rosetta-jit", description="Decode one robot middleware's bytes into another's data holders, and back."
     )
     root.add_argument("--version", action=_Version)
+    root.add_argument("--cmake-dir", action=_CMakeFolder)
     commands = root.add_subparsers(metavar="COMMAND", required=True)
     for command in COMMANDS:
         command.add(commands)
     return root
+
+
+class _CMakeFolder(argparse.Action):
+    """Shows where CMake finds the package."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, **_: object) -> None:
+        super().__init__(option_strings, dest, nargs=0, help="show the folder for rosetta_jit_DIR of CMake and exit")
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        print(os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(__file__))), "generate", "cmake"))  # noqa: PTH118, PTH120 - starts quickly
+        parser.exit()
 
 
 class _Version(argparse.Action):

@@ -6,18 +6,17 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, encoding_of, parameters_of
 from rosetta_jit.cli.inputs import program_of
+from rosetta_jit.pipeline.stages import STAGES
 
 if TYPE_CHECKING:
     import argparse
-
-STAGES = ("model", "codec", "kernel", "python", "llvm", "asm")
 
 
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "dump", "Print what a mapping became at one stage of compilation.", run)
     add_mapping_or_type(command)
-    command.add_argument("--stage", choices=STAGES, default="kernel", help="default: kernel")
+    command.add_argument("--stage", choices=[stage.name for stage in STAGES], default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
     add_encoding(command)
     add_parameters(command)

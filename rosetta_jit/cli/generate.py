@@ -23,7 +23,13 @@ def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "generate", "Write a mapping or type as source that needs neither Python nor this library.", run)
     command.add_argument("subject", metavar="MAPPING|TYPE", help="a mapping (*.mapping), or a type by its qualified name")
-    command.add_argument("--language", default="c", metavar="NAME", help="c, or one that an installed package offers (default: c)")
+    command.add_argument("--language", default="c", metavar="NAME", help="c, cpp, or one that an installed package offers (default: c)")
+    command.add_argument(
+        "--holder", metavar="NAME", help="whose classes are filled, of languages that have several, as protobuf (default: own)"
+    )
+    command.add_argument(
+        "--include", metavar="HEADER", help="the header that declares these classes (default: by the rules of their framework)"
+    )
     command.add_argument(
         "--directions",
         type=_directions,
@@ -55,8 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
     """All files are made before any is written, and each is whole or not there; one line says what each is."""
     texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
     folder = Path(cast("str", arguments.output))
-    folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         with whole(folder / name) as path:
             path.write_bytes(text if isinstance(text, bytes) else text.encode())
         print(f"wrote {folder / name}")
@@ -64,10 +70,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
-    from rosetta_jit.generate.build import generated
+    from rosetta_jit.generate.build import Wishes, generated
 
     name = arguments.name or _name(arguments.subject)
-    return generated(_request(arguments), arguments.language, arguments.directions, name, freestanding=arguments.freestanding)
+    wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "")
+    return generated(_request(arguments), arguments.language, arguments.directions, name, wishes)
 
 
 def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentTypeError
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
 
 
@@ -25,6 +27,11 @@ def add_log(command: ArgumentParser) -> None:
 def add_selection(command: ArgumentParser) -> None:
     """Which of its messages."""
     command.add_argument("--topic", metavar="TOPIC", action="append", default=[], help="a topic; several by giving it again (default: all)")
+    add_times(command)
+
+
+def add_times(command: ArgumentParser) -> None:
+    """From when to when."""
     command.add_argument("--start", metavar="TIME", type=_moment, help="from when on: seconds since 1970, or 2024-05-01T12:00:00")
     command.add_argument("--end", metavar="TIME", type=_moment, help="until before when")
 
@@ -34,6 +41,30 @@ def add_decoding(command: ArgumentParser) -> None:
     decoding = command.add_mutually_exclusive_group()
     decoding.add_argument("--mapping", metavar="MAPPING", help="decode through a mapping: its path, or its name on the search path")
     decoding.add_argument("--type", metavar="TYPE", help="the type of the messages, where the log does not tell it or has several")
+    add_schemas(command)
+
+
+def add_decodings(command: ArgumentParser) -> None:
+    """The same for several topics, each with a mapping or a type of its own."""
+    command.add_argument(
+        "--mapping",
+        metavar="[TOPIC=]MAPPING",
+        action="append",
+        default=[],
+        help="decode through a mapping: its path, or its name on the search path; several, each for its topic, by giving it again",
+    )
+    command.add_argument(
+        "--type",
+        metavar="[TOPIC=]TYPE",
+        action="append",
+        default=[],
+        help="the type of the messages, where the log does not tell it or has several",
+    )
+    add_schemas(command)
+
+
+def add_schemas(command: ArgumentParser) -> None:
+    """Where definitions are found, and which bytes messages are."""
     command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: what the log says)")
     command.add_argument(
         "--import",
@@ -91,6 +122,39 @@ def topics_of(arguments: Namespace) -> list[str] | None:
 def target_of(arguments: Namespace) -> str | None:
     """The mapping or the type that the user names."""
     return arguments.mapping or arguments.type
+
+
+def channels_of(log: Log, arguments: Namespace) -> list[Channel]:
+    """The channels of the topics that the user names, all by default, each with its mapping or type.
+
+    A mapping or type without a topic is that of all of them.
+
+    Raises
+    ------
+    LogError
+        A topic is not there.
+    """
+    from rosetta_jit.catalogue import logs as words
+    from rosetta_jit.errors import LogError
+
+    named: dict[str, str] = {}
+    usual: str | None = None
+    for given in cast("list[str]", [*arguments.type, *arguments.mapping]):
+        topic, equals, target = given.partition("=")
+        if equals and topic in log:
+            named[topic] = target
+        elif equals and not Path(given).is_file():
+            raise LogError((words.unknown_topic(log.name, topic, log.topics),))
+        else:
+            usual = given
+    topics = topics_of(arguments)
+    chosen = list(dict.fromkeys([*(topics or log.topics), *named]))
+    found: list[Channel] = []
+    for topic in chosen:
+        target = named.get(topic, usual)
+        own = [each for each in log.channels if each.topic == topic] if target is None else [log[topic, target]]
+        found += own or [log[topic]]
+    return found
 
 
 def one_topic(log: Log, topics: list[str] | None) -> str:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.explain.nodes import nodes, places
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import describe, rounded_constant
-from rosetta_jit.language.units.conversion import TAKES, shown, unit_of
+from rosetta_jit.language.function import functions
+from rosetta_jit.language.units.conversion import shown, unit_of
 from rosetta_jit.language.units.places import unit_at
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup.dataclass import dataclass
@@ -29,8 +30,6 @@ HOW: dict[ConversionRule, str] = {
 }
 
 LOSSY: frozenset[str] = frozenset(("saturate", "wrap", "round", "truncate", "nearest"))
-
-MAKES_WHOLE: frozenset[str] = frozenset(("floor", "ceil", "round"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +82,8 @@ def _conversion(node: object) -> Iterator[Note]:
             yield Note(f"`{operator}` keeps a part of a value", lossy=True)
         case typed.Binary("+" | "-" | "*" | "/", _, _, Float(32)) | typed.Call("divide", _, Float(32)):
             yield Note("computed in float32, rounded", lossy=True)
-        case typed.Call(function) if function in MAKES_WHOLE:
-            yield Note(f"`{function}` drops what is below one", lossy=True)
+        case typed.Call(function) if remark := functions()[function].remark:
+            yield Note(f"`{function}` {remark}", lossy=True)
         case _:
             pass
 
@@ -114,4 +113,5 @@ def _told(unit: Unit) -> str | None:
 
 def _taken(value: typed.Expr) -> list[str]:
     """The units that functions within a value take."""
-    return [TAKES[node.function] for node in nodes(value) if isinstance(node, typed.Call) and node.function in TAKES]
+    calls = (functions()[node.function].units for node in nodes(value) if isinstance(node, typed.Call))
+    return [units.takes for units in calls if units.takes is not None]

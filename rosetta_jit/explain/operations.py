@@ -13,6 +13,7 @@ from rosetta_jit.explain.nodes import names_of, nodes, places
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.mapping import check
+from rosetta_jit.language.function import Operation, functions
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.model.expr import COMPARISONS, LOGIC
@@ -20,27 +21,14 @@ from rosetta_jit.model.types import Array, Bytes, Float, Int, String
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from typing import TypeGuard
 
     from rosetta_jit.language.typed import Expr, Place, Rule
 
-Operation = Literal[
-    "arithmetic",
-    "array reorder",
-    "string manipulation",
-    "image compression",
-    "predicate assignment",
-    "subtype loops",
-    "rejection",
-    "generators",
-    "date manipulation",
-]
 OPERATIONS: tuple[Operation, ...] = get_args(Operation)
 
 Direction = Literal["unpack", "pack"]
 Uses = dict[Operation, tuple[Direction, ...]]
-
-DATES = frozenset(("iso8601", "timestamp", "seconds", "fraction", "nanoseconds"))
-"""Functions of moments."""
 
 MOMENT = re.compile(r"(?:^|_)(time|timestamp|stamp|duration|date|n?secs?|nanosec|usecs?)(?:_|$)")
 """A field that holds a moment or a duration, by its name, or by that of a field around it."""
@@ -101,17 +89,13 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "predicate assignment"
             if otherwise is None:
                 yield "rejection"
-        case typed.TextCall(function):
-            yield "date manipulation" if function in DATES else "string manipulation"
-        case typed.ImageCall():
-            yield "image compression"
-        case typed.Told() | typed.HostCall():
+        case typed.Call(function):
+            yield functions()[function].operation
+        case typed.HostCall():
             yield "generators"
         case typed.Has() | typed.Search():
             yield "predicate assignment"
-        case typed.BytesCall():
-            yield "array reorder"
-        case typed.Rescale() | typed.Call():
+        case typed.Rescale():
             yield "arithmetic"
         case typed.Convert(rule="exact") | typed.Nearest():
             yield "rejection"
@@ -176,4 +160,8 @@ def _is_nested(place: Place) -> bool:
 
 def _computes(value: Expr) -> bool:
     """Whether a number is made of others."""
-    return any(isinstance(node, typed.Binary | typed.Call) and isinstance(node.type, Int | Float) for node in nodes(value))
+    return any(_is_arithmetic(node) and isinstance(node.type, Int | Float) for node in nodes(value))
+
+
+def _is_arithmetic(node: object) -> TypeGuard[typed.Binary | typed.Call]:
+    return isinstance(node, typed.Binary) or (isinstance(node, typed.Call) and functions()[node.function].operation == "arithmetic")

@@ -13,6 +13,7 @@ from rosetta_jit.startup.garbage import imported
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
     from rosetta_jit.model.types import Schema, Struct
     from rosetta_jit.parsing.idl import FrontEnd
@@ -66,6 +67,14 @@ class TreeOf(Protocol):
         ...
 
 
+class Define(Protocol):
+    """A function from a struct to its definition."""
+
+    def __call__(self, struct: Struct, schema: Schema) -> Definition | None:
+        """The definition of a struct."""
+        ...
+
+
 class FileOf(Protocol):
     """A function from a text to the name of the file that it would be."""
 
@@ -104,6 +113,8 @@ class Framework:
         A function that gives the `rosetta_jit.wire.tree.Tree` of two encodings. Empty where messages do not describe themselves.
     follows
         Older frameworks whose types this one has under the same names, and for each a function that says what became of a type's fields.
+    definition
+        A function from a struct and its schema to its `Definition`; empty where logs carry none.
     """
 
     name: str
@@ -126,10 +137,15 @@ class Framework:
     def tree(self, source: str, target: str) -> Tree | None:
         """What messages of one encoding become in another one, if they describe themselves and differ in codes alone."""
         return cast("TreeOf", _found(self.transcoding))(source, target) if self.transcoding else None
+    definition: str = ""
 
     def probes(self) -> Probes:
         """The probes of its features, none where it offers none."""
         return cast("Probes", _found(self.features)) if self.features else {}
+
+    def definition_of(self, struct: Struct, schema: Schema) -> Definition | None:
+        """The definition of a struct as logs carry it; None where that cannot be had."""
+        return cast("Define", _found(self.definition))(struct, schema) if self.definition else None
 
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""

@@ -16,11 +16,13 @@ from rosetta_jit.generate.unit import Unit, UserFunction
 from rosetta_jit.kernel.ir import Digits, Nearest, Scale, Unary
 from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.passes.alone import alone
+from rosetta_jit.kernel.passes.postpone import postpone
 from rosetta_jit.kernel.shape import calls_to_host, expressions_of, our_functions, statements, subexpressions
 from rosetta_jit.lowering.rules.values import scalar_type
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import Build, within_stack
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -50,10 +52,31 @@ class AheadOfTime(Build):
         return layout(Ref(name), schema, padded=True)
 
     def _optimised(self, kernel: Kernel) -> Kernel:
-        return alone(passes.run(kernel, passes.ANY_MACHINE))
+        return postpone(alone(passes.run(kernel, passes.ANY_MACHINE)))
 
 
-def unit_of(request: Request, roles: tuple[Role, ...], name: str, *, freestanding: bool = False) -> Unit:
+class LowByteFirst(AheadOfTime):
+    """The same for machines whose numbers lie as most encodings have them: arrays of them are copied as they are."""
+
+    def _optimised(self, kernel: Kernel) -> Kernel:
+        return postpone(alone(passes.run(kernel)))
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What a user wants besides: ``freestanding`` source, classes of a ``holder``, the header to ``include`` for them."""
+
+    freestanding: bool = False
+    holder: str = ""
+    include: str = ""
+
+
+NO_WISHES = Wishes()
+
+
+def unit_of(
+    request: Request, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES, machine: type[AheadOfTime] = AheadOfTime
+) -> Unit:
     """The unit of a request's mapping or type, for some directions whatever its own is.
 
     Raises
@@ -63,16 +86,29 @@ def unit_of(request: Request, roles: tuple[Role, ...], name: str, *, freestandin
     """
     if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
-    builds: dict[Role, AheadOfTime] = {role: AheadOfTime(_for(request, role)) for role in roles}
+    builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}
     for role, build in builds.items():
         kernels[role] = build.kernels[0]
         if role == "encode":
             kernels["size"] = build.kernels[1]
-    _check(kernels, freestanding=freestanding)
+    _check(kernels, freestanding=wishes.freestanding)
     first = next(iter(builds.values()))
     bounds, functions = _bounds(first, kernels), _functions(first, kernels)
-    return Unit(name, tuple(_made_from(builds)), first.layout, bounds, kernels, functions, freestanding, _origins(builds))
+    return Unit(
+        name,
+        tuple(_made_from(builds)),
+        first.layout,
+        bounds,
+        kernels,
+        functions,
+        wishes.freestanding,
+        first.types.holder.name,
+        first.types.schema,
+        wishes.holder,
+        wishes.include,
+        _origins(builds),
+    )
 
 
 def _origins(builds: Mapping[Role, AheadOfTime]) -> dict[Role, tuple[Origin, ...]]:
@@ -154,7 +190,7 @@ def object_of(request: Request, roles: tuple[Role, ...], name: str, triple: str,
         return files_for(unit_of(request, roles, name), triple, cpu)
 
 
-def generated(request: Request, language: str, roles: tuple[Role, ...], name: str, *, freestanding: bool = False) -> dict[str, str]:
+def generated(request: Request, language: str, roles: tuple[Role, ...], name: str, wishes: Wishes = NO_WISHES) -> dict[str, str]:
     """The files of a mapping or type in a language, by their names.
 
     Parameters
@@ -167,6 +203,8 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
         ``"decode"``, ``"borrow"``, ``"encode"``.
     name
         Of the files, and what the names in them begin with.
+    wishes
+        What is wanted besides.
 
     Raises
     ------
@@ -177,4 +215,5 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     if language not in known:
         raise SchemaError((words.unknown_language(language, tuple(known)),))
     with within_stack():
-        return known[language].files(unit_of(request, roles, name, freestanding=freestanding))
+        machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
+        return known[language].files(unit_of(request, known[language].roles(roles), name, wishes, machine))

@@ -11,7 +11,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.generate.unit import Role, Unit
 
 GROUP = "rosetta_jit.languages"
 """The entry-point group in which packages offer languages of their own: a `Language` each."""
@@ -37,11 +37,21 @@ class Language:
         One line for who chooses.
     printer
         The function that prints units (`Files`), as ``module:name``.
+    borrows
+        Its decoders leave bytes in the message, from where the code around them takes them.
+    low_byte_first
+        What it prints need not run on machines whose numbers have their high byte first.
     """
 
     name: str
     summary: str
     printer: str
+    borrows: bool = False
+    low_byte_first: bool = False
+
+    def roles(self, wanted: tuple[Role, ...]) -> tuple[Role, ...]:
+        """The kernels that the printer needs for what is wanted."""
+        return tuple(dict.fromkeys("borrow" if each == "decode" and self.borrows else each for each in wanted))
 
     def files(self, unit: Unit) -> dict[str, str]:
         """The texts of a unit's files by their names."""
@@ -49,7 +59,16 @@ class Language:
         return cast("Files", getattr(import_module(module), name))(unit)
 
 
-LANGUAGES = (Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),)
+LANGUAGES = (
+    Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),
+    Language(
+        "cpp",
+        "C++17: NAME.hpp and NAME.cpp, which fill classes",
+        "rosetta_jit.generate.cpp.language:files",
+        borrows=True,
+        low_byte_first=True,
+    ),
+)
 
 
 @cache

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
+from rosetta_jit.model.types import Schema
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -43,6 +44,10 @@ class Unit:
         How many rows of each lane a message can need; None where nothing bounds them.
     freestanding
         Only headers that a compiler has without a C library are included.
+    type, schema
+        The holder's type, and what declares it.
+    holder, include
+        Which classes are filled, and the header that declares them, where the user says so.
     origins
         Which fields of the holder the rules of the mapping name, for each kernel.
     """
@@ -54,4 +59,8 @@ class Unit:
     kernels: Mapping[Role, Kernel]
     functions: tuple[UserFunction, ...] = ()
     freestanding: bool = False
+    type: str = ""
+    schema: Schema = field(default_factory=lambda: Schema({}))
+    holder: str = ""
+    include: str = ""
     origins: Mapping[Role, tuple[Origin, ...]] = field(default_factory=dict["Role", "tuple[Origin, ...]"])

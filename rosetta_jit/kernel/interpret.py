@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -69,7 +70,7 @@ from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from rosetta_jit.kernel.arithmetic import Value
     from rosetta_jit.kernel.host import Functions
@@ -113,6 +114,11 @@ class _Machine:
     told: Mapping[str, int]
     functions: Functions
     locals: dict[str, Value]
+
+
+def runnable(kernel: Kernel, functions: Functions) -> Callable[..., int]:
+    """A kernel as a function that runs it; ``functions`` are those of the host."""
+    return partial(run, kernel, functions=functions)
 
 
 def run(

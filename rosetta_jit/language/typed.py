@@ -1,9 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Choice | Listed | Given | Calls
-    each with `type`
-    Calls = Call | TextCall | BytesCall | Asked
-    Asked = Told | HostCall | ImageCall
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Call | HostCall | Choice | Listed
+         | Given                                                     each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
     Rule = Assign(Place, Expr, Change?) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
@@ -36,48 +34,6 @@ BOOL = Bool()
 ConversionRule = OneOf["widen", "exact", "saturate", "wrap", "round", "truncate", "nearest"]
 """``widen`` cannot fail; ``exact``, ``round`` (half to even) and ``truncate`` (toward zero) are a range error where the
 target cannot hold the result; ``saturate`` and ``wrap`` always give one; ``nearest`` is IEEE rounding to a float."""
-
-Angular = OneOf["sin", "cos", "tan", "asin", "acos", "atan"]
-Function = OneOf[
-    "radians",
-    "degrees",
-    Angular,
-    "atan2",
-    "sqrt",
-    "floor",
-    "ceil",
-    "round",
-    "abs",
-    "min",
-    "max",
-    "align",
-    "divide",
-    "floor_divide",
-    "modulo",
-    "others",
-]
-
-OfTexts = OneOf[
-    "lower",
-    "upper",
-    "strip",
-    "replace",
-    "slice",
-    "part",
-    "behind",
-    "before",
-    "until_nul",
-    "padded",
-    "concatenated",
-    "decoded",
-    "bytes",
-    "join",
-    "split",
-]
-FromText = OneOf[
-    "size", "parts", "compared", "starts_with", "ends_with", "contains", "integer", "number", "seconds", "fraction", "nanoseconds"
-]
-TextFunction = OneOf[OfTexts, FromText, "written", "iso8601", "timestamp"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,9 +151,9 @@ class Nearest:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A function of the language; all arguments and the result have ``type``."""
+    """A function of the language, by the name of its record (`language.function`): `+` and `<=>` are operators of texts."""
 
-    function: Function
+    function: str
     arguments: tuple[Expr, ...]
     type: Type
     span: Span | None = field(default=None, compare=False, repr=False)
@@ -239,56 +195,12 @@ class Search:
 
 
 @dataclass(frozen=True, slots=True)
-class BytesCall:
-    """A number within a string or bytes field (`float32_at`: field, place, whether its high byte comes first), or a `byte` of a number."""
-
-    function: str
-    arguments: tuple[Expr, ...]
-    type: Type
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Told:
-    """When this message came, in ns since 1970, or how many came before it; int64."""
-
-    what: OneOf["now", "number"]
-    type: Type = INT64
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
 class HostCall:
     """A function that the mapping declares and its user gives; the arguments have the types that it declares."""
 
     function: str
     arguments: tuple[Expr, ...]
     type: Type
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class TextCall:
-    """A function of texts (strings, bytes, arrays of 8-bit integers) or moments. ``compared`` is below, at or above 0."""
-
-    function: TextFunction
-    arguments: tuple[Expr, ...]
-    type: Type
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-ImageFunction = OneOf["decompress", "compress", "image_width", "image_height", "image_channels", "image_depth"]
-
-
-@dataclass(frozen=True, slots=True)
-class ImageCall:
-    """Bytes as an image, or as the pixels of one: ``numbers`` are their width, height, channels and quality, if it is compressed."""
-
-    function: ImageFunction
-    bytes: Expr
-    type: Type
-    format: str = ""
-    numbers: tuple[Expr, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -330,11 +242,9 @@ class Given:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Asked = Told | HostCall | ImageCall
-"""What the kernel's host answers."""
-
-Calls = Call | TextCall | BytesCall | Asked
-Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Choice | Listed | Given | Calls
+Expr = (
+    Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Call | HostCall | Choice | Listed | Given
+)
 
 
 @dataclass(frozen=True, slots=True)

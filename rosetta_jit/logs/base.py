@@ -73,10 +73,13 @@ class Block:
     ----------
     data : ndarray of uint8
         Bytes in which they lie.
+    piece : int
+        The piece of the log that they are of, or the first of those that they are of.
     """
 
     data: NDArray[np.uint8]
     rows: Rows
+    piece: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,6 +97,16 @@ class Channel:
         return schema if self.schema_encoding == "protobuf" else schema.decode("utf-8", "replace")
 
     @property
+    def log(self) -> Log:
+        """The log that it is of."""
+        return self._log
+
+    @property
+    def target(self) -> str | None:
+        """The mapping, or the type, that was named."""
+        return self._target
+
+    @property
     def count(self) -> int | None:
         """How many messages there are, by the index of the log; None where only reading all would tell."""
         counts = [each.count for each in self.connections]
@@ -121,9 +131,9 @@ class Channel:
         """The messages, decoded some megabytes at a time into one batch that is filled again and again."""
         decoder, staging, batch, first = self.decoder, Staging(), None, 0
         for staged in staging.filled(ahead(self._blocks(start, end, pieces))):
-            batch = _many(decoder, staged, batch, on_error, first)
-            kept = batch.kept
-            yield Part(batch, staged.log_ns[kept], staged.publish_ns[kept], first, staged)
+            part = decoded_staged(decoder, staged, batch, on_error, first)
+            batch = part.batch
+            yield part
             first += len(staged.log_ns)
 
     def decoded(self, block: Block, rows: Rows, on_error: OnError = "raise") -> Batch:
@@ -208,15 +218,15 @@ class Channel:
         **form: Any,
     ) -> Iterator[tuple[Part, pa.Table]]:
         """The same with the messages that each table is of."""
-        from rosetta_jit.logs.tables import with_clocks
+        from rosetta_jit.logs.tables import table_of
 
         names, chosen, given = None if columns is None else list(columns), tuple(clocks), False
         for part in self.parts(start=start, end=end, pieces=pieces, on_error=on_error):
-            yield part, with_clocks(part.batch.to_arrow(names, **form), chosen, part)
+            yield part, table_of(part, names, chosen, form)
             given = True
         if not given:
             empty = self._empty()
-            yield empty, with_clocks(empty.batch.to_arrow(names, **form), chosen, empty)
+            yield empty, table_of(empty, names, chosen, form)
 
     def _empty(self) -> Part:
         nothing = np.empty(0, np.int64)
@@ -281,10 +291,17 @@ def _channel_of(log: Log, numbers: frozenset[int], target: str | None, options: 
     return Channel(log, tuple(each for each in log.connections if each.number in numbers), target, options)
 
 
-def _many(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnError, first: int) -> Batch:
-    """Decode what is staged; the path of an error begins with the number of the message among all."""
+def decoded_staged(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnError, first: int) -> Part:
+    """Decode what is staged into a batch, if there is one already; ``first`` is the number of its first message among all.
+
+    Raises
+    ------
+    DecodeError
+        A message is not what its type promises; the path begins with its number among all.
+    """
     try:
-        return decoder.many(staged.data.data, staged.offsets, into=batch, on_error=on_error)
+        batch = decoder.many(staged.data.data, staged.offsets, into=batch, on_error=on_error)
+        return Part(batch, staged.log_ns[batch.kept], staged.publish_ns[batch.kept], first, staged)
     except DecodeError as error:
         number, _, path = error.path.removeprefix("[").partition("]")
         raise DecodeError(error.kind, f"[{first + int(number)}]{path}", error.detail, error.offset) from None

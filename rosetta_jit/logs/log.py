@@ -163,7 +163,7 @@ class Log:
             if kept.all():
                 yield block
             elif kept.any():
-                yield type(block)(block.data, rows.only(kept))
+                yield type(block)(block.data, rows.only(kept), block.piece)
 
     def messages(
         self,

@@ -11,6 +11,7 @@ writer was killed, or one whose index lies.
 from __future__ import annotations
 
 import zlib
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 
 import numpy as np
@@ -143,20 +144,30 @@ class Records:
             segment = segments[number]
             if not segment.piece.has(wanted):
                 continue
-            match segment:
-                case Region(at, stop):
-                    yield from self._region(at, stop, wanted, scratch)
-                case Chunk(at, size):
-                    record = self._storage.read(at, size)
-                    head = self._grammar.head(record[:PEEK]) if len(record) > 9 else Head("damaged")
-                    if head.kind != "chunk" or head.size > size:
-                        self._tell(words.index_lies(self._storage.name, at))
-                        own = range(at, segments[chosen.stop].at if chosen.stop < len(segments) else end)
-                        yield from self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
-                        return
-                    yield from self._content(record, at, scratch)
-                    if head.size < size:
-                        yield from self._region(at + head.size, at + size, wanted, scratch)
+            if isinstance(segment, Chunk) and not self._is_true(segment):
+                self._tell(words.index_lies(self._storage.name, segment.at))
+                own = range(segment.at, segments[chosen.stop].at if chosen.stop < len(segments) else end)
+                blocks = self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
+                yield from (replace(each, piece=number) for each in blocks)
+                return
+            yield from (replace(each, piece=number) for each in self._segment(segment, wanted, scratch))
+
+    def _segment(self, segment: Chunk | Region, wanted: Wanted, scratch: Scratch) -> Iterator[Block]:
+        """The messages of a segment that is where the index says."""
+        if isinstance(segment, Region):
+            yield from self._region(segment.at, segment.end, wanted, scratch)
+            return
+        record = self._storage.read(segment.at, segment.size)
+        size = self._grammar.head(record[:PEEK]).size
+        yield from self._content(record, segment.at, scratch)
+        if size < segment.size:
+            yield from self._region(segment.at + size, segment.at + segment.size, wanted, scratch)
+
+    def _is_true(self, chunk: Chunk) -> bool:
+        """Whether there is a chunk, and no larger one than the index says."""
+        peek = self._storage.read(chunk.at, min(PEEK, chunk.size))
+        head = self._grammar.head(peek) if len(peek) > 9 else Head("damaged")
+        return head.kind == "chunk" and head.size <= chunk.size
 
     def _true_place(self, before: Sequence[Chunk | Region]) -> int:
         """Where the last chunk begins that is where the index says; the log's first record, if there is none."""

@@ -34,8 +34,8 @@ class Staged:
 class Staging:
     """The memory."""
 
-    def __init__(self) -> None:
-        self._data = np.empty(BYTES, np.uint8)
+    def __init__(self, size: int = BYTES) -> None:
+        self._data = np.empty(size, np.uint8)
         self._offsets = np.zeros(MESSAGES + 1, np.int64)
         self._times = np.empty((2, MESSAGES), np.int64)
         self._count = 0
@@ -43,16 +43,19 @@ class Staging:
     def filled(self, blocks: Iterable[Block]) -> Iterator[Staged]:
         """The messages of all blocks, as many at once as there is room for."""
         for block in blocks:
-            rows, done = block.rows, 0
-            sizes = rows.ends - rows.begins
-            while done < len(rows):
-                taken = self._fitting(sizes[done:])
-                if taken:
-                    self._take(block, rows.only(slice(done, done + taken)))
-                    done += taken
-                if done < len(rows):
-                    yield from self._flushed()
-        yield from self._flushed()
+            yield from self.put(block, block.rows)
+        yield from self.flushed()
+
+    def put(self, block: Block, rows: Rows) -> Iterator[Staged]:
+        """Add messages of a block; gives those that have to leave for them."""
+        done, sizes = 0, rows.ends - rows.begins
+        while done < len(rows):
+            taken = self._fitting(sizes[done:])
+            if taken:
+                self._take(block, rows.only(slice(done, done + taken)))
+                done += taken
+            if done < len(rows):
+                yield from self.flushed()
 
     def _fitting(self, sizes: NDArray[np.int64]) -> int:
         """How many of the next messages there is room for."""
@@ -68,7 +71,8 @@ class Staging:
         self._times[:, first : first + count] = rows.log_ns, rows.publish_ns
         self._count += count
 
-    def _flushed(self) -> Iterator[Staged]:
+    def flushed(self) -> Iterator[Staged]:
+        """All that is there; nothing is left."""
         count = self._count
         if count:
             offsets = self._offsets[: count + 1]

@@ -17,7 +17,7 @@ _HERE = "rosetta_jit.logs"
 
 FORMATS = (
     Format("mcap", (".mcap",), f"{_HERE}.mcap.reader:McapReader", b"\x89MCAP0\r\n"),
-    Format("bag", (".bag", ".bag.active"), f"{_HERE}.bag.reader:BagReader", b"#ROSBAG V"),
+    Format("bag", (".bag", ".bag.active"), f"{_HERE}.bag.reader:open_bag", b"#ROSBAG V"),
     Format("rosbag2", (), f"{_HERE}.rosbag2.reader:Rosbag2Reader", folder="metadata.yaml"),
     Format("rosbag2-sqlite", (".db3",), f"{_HERE}.rosbag2.sqlite:SqliteReader", b"SQLite format 3\0"),
     Format("yarpdatadumper", (), f"{_HERE}.yarp.reader:DumperReader", folder="data.log"),

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
     import pyarrow as pa
 
@@ -18,11 +18,11 @@ STAMPS = (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec"))
 """What the seconds and nanoseconds of a ``header.stamp`` are called: ROS 1, ROS 2, OpenRTM."""
 
 
-def with_clocks(table: pa.Table, clocks: Iterable[str], part: Part) -> pa.Table:
-    """A table with columns of times in front; a name that a field has gets an underscore."""
+def table_of(part: Part, columns: Sequence[str] | None, clocks: Iterable[str], form: Mapping[str, Any]) -> pa.Table:
+    """Messages as a table with columns of times in front; ``form`` is what `Batch.to_arrow` takes besides."""
     from rosetta_jit.runtime.arrow.stamps import with_times
 
-    return with_times(table, {name: _clock(name, part) for name in clocks})
+    return with_times(part.batch.to_arrow(columns, **form), {name: _clock(name, part) for name in clocks})
 
 
 def joined(tables: Iterable[pa.Table]) -> pa.Table:

@@ -15,15 +15,13 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.frameworks.ros2.successors import definition, successor
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.logs.base import Connection
-from rosetta_jit.logs.writing import written
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-    from pathlib import Path
+    from collections.abc import Iterable
 
     from rosetta_jit.api.bridges import Bridge
-    from rosetta_jit.logs.base import Block, Wanted
+    from rosetta_jit.logs.base import Block
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
 
@@ -36,9 +34,14 @@ class Stream:
     connection: Connection
     bridge: Bridge
 
-    def translated(self, block: Block) -> dict[int, bytes]:
+    @property
+    def connections(self) -> list[tuple[frozenset[int], Connection]]:
+        """Those of the topic become one."""
+        return [(self.channel.numbers, self.connection)]
+
+    def messages(self, block: Block) -> dict[int, bytes]:
         """Those of a block, by their rows."""
-        chosen = np.flatnonzero(np.isin(block.rows.channels, [each.number for each in self.channel.connections]))
+        chosen = np.flatnonzero(np.isin(block.rows.channels, list(self.channel.numbers)))
         if not len(chosen):
             return {}
         buffer, places = self.channel.bridged(block, block.rows.only(chosen), self.bridge)
@@ -46,38 +49,19 @@ class Stream:
         return {row: octets[ends[index] : ends[index + 1]] for index, row in enumerate(chosen.tolist())}
 
 
-def translate_log(
-    log: Log,
-    channels: Iterable[Channel],
-    output: Path,
-    wanted: Wanted,
-    *,
-    folders: Iterable[str] = (),
-    advance: Callable[[int], object] = int,
-) -> None:
-    """Write messages of ROS 1 as those of ROS 2.
+def translated(log: Log, channel: Channel, folders: Iterable[str] = ()) -> Stream:
+    """The way of a topic's messages from ROS 1 to ROS 2.
 
     Raises
     ------
     LogError
-        A topic is not of ROS 1, or there is no definition of its type in ROS 2.
+        The topic is not of ROS 1, or there is no definition of its type in ROS 2.
     DecodeError
         A message is not what its type promises, or has a value that does not fit into a field's successor.
     SchemaError
         A field has no successor.
     """
-    search = SearchPath.of(folders)
-    streams = [_stream(log, channel, search) for channel in channels]
-    with written(output) as writer:
-        numbers = [writer.connect(each.connection) for each in streams]
-        for block in log.blocks(wanted):
-            found: dict[int, tuple[int, bytes]] = {}
-            for number, stream in zip(numbers, streams, strict=True):
-                found |= {row: (number, data) for row, data in stream.translated(block).items()}
-            for row in sorted(found):
-                number, data = found[row]
-                writer.write(number, int(block.rows.log_ns[row]), int(block.rows.publish_ns[row]), data)
-            advance(len(block.rows))
+    return _stream(log, channel, SearchPath.of(folders))
 
 
 def _stream(log: Log, channel: Channel, search: SearchPath) -> Stream:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from shutil import rmtree
 from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.file_errors import whole
+from rosetta_jit.file_errors import named, whole
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -40,21 +41,54 @@ class Writer(Protocol):
         ...
 
 
+FOLDERS = {"yarpdatadumper": "rosetta_jit.logs.yarp.writer:DumperWriter"}
+"""Those of folders, by the name of the format."""
+
+
 @contextmanager
-def written(path: Path) -> Generator[Writer]:
+def written(path: Path, format_: str | None = None) -> Generator[Writer]:
     """A new log. It has its name when it is whole; until then, and if the process is killed, it is called `….part`.
+
+    Parameters
+    ----------
+    format_
+        Of a log that is a folder; of a file, its name tells.
 
     Raises
     ------
     LogError
-        No format has such files.
+        No format has such files, or the folder is there already.
     """
+    if format_ is not None:
+        module, _, name = FOLDERS[format_].partition(":")
+        with whole_folder(path) as folder:
+            writer: Writer = getattr(imported(module), name)(str(path), folder)
+            yield writer
+            writer.finish()
+        return
     place = next((each for suffix, each in WRITERS.items() if path.name.endswith(suffix)), None)
     if place is None:
         raise LogError((words.no_writer(str(path), WRITERS),))
     module, _, name = place.partition(":")
     make = getattr(imported(module), name)
     with whole(path) as part, part.open("wb") as file:
-        writer: Writer = make(str(path), file)
+        writer = make(str(path), file)
         yield writer
         writer.finish()
+
+
+@contextmanager
+def whole_folder(path: Path) -> Generator[Path]:
+    """The same for a folder, which must not be there already."""
+    if path.exists() and (not path.is_dir() or any(path.iterdir())):
+        raise LogError((words.folder_is_there(str(path)),))
+    part = path.with_name(f"{path.name}.part")
+    with named(path):
+        rmtree(part, ignore_errors=True)
+        part.mkdir(parents=True)
+        try:
+            yield part
+        except BaseException:
+            rmtree(part, ignore_errors=True)
+            raise
+        part.replace(path)

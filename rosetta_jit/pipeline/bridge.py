@@ -27,6 +27,7 @@ from rosetta_jit.startup.garbage import imported
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.backends.backend import Backend
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.language.uses import Signature
@@ -81,7 +82,7 @@ class BridgeBuild:
         return (*decode.kernels, size, writes)
 
     @property
-    def backend(self) -> str:
+    def backend(self) -> Backend:
         """The one that was asked for of what decodes."""
         return self.halves[0].backend
 
@@ -105,7 +106,7 @@ class BridgeBuild:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         type_ = json.dumps(self.header["type"], sort_keys=True)
-        return "\n".join([self.backend, "bridge", str(self.references), str(self.halves[0].limit), type_, *kernels, *digests])
+        return "\n".join([self.backend.name, "bridge", str(self.references), str(self.halves[0].limit), type_, *kernels, *digests])
 
     @cached_property
     def header(self) -> dict[str, Any]:

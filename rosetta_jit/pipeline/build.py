@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import json
 from contextlib import contextmanager
-from dataclasses import field
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
+from rosetta_jit.backends.installed import backend_named
+from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.bind import needless
 from rosetta_jit.errors import MappingError, SchemaError
@@ -20,6 +21,7 @@ from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
+from rosetta_jit.language.function import files_of_offered
 from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
 from rosetta_jit.language.parse.unit_file import SUFFIX
@@ -31,41 +33,30 @@ from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, same_name
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
-from rosetta_jit.pipeline.request import Backend, ByteOrder
+from rosetta_jit.pipeline.request import ByteOrder
 from rosetta_jit.pipeline.similar_types import similar_types
+from rosetta_jit.pipeline.stages import shown
+from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
 from rosetta_jit.runtime import images
+from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
 
+    from rosetta_jit.backends.backend import Backend
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.language.typed import Rule
-    from rosetta_jit.language.uses import Signature
     from rosetta_jit.lowering.writer import References
     from rosetta_jit.pipeline.request import GivenFunction, Request
+    from rosetta_jit.pipeline.stages import Made
     from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Encoding
-
-Stage = Literal["model", "codec", "kernel", "python", "llvm", "asm"]
-STAGES: tuple[Stage, ...] = get_args(Stage)
-
-
-@dataclass(frozen=True, slots=True)
-class Types:
-    """The types of a program, and the rules between them, if they are two."""
-
-    holder: Struct
-    wire: Struct
-    schema: Schema
-    rules: tuple[Rule, ...] | None
-    functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
 
 
 class Build:
@@ -181,13 +172,13 @@ class Build:
         return self._framework(self.types.wire)
 
     @cached_property
+    def holder_framework(self) -> Framework:
+        return self._framework(self.types.holder)
+
+    @property
     def manners(self) -> str:
         """Where the manners of the holder's framework are found."""
         return self.holder_framework.manners
-
-    @property
-    def holder_framework(self) -> Framework:
-        return self._framework(self.types.holder)
 
     def _framework(self, struct: Struct) -> Framework:
         """The framework whose IDL declares a type."""
@@ -199,11 +190,11 @@ class Build:
 
     @cached_property
     def backend(self) -> Backend:
-        """The one that was asked for, or LLVM: what numba adds, a type for users' own functions, `Decoder.kernel` has in any case."""
-        asked = self.request.backend or "llvm"
-        if asked not in get_args(Backend):
-            raise _report(self.request, words.unknown_backend(asked, get_args(Backend)))
-        return asked
+        """The one that was asked for, or LLVM."""
+        found = backend_named(self.request.backend)
+        if found is None:
+            raise _report(self.request, words.unknown_backend(self.request.backend or "", tuple(installed_backends())))
+        return found
 
     @cached_property
     def functions(self) -> tuple[UserFunction, ...]:
@@ -222,7 +213,7 @@ class Build:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
-        return "\n".join([self.backend, self.entry, self.manners, str(self.limit), holder, *kernels, *digests])
+        return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), holder, *kernels, *digests])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:
@@ -261,35 +252,11 @@ class Build:
         imported("rosetta_jit.backends.entry.link")
         from rosetta_jit.backends.entry.link import compile_program
 
-        return compile_program(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
+        return compile_program(self.kernels, self.entry, with_numba=self.backend.types_kernels, functions=self.functions)
 
     def stage(self, stage: str) -> str:
         """What the program became, as text."""
-        match stage:
-            case "model":
-                from rosetta_jit.model.printer import show_types
-
-                return show_types(self.types.schema, (self.types.holder, self.types.wire))
-            case "codec":
-                from rosetta_jit.wire.printer import show_encoding
-
-                return show_encoding(self.encoding)
-            case "kernel":
-                return "\n".join(to_text(kernel) for kernel in self.kernels)
-            case "python":
-                from rosetta_jit.backends.python.function import python_text
-
-                return "\n".join(python_text(kernel) for kernel in self.kernels)
-            case "llvm":
-                from rosetta_jit.backends.entry.link import llvm_text
-
-                return llvm_text(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
-            case "asm":
-                from rosetta_jit.backends.entry.link import assembly
-
-                return assembly(self.kernels, self.entry, with_numba=self.backend == "numba", functions=self.functions)
-            case _:
-                raise ValueError(f"no stage `{stage}`; there are {', '.join(STAGES)}")
+        return shown(cast("Made", self), stage)  # its properties are made once
 
     def files(self) -> dict[str, str | None]:
         """The files that were read, by digest, and those that would have been read instead if they existed."""
@@ -301,7 +268,8 @@ class Build:
         for lookup in self.reading.lookups:
             if lookup.found not in in_memory:
                 found[lookup.found] = lookup.digest
-        return found
+        offered = files_of_offered() if self.request.mapping is not None else ()
+        return found | {path: digest_file(path) for path in offered}
 
 
 @contextmanager

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 Direction = Literal["decode", "encode"]
 ByteOrder = Literal["little", "big"]
-Backend = Literal["numba", "llvm", "python", "interpreter"]
+Backend = Literal["numba", "llvm", "python", "interpreter"] | str
+"""Ours, or the name of an installed one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.backends.installed import backend_named
+from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.installed import installed
@@ -20,6 +22,7 @@ from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
+    from rosetta_jit.backends.backend import Backend
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Direction, Kernel
     from rosetta_jit.pipeline.request import BridgeRequest, GivenFunction
@@ -56,8 +59,12 @@ class TranscodingBuild:
         return tuple(passes.run(transcoding_kernel(self.tree, within, direction, self._references)) for direction in DIRECTIONS)
 
     @property
-    def backend(self) -> str:
-        return self.request.decode.backend or "llvm"
+    def backend(self) -> Backend:
+        name = self.request.decode.backend
+        found = backend_named(name)
+        if found is None:
+            raise SchemaError((words.unknown_backend(name or "", tuple(installed_backends())),))
+        return found
 
     @cached_property
     def references(self) -> tuple[int, ...]:
@@ -68,7 +75,7 @@ class TranscodingBuild:
     @cached_property
     def text(self) -> str:
         """As of a `BridgeBuild`."""
-        return "\n".join([self.backend, "transcoding", *map(to_text, self.kernels)])
+        return "\n".join([self.backend.name, "transcoding", *map(to_text, self.kernels)])
 
     @cached_property
     def header(self) -> dict[str, Any]:

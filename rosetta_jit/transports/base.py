@@ -338,9 +338,10 @@ class Pending:
         self._done.set()
 
     def fail(self, error: TransportError) -> None:
-        """It will not come."""
-        self._error = error
-        self._done.set()
+        """It will not come; the first reason counts."""
+        if not self._done.is_set():
+            self._error = error
+            self._done.set()
 
     def wait(self, until: float, address: str) -> Message:
         """The answer, at the latest at a moment of the monotonic clock.

@@ -16,7 +16,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.cli import main
-from rosetta_jit.generate.build import generated
+from rosetta_jit.generate.build import Wishes, generated
 from tests.generate.driver import STRICT, answers, compiled, driver, expected, harmed, needs_gcc, write
 from tests.golden import GOLDEN, check_golden
 
@@ -95,7 +95,7 @@ def test_the_header_is_one_of_c_plus_plus(unit):
 
 @needs_gcc
 def test_freestanding_source_needs_no_library(tmp_path):
-    name = write(tmp_path, generated(TORSO, "c", BOTH, "torso", freestanding=True))
+    name = write(tmp_path, generated(TORSO, "c", BOTH, "torso", Wishes(freestanding=True)))
     made = compiled("gcc", tmp_path, name, "-O2", "-ffreestanding", "-fno-stack-protector")
     undefined = subprocess.run(["nm", "-u", made], capture_output=True, text=True, check=True).stdout.split()
     assert set(undefined) <= {"U", "memcpy", "memset"}
@@ -175,7 +175,10 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path, capsys, monkeypatch):
 
 def test_the_lines_of_the_mapping_stand_beside_what_comes_from_them():
     text = generated(TORSO, "c", BOTH, "torso")["torso.c"]
-    assert "(float)(roll * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */" in text
+    assert (
+        "(float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */"
+        in text
+    )
     assert "const float element_2 = angles[start + 1]; /* torso_state.mapping:12: " in text
 
 

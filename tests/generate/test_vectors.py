@@ -16,6 +16,8 @@ FEW = {"lcm exlcm.example_t", "corba RTC::TimedWString big", "orocos State"}
 MACHINES = {
     "s390x": ("s390x-linux-gnu-gcc", "qemu-s390x"),
     "aarch64": ("aarch64-linux-gnu-gcc", "qemu-aarch64"),
+    "armv7": ("arm-linux-gnueabihf-gcc", "qemu-arm"),
+    "riscv64": ("riscv64-linux-gnu-gcc", "qemu-riscv64"),
 }
 STATIC = ("-O2", "-static", "-ffp-contract=off")
 

@@ -28,12 +28,16 @@ def agree(kernel):
         assert opinion.verdict == "proved", (obligation.claim, obligation.stmt, opinion)
 
 
-@pytest.mark.parametrize("name", kernels.ALL)
+LONG = {"image", "a deep expression"}
+"""Kernels that z3 thinks about for half a minute."""
+
+
+@pytest.mark.parametrize("name", sorted(set(kernels.ALL) - LONG))
 def test_kernels_like_lowered_ones(name):
     agree(kernels.ALL[name])
 
 
-@pytest.mark.parametrize("name", list(ACCEPTED)[::8])
+@pytest.mark.parametrize("name", [each for each in list(ACCEPTED)[::8] if each not in LONG])
 def test_safe_kernels(name):
     agree(ACCEPTED[name])
 
@@ -76,9 +80,9 @@ def test_a_counterexample_shows_the_message():
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", ACCEPTED)
+@pytest.mark.parametrize("name", [*ACCEPTED, "image"])
 def test_every_safe_kernel(name):
-    agree(ACCEPTED[name])
+    agree((ACCEPTED | kernels.ALL)[name])
 
 
 def doubted(kernel):

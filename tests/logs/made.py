@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import struct
+
 import lcm
 from mcap.writer import CompressionType, Writer
 from rosbags.rosbag1 import Writer as BagWriter
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 import rosetta_jit as rj
+from rosetta_jit.logs.bag.writer import record, u32
 
 START = 1_700_000_000 * 10**9
 STEP = 10_000_000
@@ -70,6 +73,32 @@ def write_bag(path, count, compression="none"):
         }
         for time, topic, value in expected(count):
             writer.write(connections[topic], time, encode(topic, value))
+    return path
+
+
+def write_old_bag(path, count):
+    """A bag of version 1.2; ROS's rosbag 1.15 reads it: see `test_small_formats`."""
+    encode, out, places = encoders("ros1"), bytearray(b"#ROSBAG V1.2\n"), {"/a": [], "/b": []}
+    types = {"/a": ("t/Point", POINT), "/b": ("t/Text", TEXT)}
+    sums = {topic: rj.Decoder.of(name, encoding="ros1", schema=text).holder_type._md5sum for topic, (name, text) in types.items()}
+    header = {"op": b"\3", "index_pos": bytes(8)}
+    out += record(b" " * (4096 - len(record(b"", **header))), **header)
+    for time, topic, value in expected(count):
+        name, text = types[topic]
+        about = {"topic": topic.encode(), "type": name.encode(), "md5": sums[topic].encode()}
+        seconds, nanoseconds = divmod(time, 10**9)
+        places[topic].append((seconds, nanoseconds, len(out)))
+        if len(places[topic]) == 1:
+            out += record(b"", op=b"\1", **about, **{"def": text.encode()})
+        out += record(encode(topic, value), op=b"\2", **about, sec=u32(seconds), nsec=u32(nanoseconds))
+    index = len(out)
+    for topic, found in places.items():
+        entries = b"".join(struct.pack("<IIQ", *each) for each in found)
+        name = types[topic][0].encode()
+        out += record(entries, op=b"\4", topic=topic.encode(), type=name, ver=u32(0), count=u32(len(found)))
+    header["index_pos"] = struct.pack("<Q", index)
+    out[13 : 13 + 4096] = record(b" " * (4096 - len(record(b"", **header))), **header)
+    path.write_bytes(out)
     return path
 
 

@@ -86,7 +86,12 @@ def test_a_table_is_of_one_topic(command):
 
 @pytest.mark.parametrize(
     ("output", "options"),
-    [("out.mcap", ["--mapping", "ros1/imu.mapping"]), ("out.bag", ["--flatten", "--on-error", "skip"]), ("out.csv", ["--to", "ros2"])],
+    [
+        ("out.mcap", ["--every", "1h"]),
+        ("out/", ["--to", "ros2"]),
+        ("out.bag", ["--flatten", "--on-error", "skip"]),
+        ("out.csv", ["--to", "ros2"]),
+    ],
 )
 def test_options_that_would_do_nothing_are_refused(command, folder, output, options):
     err = command("convert", "a.bag", "-o", output, *options, code=2).err

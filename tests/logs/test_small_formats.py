@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import struct
+import subprocess
 from pathlib import Path
 
 import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import LogError
+
+from .made import expected, time_of, values, write_old_bag
 
 RECORDINGS = Path(rj.__file__).parent / "demo" / "recordings"
 
@@ -108,3 +111,43 @@ def test_tide(tmp_path):
     found.clear()
     assert len(list(rj.open(path, on_problem=found.append).messages(raw=True))) == len(entries)
     assert [each.code for each in found] == ["log-damaged"]
+
+
+def test_bags_of_version_1_2(tmp_path):
+    """Where it is installed, ROS's own rosbag 1.15 reads the same from what the test writes."""
+    path = write_old_bag(tmp_path / "old.bag", 30)
+    log = rj.open(path)
+    assert values(log.messages()) == list(expected(30))
+    assert (log.facts["version"], log["/a"].type, log["/a"].count) == ("1.2", "t/Point", 30)
+    assert log["/a"]["x"].tolist() == [number / 4 for number in range(30)]
+    found = log.messages(["/b"], start=time_of(10), raw=True)
+    assert [each.time for each in found] == [time_of(number) + 1 for number in range(10, 30, 5)]
+    theirs = subprocess.run(["/usr/bin/python3", "-c", THEIRS, path], capture_output=True, text=True, check=False)
+    if theirs.returncode == 0:
+        assert theirs.stdout.splitlines() == [
+            f"{time} {topic} {value[0] if topic == '/a' else value}" for time, topic, value in expected(30)
+        ]
+
+
+THEIRS = """
+import rosbag, sys
+with rosbag.Bag(sys.argv[1]) as bag:
+    assert bag.version == 102
+    for topic, message, time in bag._reader.read_messages(None, None, None, None, False):
+        print(time.to_nsec(), topic, message.x if topic == "/a" else message.data)
+"""
+
+
+def test_damaged_bags_of_version_1_2(tmp_path):
+    """Cut anywhere, what is whole before is read."""
+    data = write_old_bag(tmp_path / "old.bag", 6).read_bytes()
+    everything, before = list(rj.open(tmp_path / "old.bag").messages(raw=True)), 0
+    path = tmp_path / "cut.bag"
+    for size in range(13, len(data), 37):
+        path.write_bytes(data[:size])
+        found = []
+        messages = list(rj.open(path, on_problem=found.append).messages(raw=True))
+        assert messages == everything[: len(messages)]
+        assert len(messages) >= before
+        before = len(messages)
+    assert before == len(everything)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, statements
 from rosetta_jit.backends.python.expr import FLOATS, FORMATS, Names, expression, location, part
 from rosetta_jit.kernel.host import NO_FUNCTIONS
+from rosetta_jit.kernel.interpret import runnable as interpreted
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Address,
@@ -82,6 +83,14 @@ def compile_python(kernel: Kernel, functions: Functions = NO_FUNCTIONS) -> Calla
     scope: dict[str, Any] = {"host": functions}
     exec(compile(python_text(kernel), f"<kernel {kernel.name!a}>", "exec"), scope)  # noqa: S102 - our own text, of mangled names and numbers
     return scope["kernel"]
+
+
+def runnable(kernel: Kernel, functions: Functions) -> Callable[..., int]:
+    """The same; where Python does not nest so deep, the interpreter, which does what the text would."""
+    try:
+        return compile_python(kernel, functions)
+    except SyntaxError:
+        return interpreted(kernel, functions)
 
 
 def python_text(kernel: Kernel) -> str:

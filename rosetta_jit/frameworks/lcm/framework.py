@@ -9,6 +9,7 @@ HERE = "rosetta_jit.frameworks.lcm"
 FRAMEWORK = Framework(
     "lcm",
     features=f"{HERE}.features:PROBES",
+    definition=f"{HERE}.definition:definition",
     idl={".lcm": f"{HERE}.idl:parse"},
     encodings={"lcm": f"{HERE}.encoding:encode_type"},
     manners=f"{HERE}.manners:LCM_GEN",

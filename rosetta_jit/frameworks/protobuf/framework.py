@@ -10,6 +10,7 @@ ENCODING = f"{HERE}.encoding:encode_type"
 FRAMEWORK = Framework(
     "protobuf",
     features=f"{HERE}.features:PROBES",
+    definition=f"{HERE}.definition:definition",
     idl={".proto": f"{HERE}.idl:parse"},
     encodings={"protobuf": ENCODING, "protobuf-partial": ENCODING},
     manners=f"{HERE}.manners:PROTOBUF",

@@ -9,6 +9,7 @@ HERE = "rosetta_jit.frameworks.ros1"
 FRAMEWORK = Framework(
     "ros1",
     features=f"{HERE}.features:PROBES",
+    definition=f"{HERE}.definition:definition",
     texts="rosetta_jit.frameworks.ros.texts:file_of",
     idl=dict.fromkeys((".msg", ".srv", ".action"), f"{HERE}.idl:parse"),
     several={

@@ -21,6 +21,7 @@ RMW = {
 FRAMEWORK = Framework(
     "ros2",
     features=f"{HERE}.features:PROBES",
+    definition=f"{HERE}.definition:definition",
     texts="rosetta_jit.frameworks.ros.texts:file_of",
     idl=dict.fromkeys((".msg", ".srv", ".action"), f"{HERE}.idl:parse") | {".idl": f"{HERE}.idl:parse_idl"},
     several={

@@ -10,6 +10,7 @@ ENCODING = f"{HERE}.encoding:encode_type"
 FRAMEWORK = Framework(
     "yarp",
     features=f"{HERE}.features:PROBES",
+    definition=f"{HERE}.definition:definition",
     idl={".bottle-schema": f"{HERE}.schema:parse", ".thrift": f"{HERE}.thrift:parse"},
     manners=f"{HERE}.manners:BOTTLE",
     transcoding=f"{HERE}.transcoding:tree",

@@ -60,7 +60,8 @@ class Scope:
     """What the printers of a function share: names, how lanes are reached, and what they find that the function needs.
 
     ``parameters`` are those that it must be given, ``touched`` the lanes whose rows it reads or writes, ``counted`` those whose rows in use
-    it counts, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes that its kernel uses.
+    it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes
+    that its kernel uses.
     """
 
     locals: Namespace
@@ -70,6 +71,7 @@ class Scope:
     parameters: set[str] = field(default_factory=set[str])
     touched: set[int] = field(default_factory=set[int])
     counted: set[int] = field(default_factory=set[int])
+    moved: set[int] = field(default_factory=set[int])
 
     def calls(self, function: str) -> str:
         """A function of the support, which will be part of the file."""

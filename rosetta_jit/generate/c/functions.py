@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.expressions import Scope, bare, expression
-from rosetta_jit.generate.c.statements import Callable, Function, leaves, print_block, reached, read_names
+from rosetta_jit.generate.c.statements import Callable, Function, leaves, moved, print_block, reached, read_names
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.ir import Advance
@@ -89,7 +89,8 @@ def _attempt(writer: Writer, role: str, kernel: Kernel, number: int, function: F
     for lane in sorted(scope.counted):
         start = _used_at_start(kernel, scope.lanes, lane)
         writer.line(f"    {'' if lane in advanced else 'const '}int64_t {scope.lanes.used(lane)} = {start};")
-    writer.lines += [*function.writer.lines, "}"]
+    needless = {moved(scope.lanes, lane) for lane in scope.moved - scope.touched}
+    writer.lines += [*(line for line in function.writer.lines if line.strip() not in needless), "}"]
     return Attempt(name, parameters)
 
 
@@ -129,12 +130,13 @@ def _head(writer: Writer, head: str, scope: Scope, direction: Direction) -> None
     writer.line("{")
     for lane in sorted(scope.touched):
         constant = "const " if lane == 0 and direction != "decode" else ""
-        writer.line(f"    {constant}{scope.lanes.type(lane)} *restrict const {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
+        fixed = "" if lane in scope.moved else " const"
+        writer.line(f"    {constant}{scope.lanes.type(lane)} *restrict{fixed} {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
 
 
 def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:
     kinds = {
-        "holder": f"{'' if direction == 'decode' else 'const '}{lanes.prefix}_holder *holder",
+        "holder": f"{'' if direction == 'decode' or lanes.dialect == 'c++' else 'const '}{lanes.prefix}_holder *holder",
         "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
         "end": "int64_t end",
         "failure": "struct failure *failure",

@@ -40,7 +40,7 @@ def header(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], hidden: int) -
         name=unit.name,
         guard=f"{unit.name.upper()}_H",
         statuses="\n".join(f"    {unit.name.upper()}_{status.upper()} = {number}," for number, status in enumerate(STATUSES)),
-        structs="\n\n".join(_struct(unit.name, lanes, struct) for struct in structs),
+        structs="\n\n".join(struct_text(unit.name, lanes, struct) for struct in structs),
         root=lanes.type(0),
         members="\n".join(_members(unit, lanes, hidden)),
         declarations="\n\n".join(_calls(unit)),
@@ -64,11 +64,12 @@ def _calls(unit: Unit) -> list[str]:
     return called
 
 
-def _struct(name: str, lanes: Lanes, struct: Struct) -> str:
+def struct_text(name: str, lanes: Lanes, struct: Struct, *, cases: bool = True) -> str:
+    """The struct of a row; ``cases``: with an enum of those of a union."""
     lines = [comment(struct.shown), f"typedef struct {struct.identifier} {{"]
     lines += [f"    {_member(name, lanes, member)}" for member in struct.members]
     lines.append(f"}} {struct.identifier};")
-    if struct.cases:
+    if struct.cases and cases:
         lines += ["", "enum {", f"    {struct.identifier}_none = 0,"]
         lines += [f"    {struct.identifier}_is_{case} = {number}," for number, case in enumerate(struct.cases, 1)]
         lines.append("};")

@@ -8,7 +8,7 @@ A `Lane` whose element is None has no fields that C knows: it is bytes.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.c.rows import SpanType, Struct, path_to
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 OWN_WORDS = frozenset({"message", "now", "number", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem"})
 """What the functions call their parameters, and the holder its other members."""
+
+Dialect = Literal["c", "c++"]
+"""What compiles the functions."""
 
 C_ROWS = {**C_TYPES, "bool": "uint8_t"}
 """Types of scalars in rows."""
@@ -39,11 +42,12 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden."""
+    """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves."""
 
     prefix: str
     all: tuple[Lane, ...]
     own: int
+    dialect: Dialect = "c"
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""
@@ -69,6 +73,13 @@ class Lanes:
         if lane >= self.own:
             return f"holder->scratch[{lane - self.own}].bytes"
         return "&holder->message" if lane == 0 else f"holder->{self.rows(lane)}.rows"
+
+    def grown(self, lane: int, missing: str) -> str | None:
+        """The call that makes room for rows, and says whether it could; None where the caller's memory is all there is."""
+        if self.dialect == "c":
+            return None
+        room = f"holder->scratch[{lane - self.own}]" if lane >= self.own else f"holder->{self.rows(lane)}"
+        return f"{room}.grow({missing}, holder->most)"
 
     def type(self, lane: int) -> str:
         """The C type of a row."""

@@ -14,13 +14,28 @@ from rosetta_jit.generate.c.rows import Structs, elements_of
 from rosetta_jit.generate.c.source import source
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.model.layout import UNKNOWN
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.generate.c.functions import Printed
+    from rosetta_jit.generate.c.lanes import Dialect
+    from rosetta_jit.generate.c.rows import Struct
     from rosetta_jit.generate.unit import Role, Unit
     from rosetta_jit.kernel.ir import Kernel
+
+    Print = Callable[[Kernel, Lanes, Role], Printed]
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What all files of a unit are made of; ``hidden`` is how many hidden lanes the kernels use."""
+
+    lanes: Lanes
+    structs: tuple[Struct, ...]
+    printed: Mapping[Role, Printed]
+    hidden: int
 
 
 def files(unit: Unit) -> dict[str, str]:
@@ -28,22 +43,27 @@ def files(unit: Unit) -> dict[str, str]:
     return as_c(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())))
 
 
-def as_c(unit: Unit, print_function: Callable[[Kernel, Lanes, Role], Printed]) -> dict[str, str]:
+def as_c(unit: Unit, print_function: Print) -> dict[str, str]:
     """Header and source around functions that a printer makes for each kernel."""
+    parts = parts_of(unit, print_function)
+    return {
+        f"{unit.name}.h": header(unit, parts.lanes, parts.structs, parts.hidden),
+        f"{unit.name}.c": source(unit, parts.lanes, parts.structs, parts.printed),
+    }
+
+
+def parts_of(unit: Unit, print_function: Print, dialect: Dialect = "c") -> Parts:
+    """The structs, the lanes and the printed kernels of a unit."""
     layout = unit.layout
     structs = Structs(unit.name, Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS}), {})
     named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in layout.lanes])
     elements = elements_of(layout, structs, tuple(name for name, _ in named))
     own = [Lane(*names, lane.stride, element) for names, lane, element in zip(named, layout.lanes, elements, strict=True)]
-    lanes = Lanes(unit.name, tuple(own), len(own))
+    lanes = Lanes(unit.name, tuple(own), len(own), dialect)
     printed: dict[Role, Printed] = {
         role: print_function(kernel, replace(lanes, all=(*own, *hidden_lanes(kernel.strides[len(own) :]))), role)
         for role, kernel in unit.kernels.items()
     }
     hidden = 1 + max((number for each in printed.values() for number in each.hidden), default=-1)
     lanes = replace(lanes, all=(*own, *hidden_lanes([1] * hidden)))
-    made = tuple(structs.made.values())
-    return {
-        f"{unit.name}.h": header(unit, lanes, made, hidden),
-        f"{unit.name}.c": source(unit, lanes, made, printed),
-    }
+    return Parts(lanes, tuple(structs.made.values()), printed, hidden)

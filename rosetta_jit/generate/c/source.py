@@ -110,7 +110,7 @@ def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mappi
         status=unit.name.upper(),
         includes=_includes(unit, called),
         asserts="\n".join(f'_Static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in structs),
-        support=support(_without_unused(called, printed)),
+        support=support(without_unused(called, printed)),
         lanes=",\n    ".join([*(literal(_shown(each.name)) for each in unit.layout.lanes), *_scratch(lanes)]),
         said=SAID if any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites) else "",
         functions="\n\n".join([clear(unit.name, lanes), REACH, *functions]),
@@ -119,7 +119,8 @@ def source(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], printed: Mappi
     return re.sub(r"\n{3,}", "\n\n", text)
 
 
-def _without_unused(called: set[str], printed: Mapping[Role, Printed]) -> set[str]:
+def without_unused(called: set[str], printed: Mapping[Role, Printed]) -> set[str]:
+    """The functions that the printed ones call."""
     used = {name for each in printed.values() for name in each.support}
     return {each for each in called if each in used or each == "failure"}
 
@@ -142,22 +143,23 @@ def _includes(unit: Unit, called: set[str]) -> str:
 def _call(unit: Unit, role: Role, printed: Mapping[Role, Printed]) -> str:
     """The function of the header that runs a kernel."""
     attempts = printed[role].attempts
-    words = {"name": unit.name, "role": role, "status": unit.name.upper(), "first": _run(attempts[0], "failure")}
+    words = {"name": unit.name, "role": role, "status": unit.name.upper(), "first": run(attempts[0], "failure")}
     taken = {parameter for each in attempts for parameter in each.parameters}
     needed = {"decode": ("bytes",), "borrow": ("bytes",), "encode": ("bytes", "end"), "size": ()}[role]
     unused = "".join(f"    (void){each};\n" for each in needed if each not in taken)
     match role:
         case "decode" | "borrow":
-            others = "".join(ANOTHER.format(call=_run(each, "other")) for each in attempts[1:])
+            others = "".join(ANOTHER.format(call=run(each, "other")) for each in attempts[1:])
             return DECODE.format(**words, others=others, unused=unused)
         case "encode" | "size":
             if role == "encode" and printed[role].hidden:
-                words |= {"measure": _run(printed["size"].attempts[0], "failure"), "no_room": str(len(printed[role].sites))}
+                words |= {"measure": run(printed["size"].attempts[0], "failure"), "no_room": str(len(printed[role].sites))}
                 return MEASURED.format(**words, status_check=STATUS_CHECK.format(**words))
             return (ENCODE if role == "encode" else SIZE).format(**words, status_check=STATUS_CHECK.format(**words), unused=unused)
 
 
-def _run(attempt: Attempt, failure: str) -> str:
+def run(attempt: Attempt, failure: str) -> str:
+    """The call of a printed function."""
     given = (f"&{failure}" if each == "failure" else each for each in attempt.parameters)
     return f"{attempt.name}({', '.join(given)})"
 
@@ -179,6 +181,11 @@ def _table(role: Role, unit: Unit, lanes: Lanes, named: tuple[int, ...]) -> str:
 
 def _site(role: Role, number: int, site: Site, unit: Unit, lanes: Lanes) -> str:
     status = "FULL" if number == 0 else site.kind.upper()
+    return f"{{{unit.name.upper()}_{status}, {site_text(role, number, site, lanes)}}}"
+
+
+def site_text(role: Role, number: int, site: Site, lanes: Lanes, nothing: str = "NULL") -> str:
+    """A row of the table of sites behind its status."""
     scratch = -1 if site.detail_lane is None else site.detail_lane - lanes.own
-    parts = f"{len(site.parts)}, {role}_parts_{number}" if site.parts else "0, NULL"
-    return f"{{{unit.name.upper()}_{status}, {literal(site.path)}, {literal(site.detail)}, {literal(site.line)}, {scratch}, {parts}}}"
+    parts = f"{len(site.parts)}, {role}_parts_{number}" if site.parts else f"0, {nothing}"
+    return f"{literal(site.path)}, {literal(site.detail)}, {literal(site.line)}, {scratch}, {parts}"

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping, Sequence
 
     from rosetta_jit.generate.c.expressions import Scope
+    from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.kernel.ir import Effect, Site
 
@@ -264,7 +265,20 @@ def _rows(function: Function, stmt: Reserve | Advance) -> None:
         missing = f"{expression(scope, stmt.count)} - ({free})"
         if stmt.lane >= lanes.own:
             missing = f"{scope.calls('bytes_of')}({missing}, {lanes.stride(stmt.lane)})"
-        function.line(f"return {scope.calls('full')}(failure, {stmt.lane}, {missing});")
+        fails = f"return {scope.calls('full')}(failure, {stmt.lane}, {missing});"
+        grown = lanes.grown(stmt.lane, missing)
+        if grown is None:
+            function.line(fails)
+            return
+        with function.block(f"if (!{grown})"):
+            function.line(fails)
+        scope.moved.add(stmt.lane)
+        function.line(moved(lanes, stmt.lane))
+
+
+def moved(lanes: Lanes, lane: int) -> str:
+    """The statement that finds the rows of a lane which has grown."""
+    return f"{lanes.rows(lane)} = {lanes.member(lane)};"
 
 
 def _nested(function: Function, stmt: For | While | If | Switch) -> None:

@@ -351,6 +351,11 @@ static bool is_text(const void *memory, int64_t start, int64_t size)
                 at += 8;
                 continue;
             }
+        } else if (size >= 8) { /* the last eight, some of which have been looked at */
+            memcpy(&eight, text + size - 8, sizeof eight);
+            if ((eight & UINT64_C(0x8080808080808080)) == 0) {
+                return true;
+            }
         }
         const unsigned char first = text[at];
         if (first < 0x80) {

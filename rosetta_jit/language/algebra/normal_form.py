@@ -10,7 +10,6 @@ from rosetta_jit.language.typed import (
     Access,
     Assign,
     Binary,
-    BytesCall,
     Call,
     Choice,
     Const,
@@ -28,7 +27,6 @@ from rosetta_jit.language.typed import (
     Reject,
     Search,
     SetLength,
-    TextCall,
     Unary,
     When,
 )
@@ -53,7 +51,7 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, left=change(left), right=change(right))
         case Nearest(operand=operand, check=check):
             return replace(expr, operand=change(operand), check=replace(check, left=change(check.left), right=change(check.right)))
-        case Call(arguments=arguments) | BytesCall(arguments=arguments) | TextCall(arguments=arguments):
+        case Call(arguments=arguments):
             return replace(expr, arguments=tuple(map(change, arguments)))
         case Choice(cases, otherwise):
             pairs = tuple((change(condition), change(value)) for condition, value in cases)

@@ -18,7 +18,6 @@ from rosetta_jit.language.places import shown_shape
 from rosetta_jit.language.typed import (
     Access,
     Binary,
-    BytesCall,
     Call,
     Choice,
     Const,
@@ -27,15 +26,12 @@ from rosetta_jit.language.typed import (
     Given,
     Has,
     HostCall,
-    ImageCall,
     IsText,
     LenOf,
     Listed,
     Local,
     Nearest,
     Search,
-    TextCall,
-    Told,
     Unary,
 )
 from rosetta_jit.model.expr import Literal
@@ -45,7 +41,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosetta_jit.language.typed import Asked, Expr, Place, Step
+    from rosetta_jit.language.typed import Expr, Place, Step
 
 MAX_SIZE = 1000
 """Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
@@ -184,10 +180,10 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return _arithmetic(operator, polynomial_of(left), polynomial_of(right))
         case Convert() | Nearest():
             return _converted(expr)
-        case Call(function, arguments) | TextCall(function, arguments) | BytesCall(function, arguments):
+        case Call(function, arguments):
             return atom(function, *map(polynomial_of, arguments))
-        case Told() | HostCall() | ImageCall():
-            return _asked(expr)
+        case HostCall(function, arguments):
+            return atom(f"{function}()", *map(polynomial_of, arguments))
         case IsText(place, text):
             return atom(f"{shown_shape(place.steps)} == {text!r}", *_indices(place.steps))
         case Has(place):
@@ -206,18 +202,6 @@ def _converted(value: Convert | Nearest) -> Polynomial:
     rule = value.rule if isinstance(value, Convert) else "solved"
     keeps = isinstance(value.operand.type, Int) and rule in {"widen", "exact"}
     return polynomial_of(value.operand) if keeps else atom(f"{describe(value.type)} {rule}", polynomial_of(value.operand))
-
-
-def _asked(asked: Asked) -> Polynomial:
-    match asked:
-        case Told(what):
-            return atom(f"{what}()")
-        case HostCall(function, arguments):
-            return atom(f"{function}()", *map(polynomial_of, arguments))
-        case ImageCall(function, image, _, _, numbers):
-            return atom(function, *map(polynomial_of, (image, *numbers)))
-        case _:
-            assert_never(asked)
 
 
 def _chosen(expr: Choice | Listed | Given) -> Polynomial:

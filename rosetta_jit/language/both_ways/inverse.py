@@ -10,14 +10,11 @@
 | `x / c`           | value * c, of floats              |
 | `x ^ c`           | value ^ c                         |
 | `-x`, `not x`     | -value, not value                 |
-| `radians(x)`      | degrees(value), and the reverse   |
 | `float32(x)` …    | the value, as the field holds it  |
-| `divide(x, c)`    | value * c                         |
-| `floor_divide(x, c)` | value * c                      |
 | `table(x) {a = b}`| table(value) {b = a}              |
 
-Those of texts stand in `language.both_ways.inverse_texts`, those of arrays in `language.arrays.layouts`, and those of several fields in
-`language.both_ways.inverse_parts`.
+What undoes a function stands in its record (`language.function`). Arrays are in `language.arrays.layouts`, and expressions of several
+fields in `language.both_ways.inverse_parts`.
 """
 
 from __future__ import annotations
@@ -26,11 +23,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
-from rosetta_jit.language.both_ways.inverse_texts import opposite, without
+from rosetta_jit.language.both_ways.inverse_texts import without
 from rosetta_jit.language.folding import folded, is_constant
-from rosetta_jit.language.functions.calls import FUNCTIONS
-from rosetta_jit.language.functions.images import IMAGE_FUNCTIONS
-from rosetta_jit.language.functions.texts import NAMES
+from rosetta_jit.language.function import SEVERAL, Affine, Function, written
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Len, Literal, Name, Nearest, Path, Unary
 from rosetta_jit.model.walk import parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -42,8 +37,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.walk import Field
 
 CONVERSIONS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float32", "float64", "bool")
-BUILT_IN = frozenset((*FUNCTIONS, *NAMES, *IMAGE_FUNCTIONS, "has", "len"))
-OPPOSITE = {"radians": "degrees", "degrees": "radians"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +94,8 @@ def _is_rounding(part: Expr) -> bool:
         case Binary(operator="+" | "-" | "*" | "/"):
             return True
         case Call(function):
-            return function in OPPOSITE or function == "divide"
+            found = written(function)
+            return found is not None and isinstance(found.law, Affine) and found.law.rounds
         case _:
             return False
 
@@ -142,24 +136,30 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return operand, Unary(operator, value, span)
         case Binary():
             return _operation(expr, value)
-        case Call(function, (argument, *_), span) if function in OPPOSITE:
-            return argument, Call(OPPOSITE[function], (value,), span)
         case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
             return argument, value
-        case Call("divide" | "floor_divide", (argument, divisor), span) if not fields_in(divisor):
-            return argument, Binary("*", value, divisor, span)
         case Call(function, (array, *_)) if function in ARGUMENTS:
             return array, put_back(expr, value)
-        case Call() if (found := opposite(expr, value)) is not None:
-            return found
-        case Call(function) if function in BUILT_IN:
-            raise NoInverseError(expr, f"`{function}` gives the same for several values")
+        case Call(function) if (known := written(function)) is not None:
+            return _undone(expr, value, known)
+        case Call("has"):
+            raise NoInverseError(expr, f"`has` {SEVERAL}")
         case Call(function):
             raise NoInverseError(expr, f"nothing says what the opposite of `{function}` is")
         case Choice():
             return _table(expr, value)
         case _:
             raise NoInverseError(expr, "it has no field")
+
+
+def _undone(call: Call, value: Expr, function: Function) -> tuple[Expr, Expr]:
+    """The argument of a call that has the field, and what that must be."""
+    if isinstance(function.inverse, str):
+        raise NoInverseError(call, f"`{call.function}` {function.inverse}")
+    found = function.inverse(call, value)
+    if found is None or any(fields_in(each) for each in call.arguments if each is not found[0]):
+        raise NoInverseError(call, f"`{call.function}` {SEVERAL}")
+    return found
 
 
 def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:

@@ -21,8 +21,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve
-from rosetta_jit.language.both_ways.inverse_texts import MOMENT
 from rosetta_jit.language.folding import folded
+from rosetta_jit.language.function import functions, written
 from rosetta_jit.model.expr import Binary, Call, Len, Literal, Path
 from rosetta_jit.model.walk import parts, rebuilt
 from rosetta_jit.startup.dataclass import dataclass
@@ -30,14 +30,9 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosetta_jit.language.function import Function
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.source import Span
-
-SECOND = 10**9
-"""In nanoseconds."""
-
-PARTS = {"floor_divide": "modulo", "seconds": "fraction"}
-"""The function that gives what another one leaves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,10 +76,9 @@ def _part(expr: Expr, value: Expr) -> Parted:
     if len(fields_in(expr)) == 1:
         return Parted((solve(expr, value),), ())
     match expr:
-        case Call("iso8601" | "timestamp", (first, second), span):
-            return _both(first, Call("seconds", (value,), span), second, Call("fraction", (value,), span))
-        case Call("nanoseconds", (first, second), span):
-            return _both(first, _quotient(value, SECOND, span), second, _rest(value, SECOND, span))
+        case Call(function, (_, _)) if (known := written(function)) is not None and known.split is not None:
+            (first, its), (second, rest) = known.split(expr, value)
+            return _both(first, its, second, rest)
         case Call(function, (argument, *_)) if function in CONVERSIONS:
             return _part(argument, value if function != "uint64" else Call("int64", (value,), expr.span))  # parts are computed in int64
         case Binary("+" | "-"):
@@ -168,15 +162,14 @@ def _rest(value: Expr, by: int, span: Span | None) -> Expr:
 
 
 def taken_part(expr: Expr) -> Call | None:
-    """The call in an expression that gives a part of its field, of those in `PARTS`, with the rest beside it."""
-    calls = (each for each in parts(expr) if isinstance(each, Call) and each.function in {*PARTS, *PARTS.values()})
-    return next((call for call in calls if _divisor(call) is not None), None)
+    """The call in an expression that gives a part of its field, with another function for the rest."""
+    return next((each for each in parts(expr) if isinstance(each, Call) and below(each) is not None), None)
 
 
 def rest_of(call: Call) -> Call | None:
     """The call that leaves what this one gives; None where there is none."""
-    whole = next((name for name, rest in PARTS.items() if rest == call.function), None)
-    return None if whole is None else replace(plain(call), function=whole)
+    found = _whole_of(call)
+    return None if found is None or found.name == call.function else replace(plain(call), function=found.name)
 
 
 def plain(call: Call) -> Call:
@@ -195,12 +188,10 @@ def put_together(first: Expr, its: Expr, second: Expr, rest: Expr) -> tuple[Solu
     assert call is not None
     assert other is not None
     high, low = _until(first, its, call), _until(second, rest, other)
-    if call.function == "seconds":
-        return solve(call.arguments[0], Call(MOMENT, (high, low), call.span)), None
-    divisor = _divisor(call)
-    assert divisor is not None
-    product = Binary("*", high, Literal(divisor, call.span), call.span)
-    return solve(call.arguments[0], Binary("+", product, low, call.span)), Digit(low, divisor)
+    function, limit = _whole_of(call), below(call)
+    assert function is not None
+    assert function.whole is not None
+    return solve(call.arguments[0], function.whole.joined(call, high, low)), Digit(low, limit) if limit else None
 
 
 def _until(expr: Expr, value: Expr, call: Call) -> Expr:
@@ -215,13 +206,15 @@ def _marked(expr: Expr, call: Call, mark: Path) -> Expr:
     return mark if expr is call else rebuilt(expr, lambda part: _marked(part, call, mark))
 
 
-def _divisor(call: Call) -> int | None:
-    """By what a part is taken; 0 where it is a part by itself."""
-    match call.function, call.arguments:
-        case (("floor_divide" | "modulo"), (_, divisor)):
-            known = folded(divisor)
-            return known.value if isinstance(known, Literal) and type(known.value) is int and known.value > 0 else None
-        case (("seconds" | "fraction"), (_,)):
-            return 0
-        case _:
-            return None
+def below(call: Call) -> int | None:
+    """What the rest of a division is less than; 0 where that goes without saying, None where a call is no part of a value."""
+    function = _whole_of(call)
+    return None if function is None or function.whole is None else function.whole.below(call)
+
+
+def _whole_of(call: Call) -> Function | None:
+    """The record of two functions that together say a number, of which one is called."""
+    known = written(call.function)
+    if known is None or known.whole is not None:
+        return known
+    return next((each for each in functions().values() if each.whole is not None and each.whole.rest == known.name), None)

@@ -1,19 +1,7 @@
-"""Turn functions of texts round.
+"""Texts in relations: the sum of a text that is written down, and the calls whose function depends on the type of the field.
 
-| expression           | its field                                              |
-|----------------------|--------------------------------------------------------|
-| `text(n)`            | the number that is written, as the field holds it      |
-| `integer(s)` `number(s)` | `text(value)`                                      |
-| `text(b, "utf-8")`   | `bytes(value, "utf-8")`, and the reverse               |
-| `until_nul(b)`       | the text, NUL behind it where the field has one size   |
-| `padded(s, n)`       | `until_nul(value)`                                     |
-| `"a" + s`, `s + "a"` | `behind(value, "a")`, `before(value, "a")`, and the reverse |
-| `join(texts, "by")`  | `split(value, "by")`, and the reverse                  |
-| `iso8601(ns)` `timestamp(ns)` | `nanoseconds(value)`                          |
-| `nanoseconds(s)`     | `iso8601(value)`, or `timestamp(value)` for a float    |
-| `seconds(s)`         | `iso8601(value, 0)`, or `timestamp(value, 0)`          |
-
-Three of these depend on the type of the field, which `language.resolve.rules` knows: it finds a call of `WRITTEN`, `FILLED` or `MOMENT`.
+The inverse of `text(n)` is `integer` or `number`, that of `nanoseconds(s)` is `iso8601` or `timestamp`, and that of `until_nul(b)` fills a
+field that has one size. The type is known when rules are resolved: until then such a call has one of the names below.
 """
 
 from __future__ import annotations
@@ -34,38 +22,6 @@ WRITTEN, FILLED, MOMENT = "(written)", "(filled)", "(moment)"
 
 SHOWN = {WRITTEN: "number", FILLED: "padded", MOMENT: "iso8601"}
 """What they are called where the type of the field does not matter."""
-
-
-def opposite(call: Call, value: Expr) -> tuple[Expr, Expr] | None:
-    """What a call of a function of texts is applied to, and what that must be; None where several texts give the same."""
-    span = call.span
-    match call.function, call.arguments:
-        case "text", (inner, Literal(str()) as encoding):
-            return inner, Call("bytes", (value, encoding), span)
-        case "text", (inner, *_):
-            return inner, Call(WRITTEN, (value,), span)
-        case (("integer" | "number"), (inner,)):
-            return inner, Call("text", (value,), span)
-        case "bytes", (inner, encoding):
-            return inner, Call("text", (value, encoding), span)
-        case "until_nul", (inner,):
-            return inner, Call(FILLED, (value,), span)
-        case "padded", (inner, _):
-            return inner, Call("until_nul", (value,), span)
-        case "behind", (inner, start):
-            return inner, Binary("+", start, value, span)
-        case "before", (inner, end):
-            return inner, Binary("+", value, end, span)
-        case (("join" | "split") as function, (inner, separator)):
-            return inner, Call("split" if function == "join" else "join", (value, separator), span)
-        case (("iso8601" | "timestamp"), (inner,)):
-            return inner, Call("nanoseconds", (value,), span)
-        case "nanoseconds", (inner,):
-            return inner, Call(MOMENT, (value,), span)
-        case "seconds", (inner,):
-            return inner, Call(MOMENT, (value, Literal(0, span)), span)
-        case _:
-            return None
 
 
 def without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:

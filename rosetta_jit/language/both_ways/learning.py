@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.array_relations import equal_lengths
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
-from rosetta_jit.language.both_ways.inverse_parts import part, plain, put_together, rest_of, taken_part
+from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
+from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation
 from rosetta_jit.model.walk import Field, fields_of, parts, rebuilt
@@ -52,7 +53,7 @@ def _relations(rules: tuple[Rule, ...], loops: Loops) -> list[tuple[Relation, Lo
 def _is_left(rule: Relation, is_assigned: Callable[[Field], bool]) -> bool:
     """Whether a relation to a part of a field is left to the rules to pack, which set it."""
     call = taken_part(rule.value)
-    return call is not None and call.function == "floor_divide" and any(map(is_assigned, fields_in(call)))
+    return call is not None and rest_of(call) is None and bool(below(call)) and any(map(is_assigned, fields_in(call)))
 
 
 def _loss(relation: tuple[Relation, Loops]) -> int:
@@ -64,10 +65,12 @@ def _loss(relation: tuple[Relation, Loops]) -> int:
 def _is_reversible(part: Expr) -> bool:
     """Whether an operation gives another value for each, or refuses it, whatever the types."""
     match part:
-        case Path() | Len() | Literal() | Name() | Unary() | Binary(operator="+" | "-" | "^") | Call(function="divide"):
+        case Path() | Len() | Literal() | Name() | Unary() | Binary(operator="+" | "-" | "^"):
             return True
         case Call(function="int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64", arguments=(_,)):
             return True
+        case Call(function) if (known := written(function)) is not None:
+            return isinstance(known.law, Affine) and known.law.exact
         case _:
             return False
 

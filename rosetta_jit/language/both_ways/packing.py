@@ -20,7 +20,7 @@ from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in,
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
 from rosetta_jit.language.folding import FALSE, TRUE, folded
-from rosetta_jit.language.functions.calls import TOLD
+from rosetta_jit.language.function import written
 from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -126,7 +126,7 @@ class Packing:
         return (replace(rule, start=start, stop=stop, body=body),) if body else ()
 
     def relation(self, rule: Relation, loops: Loops) -> tuple[Rule, ...]:
-        told = next((part for part in parts(rule.value) if isinstance(part, Call) and part.function in TOLD), None)
+        told = next((part for part in parts(rule.value) if isinstance(part, Call) and _changes(part)), None)
         if told is not None:
             self.problems.append(words.changes(told.span, told.function))
             return ()
@@ -275,6 +275,12 @@ class Packing:
     def is_assigned(self, place: Field) -> bool:
         """The same, where a length alone does not count."""
         return _is_among(place, self.assigned)
+
+
+def _changes(call: Call) -> bool:
+    """Whether a call gives another value for each message."""
+    known = written(call.function)
+    return known is not None and known.changes
 
 
 def _is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:

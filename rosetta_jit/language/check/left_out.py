@@ -122,12 +122,9 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
             yield from _in(left)
             yield from _in(right)
-        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.TextCall(_, arguments) | typed.BytesCall(_, arguments):
+        case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.Given(_, arguments):
             for argument in arguments:
                 yield from _in(argument)
-        case typed.ImageCall(_, image, _, _, numbers):
-            for part in (image, *numbers):
-                yield from _in(part)
         case typed.Choice(cases, otherwise, pieces=pieces):
             for part in (*(part for case in cases for part in case), *pieces):
                 yield from _in(part)
@@ -136,10 +133,7 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Listed(items, index):
             for part in (*items, index):
                 yield from _in(part)
-        case typed.Given(_, arguments):
-            for argument in arguments:
-                yield from _in(argument)
-        case typed.Const() | typed.Local() | typed.Told():
+        case typed.Const() | typed.Local():
             pass
 
 

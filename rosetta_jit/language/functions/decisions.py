@@ -38,10 +38,15 @@ MAX_CASES = 500
 def type_condition(expr: model.Expr, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """An expression that must be true or false."""
     typed = type_expr(expr, scope)
-    if typed is not None and not isinstance(typed.type, Bool):
+    return typed if typed is not None and is_condition(typed, scope) else None
+
+
+def is_condition(typed: Expr, scope: Scope) -> bool:
+    """Whether an expression is true or false; reported where it is not."""
+    if not isinstance(typed.type, Bool):
         scope.problems.append(words.condition_needed(typed.span, describe(typed.type)))
-        return None
-    return typed
+        return False
+    return True
 
 
 def type_not(expr: model.Unary, scope: Scope, type_expr: TypeExpr) -> Expr | None:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import functions as words
 from rosetta_jit.language.conversions import convert, describe, word_for
-from rosetta_jit.language.functions.calls import FLOATS, FUNCTIONS, INTEGERS, named_type
-from rosetta_jit.language.functions.images import IMAGE_FUNCTIONS
+from rosetta_jit.language.function import names
+from rosetta_jit.language.functions.calls import FLOATS, INTEGERS, named_type
 from rosetta_jit.language.typed import HostCall
 from rosetta_jit.language.uses import Signature
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 SCALARS = (*INTEGERS, *FLOATS, "bool")
-TAKEN = frozenset((*FUNCTIONS, *IMAGE_FUNCTIONS, *SCALARS))
 MAX_PARAMETERS = 32
 
 
@@ -48,7 +47,7 @@ def _declared(functions: Iterable[Function], problems: list[Diagnostic]) -> dict
     for function in functions:
         types = [_scalar(each, problems) for each in (*function.parameters, function.result)]
         known = [each for each in types if each is not None]
-        if function.name in TAKEN or "." in function.name:
+        if function.name in {*names(), *SCALARS} or "." in function.name:
             problems.append(words.taken(function.span, function.name))
         elif function.name in found:
             problems.append(words.repeated(function.span, function.name, found[function.name].span))

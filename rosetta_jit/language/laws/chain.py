@@ -3,7 +3,7 @@
 An expression of one field is a chain of steps from it. Steps that are affine (`+ - * /` by constants, `radians`, conversions) are followed
 as a slope and an offset, with the rounding of each; bijections of another kind (`^`, `not`, tables) must be met by their own inverses.
 
-For the bound, what each step is off by (`rosetta_jit.language.laws.affine_steps`) is added. The sum over all steps is at most
+For the bound, what each step is off by (`rosetta_jit.language.affine_steps`) is added. The sum over all steps is at most
 ulp · ulp(max(|x|, floor)), as |v|·2^-p < ulp(v). Higham, Accuracy and Stability of Numerical Algorithms, chapter 3.
 """
 
@@ -15,20 +15,18 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 from typing import Literal as OneOf
 
+from rosetta_jit.language.affine_steps import LARGEST, PRECISION, LostError, Value, divided_by, fraction, rounded, scaled, shifted
+from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS
-from rosetta_jit.language.laws.affine_steps import LARGEST, PRECISION, Error, LostError, Value, fraction, rounded, scaled, shifted, turned
-from rosetta_jit.language.laws.integers import as_whole, is_whole, squeezed
-from rosetta_jit.language.laws.texts import inner_text, rounds_moment, undone, why_lost
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, LenOf, Nearest, TextCall, Unary
+from rosetta_jit.language.function import Affine, NotFollowed, Undone, functions
+from rosetta_jit.language.laws.integers import as_whole, squeezed
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, LenOf, Nearest, Unary
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr
     from rosetta_jit.model.types import Type
-
-NANOSECOND = 4.6e6
-"""Seconds whose float64, rounded, is off by at most half a nanosecond and what rounding that has added: 0.5000003e-9 · 2^53 and more."""
 
 NEGLIGIBLE = 2.0**-800
 """A floor below that is that of no value of a float32."""
@@ -54,7 +52,7 @@ class Lost:
 Outcome = Rounding | Lost | None
 """None where every value comes back as it was."""
 
-UNSHOWN = Lost("it cannot be shown that its value comes back")
+UNSHOWN = Lost(NOT_SHOWN)
 
 
 def come_back(expr: Expr, goal: Expr) -> Outcome:
@@ -63,8 +61,7 @@ def come_back(expr: Expr, goal: Expr) -> Outcome:
     while expr != goal:
         inner = _inner(expr)
         if inner is None:
-            why = why_lost(expr)
-            return UNSHOWN if why is None else Lost(why)
+            return _why_lost(expr)
         steps.append(expr)
         expr = inner
     value = Value(goal.type, goal.type)
@@ -113,15 +110,20 @@ def _inner(expr: Expr) -> Expr | None:
             return left
         case Binary(_, Const(), right):
             return right
-        case Call("radians" | "degrees", (argument,)) | Call("divide" | "floor_divide", (argument, Const())):
-            return argument
+        case Call(function, arguments) if not isinstance(functions()[function].law, NotFollowed):
+            unknown = [each for each in arguments if not isinstance(each, Const)]
+            return unknown[0] if len(unknown) == 1 else None
         case Choice():
             found = table_of(expr)
             return found[0] if found is not None else None
-        case TextCall():
-            return inner_text(expr)
         case _:
             return None
+
+
+def _why_lost(expr: Expr) -> Lost:
+    """Why no part of a value of several comes back, where that is known."""
+    law = functions()[expr.function].law if isinstance(expr, Call) else None
+    return Lost(law.of_several) if isinstance(law, Undone) and law.of_several is not None else UNSHOWN
 
 
 def _done(step: Expr, value: Value) -> Value:
@@ -132,16 +134,11 @@ def _done(step: Expr, value: Value) -> Value:
             return as_whole(replace(value, type=type_), "round")
         case Unary("-"):
             return replace(scaled(value, Fraction(-1)), type=step.type)
-        case Unary() | Choice() | TextCall():
+        case Unary() | Choice():
             return _bijection(step, value)
-        case Call("radians"):
-            return rounded(replace(turned(value, 1), type=step.type), 2)
-        case Call("degrees"):
-            return rounded(replace(turned(value, -1), type=step.type), 2)
-        case Call("divide", (_, Const(divisor))) if divisor:
-            return rounded(replace(scaled(value, 1 / fraction(divisor)), type=step.type), 1)
-        case Call("floor_divide", (_, Const(divisor))) if divisor:
-            return _divided(step, value, divisor)
+        case Call():
+            law = functions()[step.function].law
+            return law.follow(step, value) if isinstance(law, Affine) else _bijection(step, value)
         case Binary("^"):
             return _bijection(step, value)
         case Binary():
@@ -163,16 +160,9 @@ def _computed(step: Binary, value: Value) -> Value:
             constant = right if isinstance(right, Const) else left
             return rounded(scaled(value, fraction(_number(constant))), 1)
         case Binary("/", _, Const(number)) if number:
-            return _divided(step, value, number)
+            return divided_by(value, number, "/", step.type)
         case _:
             raise LostError(f"`{step.operator}` gives the same for several values")
-
-
-def _divided(step: Binary | Call, value: Value, divisor: object) -> Value:
-    divided = scaled(value, 1 / fraction(divisor))
-    if isinstance(step.type, Int) and not is_whole(divided):
-        raise LostError(f"`{step.operator if isinstance(step, Binary) else step.function}` drops remainders")
-    return rounded(divided, 1)
 
 
 def _number(expr: Expr) -> object:
@@ -207,9 +197,9 @@ def _bijection(step: Expr, value: Value) -> Value:
     """Met by its inverse, a step leaves what was before it."""
     if value.opened and value.is_itself:
         opening, before = value.opened[-1]
-        if _undoes(step, opening):
-            is_moment = isinstance(step, TextCall) and isinstance(opening, TextCall) and rounds_moment(step, opening)
-            return _timed(before) if is_moment else before
+        back = _undone(step, opening, before)
+        if back is not None:
+            return back
     if isinstance(step, Choice):
         found = table_of(step)
         if found is None:
@@ -217,27 +207,21 @@ def _bijection(step: Expr, value: Value) -> Value:
     return Value(step.type, step.type, opened=(*value.opened, (step, value)))
 
 
-def _timed(value: Value) -> Value:
-    """A float64 of seconds that is rounded to nanoseconds and put together again: off by at most half of one, and one rounding more."""
-    floor = (value.offset + NANOSECOND) / value.size
-    return replace(value, errors=(*value.errors, Error(2.0**-53, floor, is_tiny=False)))
-
-
-def _undoes(step: Expr, opening: Expr) -> bool:
+def _undone(step: Expr, opening: Expr, before: Value) -> Value | None:
+    """The value before a step and the one that undoes it; None where it does not."""
     match step, opening:
         case Unary("not"), Unary("not"):
-            return True
+            return before
         case Binary("^"), Binary("^"):
-            return _constant_of(step) == _constant_of(opening)
+            return before if _constant_of(step) == _constant_of(opening) else None
         case Choice(), Choice():
-            return _tables_undo(step, opening)
-        case TextCall(), TextCall():
-            found = undone(step, opening)
-            if isinstance(found, str):
-                raise LostError(found)
-            return found
+            return before if _tables_undo(step, opening) else None
+        case Call(), Call(function):
+            law = functions()[function].law
+            back = law.by.get(step.function) if isinstance(law, Undone) else None
+            return None if back is None else back(opening, step, before)
         case _:
-            return False
+            return None
 
 
 def _constant_of(step: Binary) -> object:

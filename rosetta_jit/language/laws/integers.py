@@ -6,12 +6,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from rosetta_jit.language.affine_steps import LostError
 from rosetta_jit.language.conversions import bounds
-from rosetta_jit.language.laws.affine_steps import LostError
-from rosetta_jit.model.types import Bool, Enum, Int
+from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
-    from rosetta_jit.language.laws.affine_steps import Value
+    from rosetta_jit.language.affine_steps import Value
 
 WHOLE = {
     "round": "it is rounded to a whole number",
@@ -59,9 +59,3 @@ def squeezed(before: Value, after: Value, rule: str) -> Value:
         if least <= low and high <= most:
             return after
     raise LostError("values that do not fit are saturated" if rule == "saturate" else "values that do not fit are wrapped")
-
-
-def is_whole(value: Value) -> bool:
-    """Whether integers stay integers."""
-    numbers = (value.slope, *(offset for _, offset in value.offsets))
-    return isinstance(value.source, Int | Bool | Enum) and not value.turns and all(number.denominator == 1 for number in numbers)

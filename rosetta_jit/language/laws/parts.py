@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.typed import BOOL, INT64, Binary, Call, Const, Convert, TextCall
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Call, Const, Convert
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
@@ -33,11 +33,11 @@ def simplified(expr: Expr, truth: Truth) -> Expr | None:
         case Call(("floor_divide" | "modulo") as function, (number, Const() as divisor)):
             found = _sum(bare(number), truth)
             return None if found is None or found[2].value != divisor.value else found[0 if function == "floor_divide" else 1]
-        case TextCall(("seconds" | "fraction") as function, (TextCall("iso8601", (whole, behind)),)):
+        case Call(("seconds" | "fraction") as function, (Call("iso8601", (whole, behind)),)):
             return whole if function == "seconds" else behind
-        case TextCall("nanoseconds", (whole, behind)):
+        case Call("nanoseconds", (whole, behind)):
             return _whole(bare(whole), bare(behind), SECOND)
-        case TextCall("iso8601" | "timestamp", (whole, behind)):
+        case Call("iso8601" | "timestamp", (whole, behind)):
             return _moment(expr, bare(whole), bare(behind))
         case Binary("+", left, right):
             return _added(bare(left), bare(right)) or _added(bare(right), bare(left))
@@ -56,7 +56,7 @@ def bare(expr: Expr) -> Expr:
 
 def _sum(number: Expr, truth: Truth) -> Parts | None:
     match number:
-        case TextCall("nanoseconds", (whole, behind)):
+        case Call("nanoseconds", (whole, behind)):
             return whole, behind, SECOND
         case Binary("+", left, right):
             for product, rest in ((bare(left), right), (bare(right), left)):
@@ -81,11 +81,11 @@ def _is_digit(value: Expr, factor: Const, truth: Truth) -> bool:
     return False
 
 
-def _moment(call: TextCall, whole: Expr, behind: Expr) -> Expr | None:
+def _moment(call: Call, whole: Expr, behind: Expr) -> Expr | None:
     """What both parts of one moment make: where they do not fit an int64 of nanoseconds, this is not computed."""
     match whole, behind:
-        case TextCall("seconds", (moment,)), TextCall("fraction", (other,)) if moment == other:
-            return replace(call, arguments=(TextCall("nanoseconds", (moment,), INT64),))
+        case Call("seconds", (moment,)), Call("fraction", (other,)) if moment == other:
+            return replace(call, arguments=(Call("nanoseconds", (moment,), INT64),))
         case _:
             return None
 

@@ -13,7 +13,7 @@ from rosetta_jit.language.algebra.equality import digit, fact, has_local, reads_
 from rosetta_jit.language.algebra.normal_form import placed, rebuilt, renamed
 from rosetta_jit.language.algebra.quotients import Facts
 from rosetta_jit.language.conversions import adapt, same
-from rosetta_jit.language.laws.chain import come_back
+from rosetta_jit.language.laws.chain import come_back, field_in
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.parts import simplified
 from rosetta_jit.language.laws.refusals import may_refuse
@@ -38,7 +38,6 @@ from rosetta_jit.language.typed import (
     Nearest,
     Reject,
     SetLength,
-    TextCall,
     Unary,
     When,
 )
@@ -372,7 +371,7 @@ class Trip:
                 return _decided(cases, otherwise, expr)
             case Convert() | Unary() | Binary() | Nearest():
                 return _itself(expr) or simplified(expr, self.truth) or expr
-            case Call() | TextCall():
+            case Call():
                 return simplified(expr, self.truth) or expr
             case _:
                 return expr
@@ -422,20 +421,8 @@ def _decided(cases: tuple[tuple[Expr, Expr], ...], otherwise: Expr | None, choic
 
 def _itself(expr: Expr) -> Expr | None:
     """The field that an expression is, when all that is done to it is undone."""
-    leaf: Expr | None = expr
-    while leaf is not None and not isinstance(leaf, Access | LenOf):
-        leaf = _operand(leaf)
+    leaf = field_in(expr)
     return leaf if leaf is not None and same(leaf.type, expr.type) and come_back(expr, leaf) is None else None
-
-
-def _operand(expr: Expr) -> Expr | None:
-    match expr:
-        case Convert(operand) | Unary(_, operand) | Nearest(operand) | Binary(_, operand, Const()) | Binary(_, Const(), operand):
-            return operand
-        case Call("radians" | "degrees", (argument,)) | Call("divide", (argument, Const())):
-            return argument
-        case _:
-            return None
 
 
 def _without_span(expr: Expr) -> Expr:

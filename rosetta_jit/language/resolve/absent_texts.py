@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.functions.texts import is_textual
-from rosetta_jit.language.typed import INT64, Access, Choice, Const, FieldStep, Has, LenOf, TextCall
+from rosetta_jit.language.typed import INT64, Access, Call, Choice, Const, FieldStep, Has, LenOf
 from rosetta_jit.model.types import Bytes, Optional, String, Union
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def written(text: bytes, span: Span | None) -> Expr:
         return Const(text.decode(), String(), span)
     except UnicodeDecodeError:
         latin = Const(text.decode("latin-1"), String(), span)
-        return TextCall("bytes", (latin, Const("latin-1", String(), span)), Bytes(), span)
+        return Call("bytes", (latin, Const("latin-1", String(), span)), Bytes(), span)
 
 
 def _chosen(there: Access | LenOf, otherwise: Expr, span: Span | None) -> Choice:

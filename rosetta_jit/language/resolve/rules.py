@@ -16,9 +16,9 @@ from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.both_ways.inverse_texts import for_type
 from rosetta_jit.language.conversions import convert, describe, other_way, same, widens, word_for
+from rosetta_jit.language.function import functions
 from rosetta_jit.language.functions.decisions import type_condition
-from rosetta_jit.language.functions.images import is_bytes
-from rosetta_jit.language.functions.texts import is_textual, type_pieces
+from rosetta_jit.language.functions.texts import is_bytes, is_textual, type_pieces
 from rosetta_jit.language.functions.user_functions import signatures
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.resolve.defaults import MAX_DEFAULTS, ManyDefaultsError, default_rules, has_array
@@ -33,18 +33,17 @@ from rosetta_jit.language.scope import Broken, Message, Scope, constants_of, enu
 from rosetta_jit.language.typed import (
     Access,
     Assign,
+    Call,
     Choice,
     Const,
     Convert,
     Default,
     For,
     Ignore,
-    ImageCall,
     Listed,
     Local,
     Reject,
     SetLength,
-    TextCall,
     When,
 )
 from rosetta_jit.language.units.conversion import in_unit
@@ -319,11 +318,12 @@ def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
         value = adapted(value, target)
     if isinstance(value, Access) and _whole(value.type, target, scope):
         return value
-    if isinstance(value, ImageCall) and isinstance(value.type, Bytes) and is_bytes(target):
+    is_image = isinstance(value, Call) and functions()[value.function].operation == "image compression"
+    if is_image and isinstance(value.type, Bytes) and is_bytes(target):
         return value
-    if isinstance(value, TextCall) and value.function == "split" and _holds_texts(target, scope):
+    if isinstance(value, Call) and value.function == "split" and _holds_texts(target, scope):
         return value
-    if isinstance(value, TextCall) and is_textual(value.type):
+    if isinstance(value, Call) and is_textual(value.type) and not is_image:
         if is_textual(target):
             return value
         if isinstance(target, String):

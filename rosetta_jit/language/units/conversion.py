@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.language.conversions import FLOAT64, convert, describe
+from rosetta_jit.language.function import functions
 from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Nearest, Unary
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.places import Mixed, pairs_in_step, unit_at
@@ -21,17 +22,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.function import Function
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Expr, Place
     from rosetta_jit.language.units.places import Unit
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
-
-GIVES = {"radians": "radian", "degrees": "degree", **dict.fromkeys(("asin", "acos", "atan", "atan2"), "radian")}
-TAKES = {"radians": "degree", "degrees": "radian", **dict.fromkeys(("sin", "cos", "tan"), "radian")}
-KEEPS = frozenset(("abs", "min", "max", "round", "floor", "ceil"))
-JOINS = frozenset(("min", "max", "atan2"))
-"""Functions whose arguments must be in one unit."""
 
 Factors = tuple[float, float]
 """What a value is multiplied by, and what is added then."""
@@ -93,24 +89,24 @@ def unit_of(value: Expr) -> Unit:
             return unit_of(operand)
         case Binary("+" | "-" | "%", left, right):
             return unit_of(left) or unit_of(right)
-        case Call(function) if function in GIVES:
-            return GIVES[function]
-        case Call(function, arguments) if function in KEEPS:
-            return next((unit for argument in arguments if (unit := unit_of(argument))), None)
+        case Call(function, arguments):
+            units = functions()[function].units
+            return next((unit for argument in arguments if (unit := unit_of(argument))), None) if units.keeps else units.gives
         case Choice(cases, otherwise):
             return next((unit for case in (*(value for _, value in cases), otherwise) if case and (unit := unit_of(case))), None)
         case _:
             return None
 
 
-def check_arguments(function: str, arguments: Sequence[Expr], span: Span | None, scope: Scope) -> bool:
+def check_arguments(function: Function, arguments: Sequence[Expr], span: Span | None, scope: Scope) -> bool:
     """Whether arguments are measured in what a function takes."""
-    if function in JOINS:
-        return check_agree(f"`{function}`", arguments, span, scope)
-    known = unit_of(arguments[0]) if function in TAKES else None
-    if not isinstance(known, str) or conversion(known, TAKES[function]) == (1.0, 0.0):
+    units = function.units
+    if units.joins:
+        return check_agree(f"`{function.name}`", arguments, span, scope)
+    known = unit_of(arguments[0]) if units.takes is not None else None
+    if units.takes is None or not isinstance(known, str) or conversion(known, units.takes) == (1.0, 0.0):
         return True
-    scope.problems.append(words.wrong_way(span, function, known, TAKES[function]))
+    scope.problems.append(words.wrong_way(span, function.name, known, units.takes))
     return False
 
 

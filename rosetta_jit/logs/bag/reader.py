@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.bag.grammar import CHUNK_INFO, CONNECTION, BagGrammar, header_of, number, time_ns
+from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
+from rosetta_jit.logs.bag.old import OldBagReader
 from rosetta_jit.logs.base import Extent
 from rosetta_jit.logs.records import PEEK, Chunk, Records, Region, Scanned, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Piece, Wanted
+    from rosetta_jit.logs.base import Block, Connection, Piece, Reader, Wanted
     from rosetta_jit.logs.storage import Storage
 
 MAGIC = b"#ROSBAG V2.0\n"
@@ -34,15 +36,22 @@ class Contents:
     end: int
 
 
+def open_bag(storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> Reader:
+    """Open a bag of version 2.0 or 1.2; LogError where it is none of these."""
+    start = storage.read(0, 32)
+    if not start.startswith(b"#ROSBAG V"):
+        raise LogError((words.not_a(storage.name, "bag"),))
+    if start.startswith(OLD_MAGIC):
+        return OldBagReader(storage, tell)
+    if not start.startswith(MAGIC):
+        raise LogError((words.old_version(storage.name, start.partition(b"\n")[0].decode("ascii", "replace")),))
+    return BagReader(storage, tell, check=check)
+
+
 class BagReader:
     """An open bag of version 2.0."""
 
     def __init__(self, storage: Storage, tell: Callable[[Diagnostic], None], *, check: bool) -> None:
-        start = storage.read(0, 32)
-        if not start.startswith(b"#ROSBAG V"):
-            raise LogError((words.not_a(storage.name, "bag"),))
-        if not start.startswith(MAGIC):
-            raise LogError((words.old_version(storage.name, start.partition(b"\n")[0].decode("ascii", "replace")),))
         self._storage, self._tell = storage, tell
         self._grammar = BagGrammar(storage.name, tell)
         self._records = Records(storage, self._grammar, tell, len(MAGIC), check=check)

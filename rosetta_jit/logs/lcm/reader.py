@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from bisect import bisect_right
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -72,7 +73,8 @@ class LcmReader:
     def blocks(self, wanted: Wanted) -> Iterator[Block]:
         marks = [*self._marks, self._storage.size]
         pieces = wanted.pieces or range(len(self._marks))
-        return (block for _, block in self._walked(marks[pieces.start], marks[min(pieces.stop, len(marks) - 1)]))
+        for at, block in self._walked(marks[pieces.start], marks[min(pieces.stop, len(marks) - 1)]):
+            yield replace(block, piece=bisect_right(self._marks, at) - 1)
 
     def _walked(self, at: int, end: int) -> Iterator[tuple[int, Block]]:
         """The messages between two places at which events begin, and where each block of them does."""

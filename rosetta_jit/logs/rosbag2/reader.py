@@ -76,6 +76,7 @@ class Rosbag2Reader:
         before = 0
         for place, part in enumerate(self._parts):
             base, pieces = place * PART, range(len(part.pieces))
+            first = before
             if wanted.pieces is not None:
                 pieces = pieces[max(wanted.pieces.start - before, 0) : max(wanted.pieces.stop - before, 0)]
             before += len(part.pieces)
@@ -88,7 +89,7 @@ class Rosbag2Reader:
                     continue
             blocks = part.blocks(Wanted(own, wanted.start_ns, wanted.end_ns, pieces if wanted.pieces is not None else None))
             for block in blocks_of(self._unpacked(blocks)) if self._compressed else blocks:
-                yield Block(block.data, replace(block.rows, channels=block.rows.channels + base))
+                yield Block(block.data, replace(block.rows, channels=block.rows.channels + base), first + block.piece)
 
     def _unpacked(self, blocks: Iterable[Block]) -> Iterator[tuple[int, int, int, bytes]]:
         """The messages of a bag in which each is compressed by zstd, one by one."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 HEAD = struct.Struct("<II i4s i4s ii iiiii ii")
 NETPBM = re.compile(rb"P([56])\s(\d+)\s(\d+)\s255\s")
 DEPTH = {b"mono": 1, b"rgb": 3, b"dec": 4}
+CODES = {each.ljust(4, b"\0"): each for each in DEPTH}
 QUANTUM = 8
 MAX_PIXELS = 1 << 28
 
@@ -59,6 +60,40 @@ def _message(code: bytes, width: int, height: int, pixels: bytes) -> bytes:
     size = padded * height
     head = HEAD.pack(256, 4, 9, b"mat", 9, code, 257, 5, depth, size, QUANTUM | 1 << 16, width, height, 12, size)
     return head + b"".join(lines)
+
+
+def image_file(message: bytes) -> tuple[str, str, bytes]:
+    """The file that an image's message becomes: its suffix, the word for its pixels, and its content; the inverse of `image_message`.
+
+    Raises
+    ------
+    ImageError
+        The message is no image, or one of other pixels.
+    """
+    try:
+        *_, code, _, tag, depth, size, quantum, width, height, blob, taken = HEAD.unpack_from(message)
+    except struct.error:
+        raise ImageError("the message is cut short") from None
+    if (
+        (tag, blob) != (5, 12)
+        or code not in CODES
+        or depth != DEPTH[CODES[code]]
+        or not (width > 0 < height and width * height <= MAX_PIXELS)
+    ):
+        raise ImageError("it is no image of RGB, grey or floating pixels")
+    row, quantum = width * depth, quantum & 0xFFFF or 1
+    padded = -(-row // quantum) * quantum
+    pixels = message[HEAD.size :]
+    if not padded * height == size == taken == len(pixels):
+        raise ImageError(f"{width} by {height} pixels take {padded * height} bytes, and there are {len(pixels)}")
+    content = b"".join(pixels[begin : begin + row] for begin in range(0, size, padded))
+    match CODES[code]:
+        case b"dec":
+            return ".float", "dec", struct.pack("<QQ", height, width) + content
+        case b"rgb":
+            return ".ppm", "rgb", b"P6\n%d %d\n255\n" % (width, height) + content
+        case _:
+            return ".pgm", "mono", b"P5\n%d %d\n255\n" % (width, height) + content
 
 
 def _netpbm(data: bytes) -> tuple[bytes, int, int, bytes]:

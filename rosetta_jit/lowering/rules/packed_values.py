@@ -86,7 +86,7 @@ class Supplies:
                 return here.of(replace(listed, items=tuple(map(_size, items)), type=typed.INT64))
             case typed.Default():
                 return index(0)
-            case typed.Assign(_, typed.TextCall() | typed.ImageCall()):
+            case typed.Assign(_, typed.Call()):
                 raise NotInPlaceError
             case _:
                 raise AssertionError(rule)
@@ -184,12 +184,7 @@ def _array_places(node: object) -> list[typed.Place]:
             return _array_places(operand)
         case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
             return _array_places((left, right))
-        case typed.ImageCall(_, image, _, _, numbers):
-            looked_at = [image.place] if isinstance(image, typed.Access) else []
-            return looked_at + _array_places((image, *numbers))
-        case typed.Call(_, arguments, _) | typed.HostCall(_, arguments, _):
-            return _array_places(arguments)
-        case typed.TextCall(_, arguments):
+        case typed.Call(_, arguments) | typed.HostCall(_, arguments):
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
             return texts + _array_places(arguments)
         case _:

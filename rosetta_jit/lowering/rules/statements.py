@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.catalogue.pipeline import endless_copy
 from rosetta_jit.errors import MappingError
@@ -16,6 +16,7 @@ from rosetta_jit.kernel.ir import Compare, Copy, Expr, For, If, IsText, Local, W
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.lowering.arithmetic import binary
+from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
@@ -24,7 +25,7 @@ from rosetta_jit.lowering.rules.packed_values import place_of
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key
 from rosetta_jit.lowering.texts.separated import count_of_parts, parts_of
-from rosetta_jit.lowering.texts.values import checked, placed_of, quoted, text_of
+from rosetta_jit.lowering.texts.values import checked, text_of
 from rosetta_jit.lowering.texts.views import placed
 from rosetta_jit.lowering.writer import Writer, block
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.ir import Block
     from rosetta_jit.lowering.rules.values import Values
+    from rosetta_jit.lowering.texts.views import View
 
 
 Side = HolderSide | WireSide
@@ -134,9 +136,9 @@ class Runner:
                 self.assign_listed(place, value, values)
             case ((String() | Bytes()), typed.Access(origin)):
                 self.assign_bytes(place, origin, values)
-            case Array(), typed.TextCall("split"):
+            case Array(), typed.Call("split"):
                 self.assign_parts(place, value, values)
-            case ((String() | Bytes() | Array()), (typed.TextCall() | typed.ImageCall())):
+            case ((String() | Bytes() | Array()), typed.Call()):
                 self.assign_computed(place, value, values)
             case ((Struct() | Map() | Union() | Array(element=Ref() | Struct() | Map() | Union())), typed.Access(origin)):
                 self.copy(place, origin, values, change)
@@ -179,7 +181,7 @@ class Runner:
             self.writer.require(size, values.where, at=address.at)
         self.writer.emit(Copy(address, source, size))
 
-    def assign_computed(self, place: typed.Place, value: typed.TextCall | typed.ImageCall, values: Values) -> None:
+    def assign_computed(self, place: typed.Place, value: typed.Call, values: Values) -> None:
         """A text that is made of others, an image, or its pixels. On the wire there is no place for it before it is made."""
         if isinstance(self.target, WireSide):
             raise NotInPlaceError
@@ -190,12 +192,12 @@ class Runner:
         self.take(place, size, values)
         self.writer.emit(Copy(self.target.address(place, values), view.address, size))
 
-    def assign_parts(self, place: typed.Place, call: typed.TextCall, values: Values) -> None:
+    def assign_parts(self, place: typed.Place, call: typed.Call, values: Values) -> None:
         """The parts of a text, each as an element. What is between separators is whole characters."""
         if isinstance(self.target, WireSide):
             raise NotInPlaceError
         assert isinstance(place.type, Array)
-        text, pattern = placed_of(call.arguments[0], values), quoted(call.arguments[1])
+        text, pattern = cast("tuple[View, bytes]", lowered(call, values))
         view = checked(text, values) if isinstance(place.type.element, String) else text
         count = self.count(count_of_parts(self.writer, view, pattern))
         self.take(place, count, values)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import field, replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, assert_never, cast
 
 from rosetta_jit.kernel.ir import (
     Assign,
@@ -29,15 +28,15 @@ from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.algebra.normal_form import rebuilt
 from rosetta_jit.language.conversions import describe
-from rosetta_jit.lowering.arithmetic import COMPARISONS, align, binary, differ, divided, floored, others
+from rosetta_jit.language.function import functions
+from rosetta_jit.lowering.arithmetic import COMPARISONS, binary, differ
+from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
-from rosetta_jit.lowering.rules.host_calls import asked
+from rosetta_jit.lowering.rules.host_calls import called
 from rosetta_jit.lowering.rules.key_search import number_in
 from rosetta_jit.lowering.rules.nearest import nearest
-from rosetta_jit.lowering.rules.number_bytes import of_bytes
 from rosetta_jit.lowering.rules.rejections import reject_with
 from rosetta_jit.lowering.texts.comparison import is_text
-from rosetta_jit.lowering.texts.questions import number_of
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Bool, Enum, Float, Int
@@ -102,18 +101,16 @@ class Values:
                 )
             case typed.Nearest():
                 return nearest(value, self)
-            case typed.Call(function, arguments, _):
-                return self.call(function, [self.of(argument) for argument in arguments])
+            case typed.Call():
+                return cast("Expr", lowered(value, self))
+            case typed.HostCall():
+                return called(value, self)
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
-            case typed.TextCall() | typed.BytesCall():
-                return number_of(value, self) if isinstance(value, typed.TextCall) else of_bytes(value, self)
             case typed.Has() | typed.Search():
                 return self.source.present(value.place, self) if isinstance(value, typed.Has) else number_in(value, self)
             case typed.Choice() | typed.Listed() | typed.Given():
                 return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
-            case typed.Told() | typed.HostCall() | typed.ImageCall():
-                return asked(value, self)
             case _:
                 assert_never(value)
 
@@ -204,37 +201,6 @@ class Values:
         if type_of(operand) in ("f32", "f64"):
             return Unary("neg", operand)
         return binary(self.writer, "-", index(0), operand, self.where, self.line)
-
-    def call(self, function: typed.Function, arguments: list[Expr]) -> Expr:
-        match function:
-            case "radians" | "degrees":
-                factor = math.pi / 180 if function == "radians" else 180 / math.pi
-                return Binary("mul", arguments[0], Const(type_of(arguments[0]), factor))
-            case "round":
-                return Unary("rint", arguments[0])
-            case "sin" | "cos" | "tan" | "asin" | "acos" | "atan":
-                return Unary(function, arguments[0])
-            case "atan2":
-                return Binary("atan2", arguments[0], arguments[1])
-            case "sqrt" | "floor" | "ceil" | "abs":
-                if function == "abs" and type_of(arguments[0]) == "i64":
-                    return Binary("max", arguments[0], self.negative(arguments[0]))
-                return arguments[0] if type_of(arguments[0]) == "i64" else Unary(function, arguments[0])
-            case "min" | "max":
-                result = arguments[0]
-                for argument in arguments[1:]:
-                    result = Binary(function, result, argument)
-                return result
-            case "divide":
-                return divided(self.writer, arguments[0], arguments[1], self.where, self.line)
-            case "floor_divide" | "modulo":
-                return floored(self.writer, function, arguments[0], arguments[1], self.where, self.line)
-            case "others":
-                return others(self.writer, arguments[0], arguments[1:], self.where, self.line)
-            case "align":
-                return align(self.writer, arguments[0], arguments[1], self.where, self.line)
-            case _:
-                assert_never(function)
 
     # --- conversions ---------------------------------------------------------------------------------------------------
 
@@ -373,7 +339,7 @@ def _folded(value: Const, target: Scalar) -> Const | None:
 
 def asks_others(value: typed.Expr) -> bool:
     """Whether a value takes a call out of the kernel, or a text that is made: such are computed where they stand."""
-    if isinstance(value, typed.Told | typed.HostCall | typed.ImageCall | typed.TextCall | typed.Given):
+    if isinstance(value, typed.HostCall | typed.Given) or (isinstance(value, typed.Call) and not functions()[value.function].kept):
         return True
     found: list[bool] = []
     rebuilt(value, lambda part: found.append(asks_others(part)) or part)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 import pyarrow as pa
@@ -12,49 +12,123 @@ import pyarrow as pa
 from rosetta_jit.runtime.arrow.tables import flat
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
     from pathlib import Path
 
-ROWS = 1 << 17
-"""Rows that Parquet keeps together, and readers can skip together."""
+ROWS, BYTES = 1 << 17, 32 << 20
+"""What Parquet keeps together, in a group of rows that readers can skip: so many rows, or so many bytes."""
 
 
 def write_tables(tables: Iterable[pa.Table], path: Path, suffix: str) -> None:
     """Write tables of one schema; ValueError if no file has such a suffix."""
+    if suffix == ".npz":
+        _write_archive(tables, path)
+        return
+    with TableFile(path, suffix) as file:
+        for table in tables:
+            file.write(table)
+
+
+class TableFile:
+    """A file of tables of one schema that come one after another; without any it is empty. ValueError if no file has such a suffix.
+
+    Attributes
+    ----------
+    waiting_bytes : int
+        What is in memory until a group of rows is full.
+    """
+
+    def __init__(self, path: Path, suffix: str) -> None:
+        self._new = _maker(suffix)
+        self._groups = suffix == ".parquet"
+        self._file = path.open("wb")
+        self._writer: Any = None
+        self._waiting: list[pa.Table] = []
+        self._rows = self.waiting_bytes = 0
+
+    def write(self, table: pa.Table) -> None:
+        """Add a table."""
+        self._waiting.append(table)
+        self._rows += table.num_rows
+        self.waiting_bytes += table.nbytes
+        if not self._groups or self._rows >= ROWS or self.waiting_bytes >= BYTES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what waits, as one group of rows."""
+        if self._waiting:
+            table = pa.concat_tables(self._waiting)
+            self._writer = self._writer or self._new(self._file, table.schema)
+            self._writer(table)
+            self._waiting = []
+            self._rows = self.waiting_bytes = 0
+
+    def close(self) -> None:
+        """Write what waits and the end of the file."""
+        try:
+            self.flush()
+            if self._writer is not None:
+                self._writer.close()
+        finally:
+            self._file.close()
+
+    def abandon(self) -> None:
+        """Close a file that is not going to be used."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        (self.close if kind is None else self.abandon)()
+
+
+class _Parquet:
+    """Groups of rows, with the least and greatest values of each page beside those of the group."""
+
+    def __init__(self, file: Any, schema: pa.Schema) -> None:
+        self._writer = import_module("pyarrow.parquet").ParquetWriter(file, schema, write_page_index=True)
+        self.close = self._writer.close
+
+    def __call__(self, table: pa.Table) -> None:
+        self._writer.write_table(table, row_group_size=max(table.num_rows, 1))
+
+
+class _Arrow:
+    def __init__(self, file: Any, schema: pa.Schema) -> None:
+        writer: Any = cast("Any", pa).ipc.new_file(file, schema)
+        self.close, self._write = writer.close, writer.write_table
+
+    def __call__(self, table: pa.Table) -> None:
+        self._write(table)
+
+
+class _Text:
+    """CSV, whose columns are known with the first table."""
+
+    def __init__(self, file: Any, _: pa.Schema) -> None:
+        self._file, self._writer = file, cast("Any", None)
+
+    def __call__(self, table: pa.Table) -> None:
+        plain = _for_text(table)
+        self._writer = self._writer or import_module("pyarrow.csv").CSVWriter(self._file, plain.schema)
+        self._writer.write_table(plain)
+
+    def close(self) -> None:
+        if self._writer is not None:
+            self._writer.close()
+
+
+def _maker(suffix: str) -> Any:
     match suffix:
         case ".parquet":
-            _write(import_module("pyarrow.parquet").ParquetWriter, _grouped(tables), path)
+            return _Parquet
         case ".arrow":
-            _write(import_module("pyarrow").ipc.new_file, tables, path)
+            return _Arrow
         case ".csv":
-            _write(import_module("pyarrow.csv").CSVWriter, map(_for_text, tables), path)
-        case ".npz":
-            _write_archive(tables, path)
+            return _Text
         case _:
             raise ValueError(f"tables are written as .parquet, .arrow, .csv and .npz, not as {suffix}")
-
-
-def _write(make: Any, tables: Iterable[pa.Table], path: Path) -> None:
-    writer = None
-    with path.open("wb") as file:
-        for table in tables:
-            writer = writer or make(file, table.schema)
-            writer.write_table(table)
-        if writer is not None:
-            writer.close()
-
-
-def _grouped(tables: Iterable[pa.Table]) -> Iterator[pa.Table]:
-    """The same in tables of more rows."""
-    waiting, count = list[pa.Table](), 0
-    for table in tables:
-        waiting.append(table)
-        count += table.num_rows
-        if count >= ROWS:
-            yield pa.concat_tables(waiting)
-            waiting, count = [], 0
-    if waiting:
-        yield pa.concat_tables(waiting)
 
 
 def _for_text(given: pa.Table) -> pa.Table:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 def with_times(table: pa.Table, times_ns: Mapping[str, NDArray[np.int64]]) -> pa.Table:
     """A table with columns of nanoseconds since 1970 in front, as timestamps; a name that a field has gets an underscore."""
     taken = set(table.schema.names)
+    if not taken:  # such a table has no rows to which one could add
+        return pa.table({name: np.array(times, np.int64).view("datetime64[ns]") for name, times in times_ns.items()})
     for place, (name, times) in enumerate(times_ns.items()):
         column = pa.array(np.array(times, np.int64).view("datetime64[ns]"))
         table = table.add_column(place, f"{name}_" if name in taken else name, column)

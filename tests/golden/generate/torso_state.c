@@ -305,9 +305,6 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     if (load_i32_le(bytes, 4) != 3) {
         return fail(failure, 4, 4); /* count: must be 3 */
     }
-    const double yaw = load_f64_le(bytes, 8);
-    const double roll = load_f64_le(bytes, 16);
-    const double pitch = load_f64_le(bytes, 24);
     if (3 > holder->angles.capacity - angles_used) {
         return full(failure, 2, 3 - (holder->angles.capacity - angles_used));
     }
@@ -315,9 +312,9 @@ static int64_t decode_1(torso_state_holder *holder, const unsigned char *restric
     angles_used += 3;
     message->angles.start = start; /* torso_state.mapping:10: len(.angles) <-> 3 */
     message->angles.count = 3; /* torso_state.mapping:10: len(.angles) <-> 3 */
-    angles[start] = (float)(yaw * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
-    angles[start + 1] = (float)(roll * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
-    angles[start + 2] = (float)(pitch * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
+    angles[start] = (float)(load_f64_le(bytes, 8) * 0.017453292519943295); /* torso_state.mapping:11: .angles[0] <-> float32(radians(.yaw)) */
+    angles[start + 1] = (float)(load_f64_le(bytes, 16) * 0.017453292519943295); /* torso_state.mapping:12: .angles[1] <-> float32(radians(.roll)) */
+    angles[start + 2] = (float)(load_f64_le(bytes, 24) * 0.017453292519943295); /* torso_state.mapping:13: .angles[2] <-> float32(radians(.pitch)) */
     if (32 != end) {
         return fail(failure, 5, 32); /* trailing: bytes are left over */
     }

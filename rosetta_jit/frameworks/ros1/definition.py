@@ -1,0 +1,16 @@
+"""The definition of a message of ROS 1 as bags carry it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.frameworks.definitions import Definition
+from rosetta_jit.frameworks.ros1.manners import full_text
+
+if TYPE_CHECKING:
+    from rosetta_jit.model.types import Schema, Struct
+
+
+def definition(struct: Struct, schema: Schema) -> Definition:
+    """Its text, and those of the messages in it."""
+    return Definition("ros1msg", full_text(struct, schema).encode())

@@ -1,0 +1,169 @@
+"""Compressed images: what they measure, and their bytes, compressed or not, in the hidden lane of what is computed.
+
+decompress (bytes)                                              the pixels, row by row, channels interleaved
+compress (pixels, "png", width, height, channels [, level])     also "png16", and "jpeg" with a quality
+image_width image_height image_channels image_depth (bytes)     of a compressed image
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import images as words
+from rosetta_jit.kernel.ir import Advance, Binary, Compare, Extent, HostCall, Local, Place, Reserve, Used, Wire
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.language import typed
+from rosetta_jit.language.conversions import as_int64, describe
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Row
+from rosetta_jit.language.functions.texts import is_bytes
+from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.texts.views import View, sound
+from rosetta_jit.model.types import Bytes, String
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.model import expr as model
+
+MEASURES = ("image_width", "image_height", "image_channels", "image_depth")
+DEFAULTS = {"png": 1, "png16": 1, "jpeg": 90}
+"""Formats, and how hard they compress unless the mapping says it: PNG's level (0 to 9), JPEG's quality (1 to 100)."""
+
+MEASURE, DECOMPRESS, COMPRESSED, COMPRESS = "image.measure", "image.decompress", "image.compressed", "image.compress"
+"""The host's functions: a number of an image; its pixels; the size of a compressed image, and its bytes."""
+
+SIZE = len(MEASURES)
+"""What `MEASURE` is asked for besides `MEASURES`: the bytes of all pixels."""
+
+FORMATS = tuple(DEFAULTS)
+
+PROBLEMS = {
+    -1: "no PNG or JPEG image, or a damaged one",
+    -2: "an image that is too large",
+    -3: "an image with pixels of another kind: of four inks, or with 16 bits a colour",
+    -4: "the pixels are not as many as the width, the height and the channels say",
+    -5: "an image of no such width, height, channels or quality",
+}
+"""What the host's functions give where there is nothing to give."""
+
+LANE = "texts"
+"""The hidden lane of what is computed: one byte a row."""
+
+
+# --- types ---------------------------------------------------------------------------------------------------------------
+
+
+def _type_of_image(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    """A call of any of these functions: its first argument is bytes that lie in a field, or that another of these functions makes."""
+    wanted = (5, 6) if call.function == "compress" else (1,)
+    if len(arguments) not in wanted:
+        scope.problems.append(words.arguments(call.span, call.function, len(arguments)))
+        return None
+    first = arguments[0]
+    lies_there = isinstance(first, typed.Access) or (isinstance(first, typed.Call) and first.function in {"compress", "decompress"})
+    if not (lies_there and is_bytes(first.type)):
+        scope.problems.append(words.no_bytes(first.span, call.function, describe(first.type)))
+        return None
+    if call.function == "compress":
+        return _type_compressed(call, arguments, scope)
+    return typed.Call(call.function, (first,), Bytes() if call.function == "decompress" else INT64, call.span)
+
+
+def _type_compressed(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    pixels, format_, *numbers = arguments
+    named = format_.value if isinstance(format_, typed.Const) else None
+    if not isinstance(named, str) or named not in DEFAULTS:
+        scope.problems.append(words.unknown_format(format_.span, named if isinstance(named, str) else None, FORMATS))
+        return None
+    whole = [as_int64(number) for number in numbers]
+    for number, integer in zip(numbers, whole, strict=True):
+        if integer is None:
+            scope.problems.append(words.no_integer(number.span, describe(number.type)))
+    known = [number for number in whole if number is not None]
+    if len(known) < len(whole):
+        return None
+    given = known if len(known) == 4 else [*known, typed.Const(DEFAULTS[named], INT64)]
+    return typed.Call("compress", (pixels, typed.Const(named, String()), *given), Bytes(), call.span)
+
+
+# --- kernels -------------------------------------------------------------------------------------------------------------
+
+
+def _lower_measure(call: typed.Call, values: Evaluation) -> Expr:
+    """A number of a compressed image."""
+    what = index(MEASURES.index(call.function))
+    return _asked(MEASURE, (what,), (_bytes_of(call.arguments[0], values),), values)
+
+
+def _lower_image(call: typed.Call, values: Evaluation) -> View:
+    """An image, or its pixels, in the hidden lane."""
+    made = _bytes_of(call, values)
+    assert isinstance(made.address, Place)
+    after = values.writer.let("after", Binary("add", made.address.row, made.size))
+    return sound(values.writer, View(made.address.lane, made.address.row, after))
+
+
+def _bytes_of(value: typed.Expr, values: Evaluation) -> Extent:
+    """Bytes that lie in a field, or that are computed."""
+    match value:
+        case typed.Access(place):
+            size = values.writer.let("size", values.source.count(place, values))
+            address = values.source.address(place, values)
+            if isinstance(address, Wire):
+                values.writer.require(size, values.where, at=address.at)  # known to be there: said again where the proof may have lost it
+            return Extent(address, size)
+        case typed.Call("decompress", (image,)):
+            source = _bytes_of(image, values)
+            size = _asked(MEASURE, (index(SIZE),), (source,), values)
+            return _filled(DECOMPRESS, (), source, size, values)
+        case typed.Call("compress", (pixels, typed.Const(str(format_)), *given)):
+            source = _bytes_of(pixels, values)
+            numbers = (index(FORMATS.index(format_)), *(values.writer.let("number", values.of(each)) for each in given))
+            size = _asked(COMPRESSED, numbers, (source,), values)
+            return _filled(COMPRESS, numbers, source, size, values)
+        case _:
+            raise AssertionError(value)
+
+
+def _filled(function: str, numbers: tuple[Expr, ...], source: Extent, size: Local, values: Evaluation) -> Extent:
+    """New bytes behind those of the hidden lane, filled by the host."""
+    writer = values.writer
+    lane = writer.lane(LANE, 1)
+    writer.emit(Reserve(lane, size))
+    start = writer.let("computed", Used(lane))
+    writer.emit(Advance(lane, size))
+    target = Extent(Place(lane, start), size)
+    _asked(function, numbers, (source,), values, target)
+    return target
+
+
+def _asked(function: str, numbers: tuple[Expr, ...], inputs: tuple[Extent, ...], values: Evaluation, target: Extent | None = None) -> Local:
+    """What the host answers, which is no problem."""
+    writer = values.writer
+    found = Local("i64", writer.fresh(function.rpartition(".")[2]))
+    failure = writer.failure("image", values.where, "the image could not be looked at", line=values.line)
+    writer.emit(HostCall(function, numbers, found, failure, inputs, target))
+    for code, problem in PROBLEMS.items():
+        writer.expect(Compare("ne", found, index(code)), "image", values.where, problem, line=values.line)
+    writer.expect(Compare("ge", found, index(0)), "image", values.where, "an image that cannot be used", line=values.line)
+    return found
+
+
+PIXELS = Row("images", "`decompress(b)`", ("bytes of a PNG or JPEG image", "its pixels, as bytes"))
+IMAGE = Row(
+    "images",
+    '`compress(p, "png", w, h, c)`, `"png16"`, `"jpeg"`',
+    ("pixels, and behind them as integers their width, height and channels; then, if one likes, level or quality", "the image, as bytes"),
+)
+SIZES = Row("images", "`image_width(b)`, `image_height(b)`, `image_channels(b)`", ("bytes of an image", "int64"))
+DEPTH = Row("images", "`image_depth(b)`", ("bytes of an image", "int64: bits of a channel, 8 or 16"))
+
+of_images = partial(Function, operation="image compression", kept=False)
+FUNCTIONS = (
+    of_images("decompress", _type_of_image, _lower_image, SEVERAL, NOT_FOLLOWED, (PIXELS,)),
+    of_images("compress", _type_of_image, _lower_image, SEVERAL, NOT_FOLLOWED, (IMAGE,)),
+    *(of_images(name, _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (SIZES,)) for name in MEASURES[:3]),
+    of_images("image_depth", _type_of_image, _lower_measure, SEVERAL, NOT_FOLLOWED, (DEPTH,)),
+)

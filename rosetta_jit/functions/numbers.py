@@ -1,0 +1,80 @@
+"""Functions of numbers: roots, whole numbers, the least and the largest."""
+
+from __future__ import annotations
+
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from rosetta_jit.functions.forms import binary_of, unary_of
+from rosetta_jit.kernel.ir import Binary, Unary
+from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.language.conversions import FLOAT64
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row, Units
+from rosetta_jit.language.typed import INT64
+from rosetta_jit.lowering.arithmetic import binary
+from rosetta_jit.model.types import Float
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.language.typed import Call
+    from rosetta_jit.lowering.evaluation import Evaluation
+
+FLOATS = (Float(32), FLOAT64)
+ANY = (INT64, *FLOATS)
+
+ROOT = Row("numbers", "`sqrt(x)`", ("a number", "float64; NaN below 0"))
+WHOLE = Row(
+    "numbers",
+    "`floor(x)`, `ceil(x)`, `round(x)`",
+    ("a float, or an integer of at most 53 bits", "the whole number as a float; `round` halves to the even one"),
+)
+BOUNDS = Row(
+    "numbers",
+    "`abs(x)`, `min(x, y, …)`, `max(x, y, …)`",
+    ("numbers", "of their type, int64 for integers. Of two values of which one is NaN, the second"),
+)
+DROPS = "drops what is below one"
+
+
+def _lower_round(call: Call, values: Evaluation) -> Expr:
+    return Unary("rint", values.of(call.arguments[0]))
+
+
+def _lower_abs(call: Call, values: Evaluation) -> Expr:
+    number = values.of(call.arguments[0])
+    if type_of(number) != "i64":
+        return Unary("abs", number)
+    return Binary("max", number, binary(values.writer, "-", index(0), number, values.where, values.line))
+
+
+def _fold_abs(numbers: list[int]) -> int:
+    return abs(numbers[0])
+
+
+def _fold_min(numbers: list[int]) -> int:
+    return reduce(min, numbers)
+
+
+def _fold_max(numbers: list[int]) -> int:
+    return reduce(max, numbers)
+
+
+FUNCTIONS = (
+    Function("sqrt", Numbers((FLOAT64,)), unary_of, SEVERAL, NOT_FOLLOWED, (ROOT,)),
+    Function("floor", Numbers(FLOATS), unary_of, SEVERAL, NOT_FOLLOWED, (WHOLE,), units=Units(keeps=True), remark=DROPS),
+    Function("ceil", Numbers(FLOATS), unary_of, SEVERAL, NOT_FOLLOWED, (WHOLE,), units=Units(keeps=True), remark=DROPS),
+    Function("round", Numbers(FLOATS), _lower_round, SEVERAL, NOT_FOLLOWED, (WHOLE,), units=Units(keeps=True), remark=DROPS),
+    Function("abs", Numbers(ANY, fold=_fold_abs), _lower_abs, SEVERAL, NOT_FOLLOWED, (BOUNDS,), units=Units(keeps=True)),
+    *(
+        Function(
+            name,
+            Numbers(ANY, (2, None), "two or more values", fold),
+            binary_of,
+            SEVERAL,
+            NOT_FOLLOWED,
+            (BOUNDS,),
+            units=Units(keeps=True, joins=True),
+        )
+        for name, fold in (("min", _fold_min), ("max", _fold_max))
+    ),
+)

@@ -1,0 +1,133 @@
+"""Classes of our own for the types of a schema, each before those that contain it."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.backends.base import Namespace
+from rosetta_jit.generate.c.texts import comment
+from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.model.types import Type
+
+NOT_CLASSES = frozenset({"codec", "holder", "std", "rosetta_jit", "memory"})
+
+
+def names_of(unit: Unit) -> dict[str, str]:
+    """The classes and enums of a unit by their names in the schema."""
+    scope = Namespace(RESERVED | NOT_CLASSES | {unit.name})
+    found: dict[str, str] = {}
+    for name in _reached(unit):
+        simple = re.split(r"[./:]+", name)[-1]
+        whole = "_".join(re.split(r"[./:]+", name))
+        found[name] = scope.identifier(simple if simple not in scope.identifiers else whole)
+    return found
+
+
+def _reached(unit: Unit) -> dict[str, None]:
+    """The declared types that the message contains, each behind those that it contains itself."""
+    found: dict[str, None] = {}
+    pending: list[tuple[str, bool]] = [(unit.type, False)]
+    seen: set[str] = set()
+    while pending:
+        name, done = pending.pop()
+        if done:
+            found[name] = None
+            continue
+        if name in seen:
+            continue
+        seen.add(name)
+        pending.append((name, True))
+        declared = unit.schema.types[name]
+        inner = [each for field in declared.fields for each in _refs(field.type)] if isinstance(declared, Struct) else []
+        pending += [(each, False) for each in reversed(inner)]
+    return found
+
+
+def _refs(type_: Type) -> Iterator[str]:
+    match type_:
+        case Ref(name):
+            yield name
+        case Array(element) | Optional(element):
+            yield from _refs(element)
+        case Map(key, value):
+            yield from _refs(key)
+            yield from _refs(value)
+        case Union(_, cases) | Struct(_, cases):
+            for each in cases:
+                yield from _refs(each.type)
+        case _:
+            return
+
+
+def classes(unit: Unit) -> str:
+    """The definitions of all of them."""
+    names, recursive = names_of(unit), recursive_structs(Ref(unit.type), unit.schema)
+    ahead = [f"struct {names[name]};" for name in sorted(recursive)]
+    texts: list[str] = ["\n".join(ahead) + "\n"] if ahead else []
+    for name, identifier in names.items():
+        declared = unit.schema.types[name]
+        texts.append(_enum(identifier, declared) if isinstance(declared, Enum) else _class(identifier, declared, names, recursive))
+    return "\n".join(texts)
+
+
+def _enum(identifier: str, enum: Enum) -> str:
+    scope = Namespace(RESERVED)
+    values = [f"    {scope.identifier(name)} = {value if value > -(2**31) else 'INT32_MIN'}," for name, value in enum.values]
+    return "\n".join([comment(enum.name), f"enum class {identifier} : std::int32_t {{", *values, "};", ""])
+
+
+def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: frozenset[str]) -> str:
+    from rosetta_jit.generate.cpp.names import member_names
+
+    lines = [comment(struct.name), f"struct {identifier} {{"]
+    for field, member in zip(struct.fields, member_names(struct), strict=True):
+        kind = _type(field.type, names, recursive)
+        zero = "{}" if isinstance(field.type, Bool | Int | Float | Ref) and not kind.startswith("std::unique") else ""
+        said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
+        lines.append(f"    {kind} {member}{zero};{f' {comment(said)}' if said else ''}")
+    if struct.option("unknown"):
+        lines.append("    std::string unknown_fields; /* fields that the schema does not know, as they came */")
+    return "\n".join([*lines, "};", ""])
+
+
+def _type(type_: Type, names: dict[str, str], recursive: frozenset[str]) -> str:
+    """A type in C++."""
+    match type_:
+        case Bool():
+            return "bool"
+        case Int(bits, signed, _):
+            return f"std::{'' if signed else 'u'}int{bits}_t"
+        case Float(bits, _):
+            return "float" if bits == 32 else "double"
+        case String(encoding):
+            return "std::u16string" if encoding == "utf-16" else "std::string"
+        case Bytes(_, int(length)):
+            return f"std::array<std::uint8_t, {length}>"
+        case Bytes():
+            return "std::vector<std::uint8_t>"
+        case Array(element, int(length)):
+            return f"std::array<{_type(element, names, frozenset())}, {length}>"
+        case Array(element):
+            return f"std::vector<{_type(element, names, frozenset())}>"
+        case Map(key, value):
+            return f"std::map<{_type(key, names, frozenset())}, {_type(value, names, frozenset())}>"
+        case Optional(Ref(name)) | Ref(name) if name in recursive:
+            return f"std::unique_ptr<{names[name]}>"
+        case Optional(value):
+            return f"std::optional<{_type(value, names, recursive)}>"
+        case Ref(name):
+            return names[name]
+        case Union(_, cases):
+            return f"std::variant<{', '.join(['std::monostate', *(_type(each.type, names, recursive) for each in cases)])}>"
+        case Enum() | Struct():
+            raise AssertionError(type_)
+        case _:
+            assert_never(type_)

@@ -1,0 +1,29 @@
+/* == decode == */
+    /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
+    rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target);
+
+    /* The same; throws rosetta_jit::failure. */
+    void decode(const void *bytes, std::size_t size, holder &target) { static_cast<void>(try_decode(bytes, size, target).value()); }
+#if __cplusplus >= 202002L
+    void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
+#endif
+/* == encode == */
+    /* How many bytes the message takes. */
+    rosetta_jit::result<std::size_t> try_size(const holder &source);
+
+    /* Writes the message to `bytes`, which has `capacity` of them, and says how many it took. */
+    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity);
+
+    /* Makes a string the message. */
+    rosetta_jit::result<rosetta_jit::done> try_encode(const holder &source, std::string &bytes);
+
+    /* The message; throws rosetta_jit::failure. */
+    std::string encode(const holder &source)
+    {
+        std::string bytes;
+        static_cast<void>(try_encode(source, bytes).value());
+        return bytes;
+    }
+#if __cplusplus >= 202002L
+    std::size_t encode(const holder &source, std::span<std::byte> bytes) { return try_encode(source, bytes.data(), bytes.size()).value(); }
+#endif

@@ -1,0 +1,543 @@
+// What generated C++ shares: results, errors, and how the fields of classes are reached. Part of rosetta_jit; it depends on the standard
+// library alone. Messages never make these functions fail but by the errors that they return; memory that is lacking is std::bad_alloc.
+#ifndef ROSETTA_JIT_HPP
+#define ROSETTA_JIT_HPP
+
+#define ROSETTA_JIT_VERSION_MAJOR 0
+#define ROSETTA_JIT_VERSION_MINOR 1
+#define ROSETTA_JIT_VERSION_PATCH 0
+#define ROSETTA_JIT_VERSION "0.1.0"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+#if __cplusplus >= 202002L
+#include <span>
+#endif
+
+namespace rosetta_jit {
+
+/* What is wrong with a message. */
+enum class status {
+    ok,
+    full,
+    truncated,
+    trailing,
+    tag,
+    constant,
+    count,
+    length,
+    nesting,
+    text,
+    varint,
+    range,
+    index,
+    missing,
+    image,
+    rejected,
+    union_,
+};
+
+/* A status as a word. */
+inline const char *text_of(status what) noexcept
+{
+    switch (what) {
+    case status::ok:
+        return "ok";
+    case status::full:
+        return "full";
+    case status::truncated:
+        return "truncated";
+    case status::trailing:
+        return "trailing";
+    case status::tag:
+        return "tag";
+    case status::constant:
+        return "constant";
+    case status::count:
+        return "count";
+    case status::length:
+        return "length";
+    case status::nesting:
+        return "nesting";
+    case status::text:
+        return "text";
+    case status::varint:
+        return "varint";
+    case status::range:
+        return "range";
+    case status::index:
+        return "index";
+    case status::missing:
+        return "missing";
+    case status::image:
+        return "image";
+    case status::rejected:
+        return "rejected";
+    case status::union_:
+        return "union";
+    }
+    return "unknown";
+}
+
+/* What is wrong, and where. */
+struct error {
+    status kind = status::ok;
+    std::string path;         /* the field: `.joints[3].name` */
+    std::int64_t offset = 0;  /* of the message's byte; -1 where there is none, as in what is written */
+    std::string detail;       /* one sentence for a person */
+    std::string line;         /* of the mapping, where one of its rules is to blame */
+
+    /* All of it as one line. */
+    std::string what() const
+    {
+        std::string text = std::string(text_of(kind)) + (path.empty() ? "" : " at " + path);
+        text += offset < 0 ? "" : ", byte " + std::to_string(offset);
+        return text + ": " + detail + (line.empty() ? "" : " (" + line + ")");
+    }
+};
+
+/* An error as an exception. */
+class failure : public std::runtime_error {
+public:
+    explicit failure(rosetta_jit::error found) : std::runtime_error(found.what()), found_(std::make_shared<rosetta_jit::error>(std::move(found))) {}
+    const rosetta_jit::error &error() const noexcept { return *found_; }
+
+private:
+    std::shared_ptr<const rosetta_jit::error> found_;
+};
+
+/* A value or an error, as std::expected of C++23. */
+template <class Value> class [[nodiscard]] result {
+public:
+    result(Value value) : value_(std::move(value)) {}
+    result(rosetta_jit::error found) : error_(std::make_unique<rosetta_jit::error>(std::move(found))) {}
+
+    bool has_value() const noexcept { return error_ == nullptr; }
+    explicit operator bool() const noexcept { return has_value(); }
+    const rosetta_jit::error &error() const { return *error_; }
+
+    /* The value, or the error thrown as a `failure`. */
+    const Value &value() const
+    {
+        if (!has_value()) {
+            throw failure(*error_);
+        }
+        return value_;
+    }
+    const Value &operator*() const { return value_; }
+
+private:
+    Value value_{};
+    std::unique_ptr<const rosetta_jit::error> error_;
+};
+
+/* What nothing but its success can be said of. */
+struct done {};
+
+namespace detail {
+
+/* --- errors --- */
+
+/* Where several fields are checked at once, each of them. */
+struct part {
+    std::int64_t offset;
+    std::int64_t size;
+    std::int64_t step;
+    const char *path;
+};
+
+/* One thing that can be wrong. A `{}` in a path stands for an index. */
+struct site {
+    status kind;
+    const char *path;
+    const char *detail;
+    const char *line;
+    int scratch;
+    int parts;
+    const part *each;
+};
+
+inline std::size_t indices_in(const char *path) noexcept
+{
+    std::size_t found = 0;
+    for (; *path != 0; path++) {
+        found += path[0] == '{' && path[1] == '}' ? 1u : 0u;
+    }
+    return found;
+}
+
+inline std::string path_of(const char *path, const std::int64_t (&indices)[4])
+{
+    std::string text;
+    std::size_t index = 0;
+    for (const char *at = path; *at != 0; at++) {
+        if (at[0] == '{' && at[1] == '}' && index < 4) {
+            text += std::to_string(indices[index++]);
+            at++;
+        } else {
+            text += *at;
+        }
+    }
+    return text;
+}
+
+/* The error of a site. `available` is how many bytes there are behind `offset`. */
+inline error error_of(const site &where, std::int64_t offset, const std::int64_t (&at)[4], std::int64_t available)
+{
+    std::int64_t indices[4] = {at[0], at[1], at[2], at[3]};
+    const char *path = where.path;
+    for (int number = 0; number < where.parts; number++) {
+        const part &each = where.each[number];
+        std::int64_t element = 0;
+        if (each.step != 0 && available - each.offset - each.size >= 0) {
+            element = (available - each.offset - each.size) / each.step + 1;
+        }
+        if (each.step != 0 || each.offset + each.size > available) {
+            const std::size_t count = indices_in(each.path);
+            path = each.path;
+            offset += each.offset + element * each.step;
+            if (each.step != 0 && count > 0) {
+                indices[count - 1] = element;
+            }
+            break;
+        }
+    }
+    return error{where.kind, path_of(path, indices), offset, where.detail, where.line};
+}
+
+/* --- lanes: the elements of all arrays of one field --- */
+
+/* Rows for one message of `bytes`; a mapping that asks for more takes a length from what the message says. */
+constexpr std::int64_t most_rows(std::size_t bytes) noexcept
+{
+    const std::size_t most = std::size_t{1} << 40;
+    return (std::int64_t{1} << 20) + 64 * static_cast<std::int64_t>(bytes < most ? bytes : most);
+}
+
+/* Rows of its own. */
+template <class Row> struct lane {
+    Row *rows = nullptr;
+    std::int64_t capacity = 0;
+    std::int64_t used = 0;
+    std::unique_ptr<Row[]> memory;
+
+    /* Makes room for more rows; false where that would be more than `most`. */
+    bool grow(std::int64_t missing, std::int64_t most)
+    {
+        if (missing > most - capacity) {
+            return false;
+        }
+        const std::int64_t wanted = std::max(capacity + missing, std::min(most, capacity * 2));
+        std::unique_ptr<Row[]> more(new Row[static_cast<std::size_t>(wanted)]);
+        if (capacity > 0) {
+            std::memcpy(static_cast<void *>(more.get()), rows, static_cast<std::size_t>(capacity) * sizeof(Row));
+        }
+        memory = std::move(more);
+        rows = memory.get();
+        capacity = wanted;
+        return true;
+    }
+};
+
+/* Bytes for the functions themselves. */
+struct scratch {
+    unsigned char *bytes = nullptr;
+    std::int64_t size = 0;
+    std::unique_ptr<std::int64_t[]> memory;
+
+    bool grow(std::int64_t missing, std::int64_t most)
+    {
+        if (missing > 4096 * (most / 64) - size) {
+            return false;
+        }
+        const std::int64_t words = (std::max(size + missing, size * 2) + 7) / 8;
+        std::unique_ptr<std::int64_t[]> more(new std::int64_t[static_cast<std::size_t>(words)]);
+        if (size > 0) {
+            std::memcpy(more.get(), bytes, static_cast<std::size_t>(size));
+        }
+        memory = std::move(more);
+        bytes = reinterpret_cast<unsigned char *>(memory.get());
+        size = words * 8;
+        return true;
+    }
+};
+
+/* --- containers --- */
+
+template <class Container, class = void> struct is_repeated : std::false_type {};
+/* Those of protobuf: RepeatedField and RepeatedPtrField. */
+template <class Container>
+struct is_repeated<Container, std::void_t<decltype(std::declval<Container &>().Mutable(0)), decltype(std::declval<Container &>().RemoveLast())>>
+    : std::true_type {};
+
+template <class Container, class = void> struct can_resize : std::false_type {};
+template <class Container> struct can_resize<Container, std::void_t<decltype(std::declval<Container &>().resize(std::size_t{}))>> : std::true_type {};
+
+template <class Container> std::int64_t count_of(const Container &from)
+{
+    return static_cast<std::int64_t>(std::size(from));
+}
+
+template <class Container> void resize_to(Container &target, std::int64_t count)
+{
+    if constexpr (is_repeated<Container>::value) {
+        if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(*target.mutable_data())>>) {
+            target.Resize(static_cast<int>(count), {});
+        } else {
+            target.Reserve(static_cast<int>(count));
+            while (target.size() > count) {
+                target.RemoveLast();
+            }
+            while (target.size() < count) {
+                target.Add();
+            }
+        }
+    } else if constexpr (can_resize<Container>::value) {
+        target.resize(static_cast<std::size_t>(count));
+    }
+}
+
+/* An element for writing; of protobuf's containers they are pointers. */
+template <class Container> decltype(auto) element(Container &target, std::int64_t index)
+{
+    if constexpr (is_repeated<Container>::value) {
+        return (*target.Mutable(static_cast<int>(index)));
+    } else {
+        return target[static_cast<std::size_t>(index)];
+    }
+}
+
+template <class Container> const auto &element_of(const Container &from, std::int64_t index)
+{
+    if constexpr (is_repeated<Container>::value) {
+        return from.Get(static_cast<int>(index));
+    } else {
+        return from[static_cast<std::size_t>(index)];
+    }
+}
+
+template <class Container> auto *data_of(Container &target)
+{
+    if constexpr (is_repeated<Container>::value) {
+        return target.mutable_data();
+    } else {
+        return std::data(target);
+    }
+}
+
+/* A number as one of another type, a byte as a bool. */
+template <class Target, class Number> Target as(Number number)
+{
+    if constexpr (std::is_same_v<std::decay_t<Target>, bool>) {
+        return number != Number{};
+    } else {
+        return static_cast<Target>(number);
+    }
+}
+
+template <class Target, class Number> void set(Target &&target, Number number)
+{
+    if constexpr (std::is_class_v<std::decay_t<Target>>) {
+        target = number != Number{}; /* an element of vector<bool> */
+    } else {
+        target = as<std::decay_t<Target>>(number);
+    }
+}
+
+/* A row for a number of a class. */
+template <class Row, class Number> void put(Row &row, const Number &number)
+{
+    row = static_cast<Row>(number);
+}
+
+/* Whether numbers can be copied as they lie in memory. */
+template <class One, class Other>
+constexpr bool same_numbers = std::is_same_v<One, Other> ||
+                              (sizeof(One) == sizeof(Other) && std::is_integral_v<One> && std::is_integral_v<Other> &&
+                               !std::is_same_v<One, bool> && !std::is_same_v<Other, bool>);
+
+/* Whether the elements lie one behind the other: those of vector<bool> do not. */
+template <class Container, class = void> struct has_data : is_repeated<Container> {};
+template <class Container> struct has_data<Container, std::void_t<decltype(*std::data(std::declval<Container &>()))>> : std::true_type {};
+
+/* Numbers, or the bytes of a text, into a container. One of a fixed length takes as many as it has. */
+template <class Container, class Row> void assign(Container &&target, const Row *rows, std::int64_t count)
+{
+    using Plain = std::remove_cv_t<std::remove_reference_t<Container>>;
+    resize_to(target, count);
+    count = std::min(count, count_of(target));
+    if constexpr (has_data<Plain>::value) {
+        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(target))>>;
+        if constexpr (same_numbers<Number, Row>) {
+            if (count > 0) {
+                std::memcpy(data_of(target), rows, static_cast<std::size_t>(count) * sizeof(Row));
+            }
+            return;
+        }
+    }
+    for (std::int64_t index = 0; index < count; index++) {
+        set(element(target, index), rows[index]);
+    }
+}
+
+/* Bytes that nothing has to make room for first. */
+inline void assign(std::string &target, const unsigned char *bytes, std::int64_t count)
+{
+    target.assign(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(count));
+}
+
+template <class Memory> void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
+{
+    target.assign(bytes, bytes + count);
+}
+
+/* The rows of a span. Where its count is negative its bytes lie in the message. */
+template <class Container, class Lane, class Span>
+void assign_span(Container &&target, const Lane &from, const Span &span, const unsigned char *message)
+{
+    if constexpr (sizeof(*from.rows) == 1) {
+        if (span.count < 0) {
+            assign(target, message + span.start, -1 - span.count);
+            return;
+        }
+    }
+    static_cast<void>(message);
+    assign(target, from.rows + (span.count > 0 ? span.start : 0), span.count);
+}
+
+/* Takes rows for `count` elements, and says which is the first. */
+template <class Lane> std::int64_t take(Lane &to, std::int64_t count)
+{
+    if (count > to.capacity - to.used && !to.grow(count - (to.capacity - to.used), std::int64_t{1} << 48)) {
+        throw std::bad_alloc();
+    }
+    to.used += count;
+    return to.used - count;
+}
+
+/* Numbers, or the bytes of a text, as rows. */
+template <class Lane, class Span, class Container> void take_span(Lane &to, Span &span, const Container &from)
+{
+    using Row = std::remove_reference_t<decltype(*to.rows)>;
+    span.count = count_of(from);
+    span.start = take(to, span.count);
+    Row *rows = to.rows + span.start;
+    if constexpr (has_data<const Container>::value) {
+        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*std::data(from))>>;
+        if constexpr (same_numbers<Number, Row>) {
+            if (span.count > 0) {
+                std::memcpy(rows, std::data(from), static_cast<std::size_t>(span.count) * sizeof(Row));
+            }
+            return;
+        }
+    }
+    for (const auto &each : from) {
+        put(*rows++, each);
+    }
+}
+
+/* Rows that are the elements of a container, so that nothing is copied. */
+template <class Row, class Container> struct field_lane {
+    Row *rows = nullptr;
+    std::int64_t capacity = 0;
+    std::int64_t used = 0;
+    Container *container = nullptr;
+
+    using Number = std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<Container &>()))>>;
+    static_assert(same_numbers<Number, Row>, "the class has elements of another type than the schema");
+
+    void fill(Container &target)
+    {
+        container = &target;
+        look();
+    }
+
+    void read(const Container &from)
+    {
+        container = const_cast<Container *>(&from); /* the functions that write messages change no row */
+        look();
+        used = capacity;
+    }
+
+    bool grow(std::int64_t missing, std::int64_t most)
+    {
+        if (missing > most - capacity) {
+            return false;
+        }
+        resize_to(*container, capacity + missing);
+        look();
+        return true;
+    }
+
+    /* Leaves the elements of a span alone. Where its count is negative they are bytes of the message. */
+    template <class Span> void finish(const Span &span, const unsigned char *message)
+    {
+        if constexpr (sizeof(Row) == 1) {
+            if (span.count < 0) {
+                assign(*container, message + span.start, -1 - span.count);
+                return;
+            }
+        }
+        static_cast<void>(message);
+        if (span.start > 0 && span.count > 0) {
+            std::memmove(rows, rows + span.start, static_cast<std::size_t>(span.count) * sizeof(Row));
+        }
+        if (span.count != capacity) {
+            resize_to(*container, span.count);
+        }
+    }
+
+private:
+    void look()
+    {
+        capacity = count_of(*container);
+        rows = reinterpret_cast<Row *>(data_of(*container));
+    }
+};
+
+template <class Message, class = void> struct shows_unknown : std::false_type {};
+template <class Message> struct shows_unknown<Message, std::void_t<decltype(std::declval<Message &>().mutable_unknown_fields())>> : std::true_type {};
+
+/* The unknown fields of a protobuf message: of proto3 only its reflection has them. */
+template <class Message> const auto &unknown_fields(const Message &message)
+{
+    if constexpr (shows_unknown<Message>::value) {
+        return message.unknown_fields();
+    } else {
+        return message.GetReflection()->GetUnknownFields(message);
+    }
+}
+
+template <class Message> auto &mutable_unknown_fields(Message &message)
+{
+    if constexpr (shows_unknown<Message>::value) {
+        return *message.mutable_unknown_fields();
+    } else {
+        return *message.GetReflection()->MutableUnknownFields(&message);
+    }
+}
+
+inline bool is_set(const std::uint64_t *presence, int bit) noexcept
+{
+    return (presence[bit / 64] >> (bit % 64) & 1u) != 0;
+}
+
+inline void set_bit(std::uint64_t *presence, int bit) noexcept
+{
+    presence[bit / 64] |= std::uint64_t{1} << (bit % 64);
+}
+
+} // namespace detail
+} // namespace rosetta_jit
+
+#endif

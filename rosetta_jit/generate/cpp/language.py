@@ -1,0 +1,32 @@
+"""A unit as C++: `NAME.hpp`, `NAME.cpp`, and the header that all such files share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.c.functions import print_kernel
+from rosetta_jit.generate.c.language import parts_of
+from rosetta_jit.generate.cpp.manners import MANNERS
+from rosetta_jit.generate.cpp.source import header, source
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.unit import Unit
+
+INCLUDE = Path(__file__).with_name("include")
+SHARED = "rosetta_jit/rosetta_jit.hpp"
+
+
+def files(unit: Unit) -> dict[str, str]:
+    """The texts of the files by their names."""
+    manners = {each.name: each for each in MANNERS}.get(unit.holder or "own")
+    if manners is None:
+        raise SchemaError((words.unknown_holder(unit.holder, tuple((each.name, each.summary) for each in MANNERS)),))
+    parts = parts_of(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())), dialect="c++")
+    return {
+        f"{unit.name}.hpp": header(unit, manners),
+        f"{unit.name}.cpp": source(unit, parts, manners),
+        SHARED: (INCLUDE / SHARED).read_text("utf-8"),
+    }

@@ -1,0 +1,35 @@
+/* How the fields of a class are reached that are members of it. Each section is one place of generated code; other holders replace some. */
+
+/* == member decode == */
+$object.$field
+
+/* == member encode == */
+$object.$field
+
+/* == number decode == */
+rosetta_jit::detail::set($at, $row);
+
+/* == number encode == */
+rosetta_jit::detail::put($row, $at);
+
+/* == sequence decode == */
+rosetta_jit::detail::assign_span($at, from.$lane, $row, bytes);
+
+/* == sequence encode == */
+rosetta_jit::detail::take_span(to.$lane, $row, $at);
+
+/* == list decode == */
+rosetta_jit::detail::resize_to($at, $row.count);
+
+/* == list encode == */
+$row.count = rosetta_jit::detail::count_of($at);
+$row.start = rosetta_jit::detail::take(to.$lane, $row.count);
+
+/* == element decode == */
+rosetta_jit::detail::element($at, $index)
+
+/* == element encode == */
+rosetta_jit::detail::element_of($at, $index)
+
+/* == direct == */
+$at

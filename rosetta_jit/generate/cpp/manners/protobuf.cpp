@@ -1,0 +1,64 @@
+/* What protoc generates: setters, `mutable_…`, `has_…`, `clear_…`; repeated fields and maps are containers. */
+
+/* == member decode == */
+(*$object.mutable_$field())
+
+/* == member encode == */
+$object.$field()
+
+/* == number decode == */
+$object.set_$field(rosetta_jit::detail::as<decltype($object.$field())>($row));
+
+/* == number encode == */
+rosetta_jit::detail::put($row, $object.$field());
+
+/* == optional is there == */
+$object.has_$field()
+
+/* == optional clear == */
+$object.clear_$field();
+
+/* == optional make == */
+
+/* == optional value == */
+$at
+
+/* == link is there == */
+$object.has_$field()
+
+/* == link clear == */
+$object.clear_$field();
+
+/* == link make == */
+
+/* == link value == */
+$at
+
+/* == union clear == */
+$object.clear_$field();
+
+/* == case is there == */
+$object.has_$case()
+
+/* == case make == */
+
+/* == map clear == */
+$at.clear();
+
+/* == map entry == */
+$at[$key]
+
+/* == unknown decode == */
+if (!rosetta_jit::detail::unknown_fields($object).empty()) {
+    rosetta_jit::detail::mutable_unknown_fields($object).Clear();
+}
+if ($row.count > 0) {
+    rosetta_jit::detail::mutable_unknown_fields($object).ParseFromArray(from.$lane.rows + $row.start, static_cast<int>($row.count));
+}
+
+/* == unknown encode == */
+if (!rosetta_jit::detail::unknown_fields($object).empty()) {
+    std::string unknown;
+    rosetta_jit::detail::unknown_fields($object).SerializeToString(&unknown);
+    rosetta_jit::detail::take_span(to.$lane, $row, unknown);
+}

@@ -1,0 +1,269 @@
+"""Header and source of a unit in C++: a class `codec` around the kernels, which are printed as in C."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.c.header import made, struct_text
+from rosetta_jit.generate.c.rows import Struct as RowStruct
+from rosetta_jit.generate.c.source import NO_ROOM, ORDER, run, site_text, without_unused
+from rosetta_jit.generate.c.support import support
+from rosetta_jit.generate.c.texts import literal
+from rosetta_jit.generate.c.words import C_TYPES, RESERVED
+from rosetta_jit.generate.cpp.classes import classes
+from rosetta_jit.generate.cpp.walk import Direct, Spot, Walk
+from rosetta_jit.model.types import Ref, Struct
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.language import Parts
+    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.unit import Role, Unit
+
+FOLDER = Path(__file__).parent
+SAID = """    if (where.scratch >= 0) { /* the mapping has put this text together */
+        const std::size_t first = rosetta_jit::detail::indices_in(where.path);
+        found.detail.assign(reinterpret_cast<const char *>(holder.scratch[where.scratch].bytes) + failure.indices[first],
+                            static_cast<std::size_t>(failure.indices[first + 1]));
+    }
+"""
+
+
+def header(unit: Unit, manners: Manners) -> str:
+    """The text of the header."""
+    decodes, encodes = "borrow" in unit.kernels, "encode" in unit.kernels
+    root = unit.schema.types[unit.type]
+    assert isinstance(root, Struct)
+    own = classes(unit) if manners.type is None else ""
+    named = class_of(unit, manners)
+    includes = ["<cstddef>", "<cstdint>", "<memory>"]
+    if manners.type is None:
+        includes += ["<array>", "<map>", "<optional>", "<string>", "<variant>", "<vector>"]
+    lines = [f"#include {each}" for each in sorted(includes)] + ["", "#include <rosetta_jit/rosetta_jit.hpp>"]
+    if manners.header is not None:
+        lines += [f"#include <{unit.include or manners.header(root)}>"]
+    around = [_section(FOLDER / "around" / f"{each}.hpp") for each in manners.around]
+    words = {"name": unit.name, "holder": named, "type": literal(root.name), "wire": literal(root.name)}
+    lines += [line for before, _ in around for line in before.splitlines()]
+    declared = [name for name, there in (("decode", decodes), ("encode", encodes)) if there]
+    return _filled(
+        "header.hpp",
+        made=made(unit),
+        name=unit.name,
+        guard=f"{unit.name.upper()}_HPP",
+        includes="\n".join(lines),
+        classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
+        declarations="\n".join(_declarations()[each] for each in declared),
+        functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
+        around="\n".join(Template(text).substitute(words) for _, text in around),
+    )
+
+
+def class_of(unit: Unit, manners: Manners) -> str:
+    """The class of the holder, as C++ names it."""
+    root = unit.schema.types[unit.type]
+    assert isinstance(root, Struct)
+    if manners.type is None:
+        return f"{unit.name}::{root_class(unit)}"
+    return manners.type(root)
+
+
+def root_class(unit: Unit) -> str:
+    """The name of our own class for the message."""
+    from rosetta_jit.generate.cpp.classes import names_of
+
+    return names_of(unit)[unit.type]
+
+
+def _function(unit: Unit, name: str, parameters: tuple[str, ...], result: str) -> str:
+    given = "".join(f"{C_TYPES[each]} number_{number}, " for number, each in enumerate(parameters, 1))
+    return (
+        "/* You write this function, which the mapping calls: false refuses the message. */\n"
+        f"bool {unit.name}_{name}({given}{C_TYPES[result]} *result);\n"
+    )
+
+
+def _declarations() -> dict[str, str]:
+    text = (FOLDER / "declarations.hpp").read_text("utf-8")
+    _, *parts = re.split(r"^/\* == (\w+) == \*/\n", text, flags=re.MULTILINE)
+    return dict(zip(parts[::2], parts[1::2], strict=True))
+
+
+def _section(file: Path) -> tuple[str, str]:
+    """The includes of a file, and the rest."""
+    text = file.read_text("utf-8")
+    includes = [line for line in text.splitlines() if line.startswith("#include")]
+    return "\n".join(includes), "\n".join(line for line in text.splitlines() if line not in includes).strip() + "\n"
+
+
+def _filled(file: str, **given: str) -> str:
+    return re.sub(r"\n{3,}", "\n\n", Template((FOLDER / file).read_text("utf-8")).substitute(given))
+
+
+def source(unit: Unit, parts: Parts, manners: Manners) -> str:
+    """The text of the source file."""
+    printed, lanes = parts.printed, parts.lanes
+    walks = {direction: Walk(unit, lanes, manners, direction) for direction in ("decode", "encode")}
+    root, element = unit.layout.root, lanes.all[0].element
+    type_ = Ref(unit.type)
+    directs = {
+        name: [*walk.directs(type_, root, element, "row", Spot(at))]
+        for (name, walk), at in zip(walks.items(), ("target", "source"), strict=True)
+    }
+    containers = {
+        each.lane: each.spot.at for each in walks["decode"].directs(type_, root, element, "row", Spot("std::declval<holder &>()"))
+    }
+    called = {name for each in printed.values() for name in each.support} | {"failure"}
+    kernels: list[str] = []
+    for role in sorted(printed, key=ORDER.index):
+        kernels += [_table(role, unit, parts), printed[role].text.rstrip()]
+    said = any(site.detail_lane is not None for kernel in unit.kernels.values() for site in kernel.sites)
+    return _filled(
+        "source.cpp",
+        made=made(unit),
+        name=unit.name,
+        includes=_includes(called),
+        structs="\n\n".join(_struct(unit, parts, each) for each in parts.structs),
+        asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
+        holder=_holder(unit, parts, containers),
+        support=support(without_unused(called, printed)),
+        kernels="\n\n".join(kernels),
+        walks=_walks(unit, parts, walks, directs),
+        lanes=",\n    ".join(
+            [*(literal(f".{each.name}" if each.name else "") for each in unit.layout.lanes)] + [literal("")] * parts.hidden
+        ),
+        said=SAID if said else "",
+        functions="\n".join(_methods(unit, parts, directs)),
+    )
+
+
+def _includes(called: set[str]) -> str:
+    lines = ["<cfloat>", "<cstring>", "<algorithm>", "<variant>", "<optional>"]
+    lines += ["<math.h>"] if "math" in called else []
+    lines += ["<inttypes.h>", "<stdio.h>", "<stdlib.h>"] if "decimals" in called else []
+    return "\n".join(f"#include {each}" for each in sorted(lines))
+
+
+def _struct(unit: Unit, parts: Parts, struct: RowStruct) -> str:
+    """As in C, without what its header has for who builds messages by hand."""
+    return struct_text(unit.name, parts.lanes, struct, cases=False)
+
+
+def _holder(unit: Unit, parts: Parts, containers: dict[int, str]) -> str:
+    """What kernels work on: the message's row and the lanes."""
+    lanes = parts.lanes
+    lines = [
+        "/* A message, and the elements of its arrays and texts. */",
+        f"struct {unit.name}_holder {{",
+        f"    {lanes.type(0)} message = {{}};",
+    ]
+    for lane in range(1, lanes.own):
+        kind = f"rosetta_jit::detail::lane<{lanes.type(lane)}>"
+        if lane in containers:
+            container = f"std::remove_const_t<std::remove_reference_t<decltype({containers[lane]})>>"
+            kind = f"rosetta_jit::detail::field_lane<{lanes.type(lane)}, {container}>"
+        lines.append(f"    {kind} {lanes.rows(lane)};")
+    lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
+    lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
+    return "\n".join([*lines, "};", ""])
+
+
+def _table(role: Role, unit: Unit, parts: Parts) -> str:
+    """The sites of a kernel, each with the parts of the message that it checks at once."""
+    kernel, lines = unit.kernels[role], list[str]()
+    sites = [*(kernel.sites[number] for number in parts.printed[role].sites), *([NO_ROOM] if role == "encode" else [])]
+    for number, site in enumerate(sites):
+        if site.parts:
+            lines.append(f"const part {role}_parts_{number}[] = {{")
+            lines += [f"    {{{each.offset}, {each.size}, {each.step}, {literal(each.path)}}}," for each in site.parts]
+            lines += ["};", ""]
+    lines.append(f"const site {role}_sites[] = {{")
+    kinds = ["status::full", *(f"status::{each.kind}{'_' if each.kind in RESERVED else ''}" for each in sites[1:])]
+    lines += [
+        f"    {{{kind}, {site_text(role, number, site, parts.lanes, 'nullptr')}}},"
+        for number, (kind, site) in enumerate(zip(kinds, sites, strict=True))
+    ]
+    return "\n".join([*lines, "};"])
+
+
+def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, list[Direct]]) -> str:
+    """The functions between rows and classes: one for the message, and one for each lane of a type that contains itself."""
+    texts: list[str] = []
+    wanted = [name for name, role in (("decode", "borrow"), ("encode", "encode")) if role in unit.kernels]
+    for name in wanted:
+        walk = walks[name]
+        walk.direct = frozenset(each.lane for each in directs[name])
+        heads, bodies = list[str](), list[str]()
+        functions = [(0, Ref(unit.type)), *((lane, Ref(struct)) for lane, struct in unit.layout.recursive)]
+        for lane, type_ in functions:
+            head, body = _walk(unit, parts, walk, lane, type_)
+            heads.append(head)
+            bodies.append(f"{head}\n{{\n{body}}}\n")
+        texts += [*(f"{head};" for head in heads[1:]), "", *bodies]
+    return "\n".join(texts)
+
+
+def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref) -> tuple[str, str]:
+    lanes, name = parts.lanes, f"_{parts.lanes.rows(lane)}" if lane else ""
+    element, row = lanes.all[lane].element, lanes.type(lane)
+    if lane:
+        assert isinstance(element, RowStruct)
+        element = element.members[0].type
+        assert isinstance(element, RowStruct)
+        row = element.identifier
+    if walk.direction == "decode":
+        given = f"const {unit.name}_holder &from, const unsigned char *bytes, const {row} &row, Target &target"
+        head = f"template <class Target>\nvoid fill{name}({given})"
+        target, unused = "target", ("from", "bytes", "row", "target")
+    else:
+        head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_holder &to, {row} &row)"
+        target, unused = "source", ("source", "to", "row")
+    walk.writer.lines, walk.writer.depth, walk.depth = [], 1, 0
+    for each in unused:
+        walk.writer.line(f"static_cast<void>({each});")
+    walk.value(type_, unit.layout.lanes[lane].element, element, "row", Spot(target))
+    return head, walk.writer.text()
+
+
+def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list[str]:
+    template = (FOLDER / "methods.cpp").read_text("utf-8")
+    _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
+    known = dict(zip(sections[::2], sections[1::2], strict=True))
+    words = {"name": unit.name}
+    texts: list[str] = []
+    lanes, printed = parts.lanes, parts.printed
+    if "borrow" in printed:
+        first, *others = printed["borrow"].attempts
+        bound = {each.lane for each in directs["decode"]}
+        finish = "\n".join(f"    holder->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"])
+        texts.append(
+            Template(known["decode"]).substitute(
+                words,
+                bind="\n".join(f"    holder->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
+                reset="\n".join(f"    holder->{lanes.rows(lane)}.used = 0;" for lane in range(1, lanes.own) if lane not in bound),
+                first=run(first, "failure"),
+                others="".join(Template(known["other"]).substitute(call=run(each, "other")) for each in others),
+                finish=finish,
+                empty="\n".join(f"    {line}" for line in finish.splitlines()),
+            )
+        )
+    if "encode" in printed:
+        texts.append(
+            Template(known["encode"]).substitute(
+                words,
+                reset="\n".join(f"    holder->{lanes.rows(lane)}.used = 0;" for lane in range(1, lanes.own)),
+                bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs["encode"]),
+                size=run(printed["size"].attempts[0], "failure"),
+                run=run(printed["encode"].attempts[0], "failure"),
+                measure=Template(known["measure"]).substitute(no_room=str(len(printed["encode"].sites)))
+                if printed["encode"].hidden
+                else "",
+            )
+        )
+    return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
+
+
+def _read(lane: str, each: Direct) -> str:
+    return f"    holder->{lane}.read({each.spot.at});\n    {each.row} = {{0, holder->{lane}.used}};"

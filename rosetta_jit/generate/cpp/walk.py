@@ -1,0 +1,344 @@
+"""Between the rows of kernels and the fields of classes: one walk over a type, for both directions.
+
+    fill(from, bytes, target)        a class gets what a decoder left in the rows
+    collect(source, to)              the rows get what a class has, for an encoder
+
+A lane is *direct* where a field of the message itself is a container of numbers or characters: kernels then work on the elements of that
+container, and nothing is copied. Bytes that a decoder left in the message are copied once, from there.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import field
+from string import Template
+from typing import TYPE_CHECKING, Literal
+
+from rosetta_jit.backends.base import Writer
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.c.rows import PADDING
+from rosetta_jit.generate.c.rows import Struct as RowStruct
+from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.cpp.names import member_names
+from rosetta_jit.model.layout import Number, Row, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Enum, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.rows import Member as RowMember
+    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.model.layout import Member
+    from rosetta_jit.model.types import Field, Type
+
+Direction = Literal["decode", "encode"]
+IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+NOT_FIELDS = frozenset({"presence", "unknown", "which", "nothing", "links"})
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A value of a class: ``at`` is the expression for it, ``owner`` and ``field`` those of what has it, where that is a class."""
+
+    at: str
+    owner: str = ""
+    field: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Direct:
+    """A lane whose rows are the elements of a container: its span in the message's row, and the container."""
+
+    lane: int
+    row: str
+    spot: Spot
+
+
+@dataclass(slots=True)
+class Walk:
+    """One of the two functions being printed."""
+
+    unit: Unit
+    lanes: Lanes
+    manners: Manners
+    direction: Direction
+    direct: frozenset[int] = frozenset()
+    writer: Writer = field(default_factory=Writer)
+    depth: int = 0
+
+    # --- names and templates ---------------------------------------------------------------------------------------------------------
+
+    def text(self, kind: str, spot: Spot, **given: str) -> str:
+        """A section, filled in."""
+        sections = self.manners.sections()
+        section = sections.get(f"{kind} {self.direction}", sections.get(kind))
+        if section is None:
+            raise SchemaError((words.no_manner(self.manners.name, kind, spot.field or spot.at),))
+        return Template(section).substitute(at=spot.at, object=spot.owner, field=spot.field, **given)
+
+    def lines(self, kind: str, spot: Spot, **given: str) -> None:
+        for line in self.text(kind, spot, **given).splitlines():
+            self.writer.line(line)
+
+    def member_of(self, owner: str, name: str) -> Spot:
+        """A field of a class."""
+        return Spot(self.text("member", Spot("", owner, name)), owner, name)
+
+    def names(self, struct: Struct) -> tuple[str, ...]:
+        """The names of a struct's fields as the class has them."""
+        if self.manners.type is None:
+            return member_names(struct)
+        return tuple(self.named(each.name, struct.name) for each in struct.fields)
+
+    def named(self, name: str, struct: str = "") -> str:
+        """The name of a field of a framework's class."""
+        known = dict(self.manners.renamed).get((struct, name), name)
+        plain = known.lower() if self.manners.lower else known
+        if not IDENTIFIER.fullmatch(plain):
+            raise SchemaError((words.no_manner(self.manners.name, "member", plain),))
+        return f"{plain}_" if plain in RESERVED else plain
+
+    def local(self, what: str) -> str:
+        return f"{what}_{self.depth}"
+
+    # --- values ----------------------------------------------------------------------------------------------------------------------
+
+    def value(self, type_: Type, slot: Number | Span | Row | Variant, element: RowStruct | str | object, row: str, spot: Spot) -> None:
+        """A value and its row, whatever its type; ``element`` is what a row of it is in C."""
+        resolved = self.unit.schema.resolve(type_)
+        match resolved, slot:
+            case _, Number():
+                self.lines("number", spot, row=row)
+            case Struct(), Row():
+                self.struct(resolved, slot, element, row, spot)
+            case Union(), Variant():
+                self.union(resolved, slot, element, row, spot)
+            case Struct(), Span():
+                self.link(slot, row, spot)
+            case Map(key, value), Span():
+                with self.writer.indented("{"):
+                    self.map(key, value, slot, row, spot)
+                self.writer.line("}")
+            case ((String() | Bytes() | Array()), Span()):
+                self.sequence(resolved, slot, row, spot)
+            case _:
+                raise AssertionError(type_)
+
+    def struct(self, struct: Struct, slot: Row, element: object, row: str, spot: Spot) -> None:
+        """The fields of a class, one after the other."""
+        assert isinstance(element, RowStruct)
+        known, names = _members(element), self.names(struct)
+        if slot.unknown is not None and "unknown decode" in self.manners.sections():
+            lane = self.lanes.rows(slot.unknown.lane)
+            self.lines("unknown", Spot(spot.at, spot.at), row=f"{row}.unknown", lane=lane)
+        for each, name, member, own in zip(struct.fields, names, slot.members, known, strict=True):
+            self.field_of(each, name, member, own.type, f"{row}.{own.identifier}", row, spot.at)
+
+    def field_of(self, each: Field, name: str, member: Member, element: object, row: str, around: str, owner: str) -> None:
+        """A field, which may be absent."""
+        type_, spot = each.type, self.member_of(owner, name)
+        if member.presence is None:
+            self.nested(type_, member, element, row, spot)
+            return
+        assert isinstance(type_, Optional)
+        if isinstance(member.slot, Span) and isinstance(self.unit.schema.resolve(type_.value), Struct):
+            self.link(member.slot, row, spot, f"rosetta_jit::detail::set_bit({around}.presence, {member.presence});")
+            return
+        there = f"rosetta_jit::detail::is_set({around}.presence, {member.presence})"
+        if self.direction == "decode":
+            with self.writer.indented(f"if ({there}) {{"):
+                self.lines("optional make", spot)
+                self.nested(type_.value, member, element, row, self._value("optional", spot))
+            with self.writer.indented("} else {"):
+                self.lines("optional clear", spot)
+        else:
+            with self.writer.indented(f"if ({self.text('optional is there', spot)}) {{"):
+                self.writer.line(f"rosetta_jit::detail::set_bit({around}.presence, {member.presence});")
+                self.nested(type_.value, member, element, row, self._value("optional", spot))
+        self.writer.line("}")
+
+    def _value(self, kind: str, spot: Spot) -> Spot:
+        return Spot(self.text(f"{kind} value", spot), spot.owner, spot.field)
+
+    def nested(self, type_: Type, member: Member, element: object, row: str, spot: Spot) -> None:
+        """A value; a class within a class gets a name, by which its fields are reached."""
+        if not isinstance(member.slot, Row):
+            self.value(type_, member.slot, element, row, spot)
+            return
+        self.depth += 1
+        name = self.local("inner")
+        if not member.slot.members and member.slot.unknown is None:
+            self.writer.line(f"static_cast<void>({spot.at});")
+        else:
+            with self.writer.indented("{"):
+                self.writer.line(f"{'' if self.direction == 'decode' else 'const '}auto &{name} = {spot.at};")
+                self.value(type_, member.slot, element, row, Spot(name))
+            self.writer.line("}")
+        self.depth -= 1
+
+    def sequence(self, type_: String | Bytes | Array, slot: Span, row: str, spot: Spot) -> None:
+        """Numbers, a text, bytes; or a list of anything else, element by element."""
+        lane = self.lanes.rows(slot.lane)
+        if slot.lane in self.direct:
+            return
+        if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
+            self.lines("sequence", spot, row=row, lane=lane)
+            return
+        self.lines("list", spot, row=row, lane=lane)
+        self.depth += 1
+        index = self.local("i")
+        with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {self._count(row, spot)}; {index}++) {{"):
+            self.row(type_.element, slot.lane, f"{row}.start + {index}", Spot(self.text("element", spot, index=index)))
+        self.writer.line("}")
+        self.depth -= 1
+
+    def _count(self, row: str, spot: Spot) -> str:
+        """How many elements there are: an array of a fixed length may have fewer than a damaged row says."""
+        return f"std::min({row}.count, rosetta_jit::detail::count_of({spot.at}))" if self.direction == "decode" else f"{row}.count"
+
+    def row(self, type_: Type, lane: int, index: str, spot: Spot) -> None:
+        """One row of a lane, and the element that belongs to it."""
+        rows, inner, element = self.lanes.rows(lane), self.local("row"), self.lanes.all[lane].element
+        slot = self.unit.layout.lanes[lane].element
+        recursive = self.unit.layout.lanes[lane].links is not None
+        within = f"{inner}.value" if recursive else inner
+        if recursive:
+            assert isinstance(element, RowStruct)
+            element = element.members[0].type
+        target = self.local("element")
+        if self.direction == "decode":
+            self.writer.line(f"const auto &{inner} = from.{rows}.rows[{index}];")
+            self.writer.line(f"auto &&{target} = {spot.at};")
+        else:
+            self.writer.line(f"{self.lanes.type(lane)} {inner} = {{}};")
+            self.writer.line(f"const auto &{target} = {spot.at};")
+        if recursive:
+            self.writer.line(
+                f"fill_{rows}(from, bytes, {within}, {target});"
+                if self.direction == "decode"
+                else f"collect_{rows}({target}, to, {within});"
+            )
+        else:
+            self.value(type_, slot, element, within, Spot(target))
+        if self.direction == "encode":
+            self.writer.line(f"to.{rows}.rows[{index}] = {inner};")
+
+    def link(self, slot: Span, row: str, spot: Spot, present: str = "") -> None:
+        """A field of a type that contains itself: no row, or one."""
+        self.depth += 1
+        lane = slot.lane
+        type_ = Ref(next(name for number, name in self.unit.layout.recursive if number == lane))
+        if self.direction == "decode":
+            with self.writer.indented(f"if ({row}.count > 0) {{"):
+                self.lines("link make", spot)
+                self.row(type_, lane, f"{row}.start", self._value("link", spot))
+            with self.writer.indented("} else {"):
+                self.lines("link clear", spot)
+        else:
+            with self.writer.indented(f"if ({self.text('link is there', spot)}) {{"):
+                if present:
+                    self.writer.line(present)
+                self.writer.line(f"{row}.count = 1;")
+                self.writer.line(f"{row}.start = rosetta_jit::detail::take(to.{self.lanes.rows(lane)}, 1);")
+                self.row(type_, lane, f"{row}.start", self._value("link", spot))
+        self.writer.line("}")
+        self.depth -= 1
+
+    def map(self, key: Type, value: Type, slot: Span, row: str, spot: Spot) -> None:
+        """Entries of a map: later ones of equal keys replace earlier ones."""
+        self.depth += 1
+        lane = self.lanes.rows(slot.lane)
+        entry, inner, index = map_entry(key, value), self.local("row"), self.local("i")
+        element, layout = self.lanes.all[slot.lane].element, self.unit.layout.lanes[slot.lane].element
+        assert isinstance(element, RowStruct)
+        assert isinstance(layout, Row)
+        known, (of_key, of_value) = _members(element), layout.members
+        parts = ((entry.fields[0].type, of_key, known[0], "key"), (entry.fields[1].type, of_value, known[1], "mapped"))
+        if self.direction == "decode":
+            self.lines("map clear", spot)
+            with self.writer.indented(f"for (std::int64_t {index} = 0; {index} < {row}.count; {index}++) {{"):
+                self.writer.line(f"const auto &{inner} = from.{lane}.rows[{row}.start + {index}];")
+                self.writer.line(f"typename std::decay_t<decltype({spot.at})>::key_type {self.local('key')}{{}};")
+                for number, (type_, member, own, what) in enumerate(parts):
+                    if number:
+                        self.writer.line(f"auto &{self.local('mapped')} = {self.text('map entry', spot, key=self.local('key'))};")
+                    self._plain(type_, member, own.type, f"{inner}.{own.identifier}", self.local(what))
+        else:
+            self.lines("list", spot, row=row, lane=lane)
+            self.writer.line(f"std::int64_t {index} = {row}.start;")
+            with self.writer.indented(f"for (const auto &each_{self.depth} : {spot.at}) {{"):
+                self.writer.line(f"{self.lanes.type(slot.lane)} {inner} = {{}};")
+                for (type_, member, own, _), at in zip(parts, ("first", "second"), strict=True):
+                    self._plain(type_, member, own.type, f"{inner}.{own.identifier}", f"each_{self.depth}.{at}")
+                self.writer.line(f"to.{lane}.rows[{index}++] = {inner};")
+        self.writer.line("}")
+        self.depth -= 1
+
+    def _plain(self, type_: Type, member: Member, element: object, row: str, at: str) -> None:
+        """A key or value of a map: numbers are assigned, whatever setters the fields of classes have."""
+        if isinstance(member.slot, Number):
+            which = "set" if self.direction == "decode" else "put"
+            self.writer.line(f"rosetta_jit::detail::{which}({f'{at}, {row}' if which == 'set' else f'{row}, {at}'});")
+        else:
+            self.value(type_, member.slot, element, row, Spot(at))
+
+    def union(self, union: Union, slot: Variant, element: object, row: str, spot: Spot) -> None:
+        """The case that is set, or none."""
+        assert isinstance(element, RowStruct)
+        known, opened = _members(element), False
+        for number, (case, member, own) in enumerate(zip(union.cases, slot.members, known, strict=True), 1):
+            given = {"case": self.named(case.name), "number": str(number)}
+            there = f"{row}.which == {number}" if self.direction == "decode" else self.text("case is there", spot, **given)
+            with self.writer.indented(f"{'} else ' if opened else ''}if ({there}) {{"):
+                if self.direction == "decode":
+                    self.lines("case make", spot, **given)
+                else:
+                    self.writer.line(f"{row}.which = {number};")
+                self.nested(case.type, member, own.type, f"{row}.{own.identifier}", self._case(spot, given))
+            opened = True
+        if self.direction == "decode":
+            with self.writer.indented("} else {" if opened else "{"):
+                self.lines("union clear", spot)
+        if opened or self.direction == "decode":
+            self.writer.line("}")
+
+    def _case(self, spot: Spot, given: dict[str, str]) -> Spot:
+        if f"case {self.direction}" in self.manners.sections():
+            return Spot(self.text("case", spot, **given))
+        return self.member_of(spot.owner, given["case"])
+
+    # --- what is direct --------------------------------------------------------------------------------------------------------------
+
+    def directs(self, type_: Type, slot: object, element: object, row: str, spot: Spot) -> Iterator[Direct]:
+        """Containers of numbers and texts that every message has, and how they are reached from it."""
+        resolved = self.unit.schema.resolve(type_)
+        if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
+            return
+        for each, name, member, own in zip(resolved.fields, self.names(resolved), slot.members, _members(element), strict=True):
+            found, at = self.unit.schema.resolve(each.type), f"{row}.{own.identifier}"
+            inner = self.member_of(spot.at, name)
+            match found, member.slot:
+                case ((String() | Array()), Span(_, lane)) if member.presence is None and self._may_grow(found) and self._is_numbers(lane):
+                    yield Direct(lane, at, Spot(self.text("direct", inner), inner.owner, inner.field))
+                case Struct(), Row() if member.presence is None:
+                    yield from self.directs(found, member.slot, own.type, at, Spot(inner.at))
+                case _:
+                    pass
+
+    def _may_grow(self, type_: String | Array) -> bool:
+        if isinstance(type_, String):
+            return True
+        return not isinstance(type_.length, int) and not isinstance(self.unit.schema.resolve(type_.element), Enum)
+
+    def _is_numbers(self, lane: int) -> bool:
+        element = self.unit.layout.lanes[lane].element
+        return isinstance(element, Number) and element.scalar != "bool"
+
+
+def _members(struct: RowStruct) -> list[RowMember]:
+    """Those of a row's struct that stand for fields, in order."""
+    return [each for each in struct.members if each.identifier not in NOT_FIELDS and not (PADDING.fullmatch(each.identifier) and each.many)]

@@ -1,0 +1,263 @@
+"""A function of the language: one record says all that is known of it.
+
+    Function = name, signature, units, lower, inverse | why there is none, law, rows of the reference, operation
+
+The records of the language stand in `rosetta_jit.functions`, one file a family, which is imported when a function is first looked up. An
+installed package offers records of its own by entry points of the group `rosetta_jit.functions`, a `Function` each. An operator of
+texts is a record with a name that no mapping can write: `+`.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING, cast
+from typing import Literal as OneOf
+
+from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.entry_points import may_be_offered
+from rosetta_jit.startup.garbage import imported
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.language.affine_steps import Value
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.typed import Call, Expr
+    from rosetta_jit.model import expr as model
+    from rosetta_jit.model.types import Float, Int, Type
+
+    Solved = tuple[model.Expr, model.Expr]
+    """An argument of a call, and what it must be."""
+
+    Own = Callable[[model.Call, list[Expr], Scope], Expr | None]
+    """A signature of its own: the typed call of typed arguments; None where there is none, and the problem is in the scope."""
+
+    Inverse = Callable[[model.Call, model.Expr], Solved | None]
+    Split = Callable[[model.Call, model.Expr], tuple[Solved, Solved]]
+    Back = Callable[[Call, Call, Value], Value | None]
+    """Of a call, the one behind it, and the value before both: the value behind both; None where it is not undone."""
+
+GROUP = "rosetta_jit.functions"
+"""The entry-point group in which packages offer functions of their own: a `Function` each."""
+
+OURS = ("angles", "numbers", "division", "counting", "clock", "joining", "texts", "comparing", "spelling", "moments", "octets", "images")
+"""Modules of `rosetta_jit.functions` with a tuple `FUNCTIONS`, in the order of the reference."""
+
+
+# --- types ---------------------------------------------------------------------------------------------------------------
+
+Count = tuple[int, int | None]
+"""How many arguments there may be: at least, and at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """Of numbers: all arguments and the result are of the first of the ``types`` that every argument becomes without a loss.
+
+    ``fold`` computes integers that are known, or gives None where the function refuses them.
+    """
+
+    types: tuple[Int | Float, ...]
+    count: Count = (1, 1)
+    takes: str = "one value"
+    fold: Callable[[list[int]], int | None] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Texts:
+    """Of texts: the kinds of the arguments, of which the last ``optional`` ones may be left out. None gives what the first argument is."""
+
+    takes: tuple[str, ...]
+    gives: Type | None
+    optional: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """What a function has to do with units.
+
+    Attributes
+    ----------
+    takes
+        The unit of its first argument.
+    gives
+        The unit of its value.
+    keeps
+        Whether its value is in the unit of its arguments.
+    joins
+        Whether all arguments must be in one unit.
+    """
+
+    takes: str | None = None
+    gives: str | None = None
+    keeps: bool = False
+    joins: bool = False
+
+
+# --- the other direction -------------------------------------------------------------------------------------------------
+
+SEVERAL = "gives the same for several values"
+"""Why most functions have no inverse."""
+
+
+@dataclass(frozen=True, slots=True)
+class Whole:
+    """A function that gives one part of a number whose ``rest`` another function gives; both together say the number.
+
+    ``below`` is the number that the rest of a call is less than: 0 where that goes without saying, None where the call is no such part.
+    """
+
+    rest: str
+    below: Callable[[model.Call], int | None]
+    joined: Callable[[model.Call, model.Expr, model.Expr], model.Expr]
+
+
+# --- laws ----------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Affine:
+    """A step that scales and shifts its one unknown argument.
+
+    ``exact`` says that each value comes from one argument alone, or the step refuses it; ``rounds``, that it rounds if computed in floats.
+    """
+
+    follow: Callable[[Call, Value], Value]
+    exact: bool = False
+    rounds: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Undone:
+    """A step that others undo: ``by`` says which, and what is left; ``of_several`` is why nothing comes back of several fields."""
+
+    by: Mapping[str, Back]
+    of_several: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class NotFollowed:
+    """Nothing is shown of what comes back through this step."""
+
+
+NOT_FOLLOWED = NotFollowed()
+
+Law = Affine | Undone | NotFollowed
+
+
+Operation = OneOf[
+    "arithmetic",
+    "array reorder",
+    "string manipulation",
+    "image compression",
+    "predicate assignment",
+    "subtype loops",
+    "rejection",
+    "generators",
+    "date manipulation",
+]
+"""The operations of the paper's table 2, as `explain` counts them."""
+
+
+# --- the record ----------------------------------------------------------------------------------------------------------
+
+Table = OneOf["numbers", "texts", "bytes", "images"]
+"""The tables of the reference."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of the reference: how calls are written, and the two cells behind that, as the heads of its table say."""
+
+    table: Table
+    forms: str
+    cells: tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """All that is known of a function.
+
+    Attributes
+    ----------
+    signature
+        The types of its arguments and of its value.
+    lower
+        What a call becomes in a kernel. It takes the typed call and the evaluation around it (`rosetta_jit.lowering.evaluation`); it gives
+        a kernel expression, or of a text the place of its bytes.
+    inverse
+        Of a call and its value: the argument that holds the field, and what that must be; None where such a call has no inverse. As a text:
+        why there is none.
+    law
+        What comes back of its argument.
+    rows
+        Its rows in the reference; functions that share a row share the record of it.
+    operation
+        What `explain` counts it as.
+    units
+        The units that it takes and gives.
+    split
+        Of a call with two arguments and its value: both, and what each of them must be.
+    whole
+        Which function gives what this one leaves.
+    remark
+        What it does to a value that a reader should know, for `explain`.
+    kept
+        Whether a value that is computed once may serve several rules: not if the host is asked, or a text is made.
+    changes
+        Whether its value is another one for each message, so that none could be compared with it.
+    """
+
+    name: str
+    signature: Numbers | Texts | Own
+    lower: Callable[..., object]
+    inverse: Inverse | str
+    law: Law
+    rows: tuple[Row, ...]
+    operation: Operation = "arithmetic"
+    units: Units = Units()
+    split: Split | None = None
+    whole: Whole | None = None
+    remark: str = ""
+    kept: bool = True
+    changes: bool = False
+
+
+@cache
+def functions() -> Mapping[str, Function]:
+    """Every function by name: ours, and those of installed packages, which cannot take the place of ours."""
+    return MappingProxyType({**{each.name: each for each in offered()}, **{each.name: each for each in shipped()}})
+
+
+@cache
+def shipped() -> tuple[Function, ...]:
+    """The functions that come with rosetta_jit, in the order of the reference."""
+    return tuple(each for name in OURS for each in cast("tuple[Function, ...]", imported(f"rosetta_jit.functions.{name}").FUNCTIONS))
+
+
+@cache
+def offered() -> tuple[Function, ...]:
+    """The functions of installed packages."""
+    if not may_be_offered(GROUP):
+        return ()
+    from importlib.metadata import entry_points  # slow to import
+
+    return tuple(cast("Function", each.load()) for each in entry_points(group=GROUP))
+
+
+def files_of_offered() -> tuple[str, ...]:
+    """The source files of the functions of installed packages: what is kept of a program depends on them."""
+    modules = (sys.modules[each.lower.__module__] for each in offered())
+    return tuple(dict.fromkeys(path for each in modules if (path := each.__file__) is not None))
+
+
+def names() -> tuple[str, ...]:
+    """The functions that a mapping can call."""
+    return tuple(name for name in functions() if name.isidentifier())
+
+
+def written(name: str) -> Function | None:
+    """The function that a mapping calls by a name; None where there is none."""
+    return functions().get(name) if name.isidentifier() else None

@@ -1,0 +1,193 @@
+"""Messages of several topics as a folder of tables, by topic and time. A conversion that was killed goes on where it was.
+
+The log is read once. Whenever so many bytes of messages are done, the files that are open are finished, and the journal says so: see
+`rosetta_jit.logs.converting.journal`. After a kill, what the journal does not mention is removed and made again.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosetta_jit.catalogue import logs as words
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.ahead import ahead
+from rosetta_jit.logs.base import Wanted
+from rosetta_jit.logs.channel import CLOCKS, decoded_staged
+from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
+from rosetta_jit.logs.converting.parts import Parts
+from rosetta_jit.logs.converting.rejected import Damaged, Rejected
+from rosetta_jit.logs.folder_names import folder_names
+from rosetta_jit.logs.staging import BYTES, Staging
+from rosetta_jit.logs.tables import table_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from rosetta_jit.logs.base import Block
+    from rosetta_jit.logs.channel import Channel
+    from rosetta_jit.logs.log import Log
+    from rosetta_jit.logs.staging import Staged
+    from rosetta_jit.runtime.batch import Batch
+
+STEP_BYTES = 256 << 20
+"""Messages between one writing of the journal and the next."""
+
+STAGED_BYTES = 64 << 20
+"""Messages that wait to be decoded, of all topics together."""
+
+QUARANTINE = "_quarantine.jsonl"
+
+
+@dataclass(slots=True)
+class _Stream:
+    """A topic: its messages that wait to be decoded, and the batch that they fill again and again."""
+
+    channel: Channel
+    name: str
+    staging: Staging
+    batch: Batch | None = None
+
+
+@dataclass(slots=True)
+class FolderConversion:
+    """Messages of a log on their way into a folder.
+
+    Attributes
+    ----------
+    suffix
+        Of the tables: ``.parquet``, ``.arrow`` or ``.csv``.
+    every_ns
+        The stretch of time of a folder.
+    start, end
+        From when on, and until before when; nanoseconds since 1970.
+    options
+        Of the tables: ``columns``, ``flatten``, ``clocks``, as `Channel.to_arrow` takes them.
+    resume
+        Whether to go on where a conversion stopped.
+    advance
+        Is told how many messages were read, those that were read before included.
+    """
+
+    log: Log
+    channels: list[Channel]
+    output: Path
+    suffix: str = ".parquet"
+    every_ns: int = 3600 * 10**9
+    start: int | None = None
+    end: int | None = None
+    on_error: Damaged = "stop"
+    options: dict[str, Any] = field(default_factory=dict[str, Any])
+    resume: bool = False
+    step_bytes: int = STEP_BYTES
+    advance: Callable[[int], object] = int
+
+    def run(self) -> Rejected:
+        """Write the folder; gives what was left out, now and before.
+
+        Raises
+        ------
+        LogError
+            The folder is not empty, or of another conversion.
+        DecodeError
+            A message is not what its type promises, and ``on_error`` is to stop. What was done before is kept.
+        """
+        for each in self.channels:
+            self.log.channel(each.topic, each.target)  # a topic has one folder, and a folder one type
+        journal = Journal(self.output, self._request())
+        self._check_empty()
+        progress = journal.read() if self.resume else Progress()
+        rejected = Rejected(self.output / QUARANTINE, self.on_error, dict(progress.rejected))
+        self.advance(sum(progress.seen.values()))
+        if progress.is_complete:
+            return rejected
+        for each in self.channels:
+            each.decoder  # noqa: B018 - what is wrong with a type is said before anything is written
+        self.output.mkdir(parents=True, exist_ok=True)
+        rejected.begin(progress.rejected_bytes)
+        journal.write(progress)
+        parts = Parts(self.output, self.suffix, self.every_ns, progress.number)
+        parts.remove_unfinished()
+        try:
+            self._convert(journal, progress, parts, rejected)
+        finally:
+            parts.abandon()
+            rejected.close()
+        return rejected
+
+    def _request(self) -> dict[str, Any]:
+        """What makes one conversion another, as JSON has it."""
+        path, pieces = Path(self.log.name), self.log.pieces
+        return {
+            "log": str(path.resolve()) if path.exists() else self.log.name,
+            "pieces": [len(pieces), sum(each.size for each in pieces)],
+            "topics": [[each.topic, each.type, each.target or "", sorted(each.numbers)] for each in self.channels],
+            "stretch": self.every_ns,
+            "format": self.suffix,
+            "start": self.start,
+            "end": self.end,
+            "options": json.loads(json.dumps(self.options, sort_keys=True)),
+        }
+
+    def _check_empty(self) -> None:
+        output = self.output
+        there = {each.name for each in output.iterdir()} if output.is_dir() else {output.name} if output.exists() else set[str]()
+        if there - {PART} and not (self.resume and NAME in there):
+            raise LogError((words.not_empty(str(output)),))
+
+    def _convert(self, journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:
+        names, room = folder_names(each.topic for each in self.channels), min(BYTES, STAGED_BYTES // max(len(self.channels), 1))
+        streams = [_Stream(each, names[each.topic], Staging(room)) for each in self.channels]
+        done = 0
+        for piece, within, block in ahead(self._blocks(progress)):
+            for stream in streams:
+                rows = block.rows.only(np.isin(block.rows.channels, list(stream.channel.numbers)))
+                self._add(stream, stream.staging.put(block, rows), progress, parts, rejected)
+            done += int((block.rows.ends - block.rows.begins).sum())
+            progress.piece, progress.within = piece, within
+            self.advance(len(block.rows))
+            if done >= self.step_bytes or parts.is_full:
+                self._step(streams, journal, progress, parts, rejected)
+                done = 0
+        progress.is_complete = True
+        self._step(streams, journal, progress, parts, rejected)
+
+    def _blocks(self, progress: Progress) -> Iterator[tuple[int, int, Block]]:
+        """The messages that are left, with the piece and the number of messages in it that are done behind each block."""
+        numbers = frozenset(number for each in self.channels for number in each.numbers)
+        first, skipped = progress.piece, progress.within
+        piece, within = first, 0
+        for block in self.log.blocks(Wanted(numbers, self.start, self.end, range(first, len(self.log.pieces)))):
+            if block.piece != piece:
+                piece, within = block.piece, 0
+            before, within = within, within + len(block.rows)
+            done = skipped - before if piece == first else 0
+            if done < len(block.rows):
+                yield piece, within, replace(block, rows=block.rows.only(slice(max(done, 0), None)))
+
+    def _step(self, streams: list[_Stream], journal: Journal, progress: Progress, parts: Parts, rejected: Rejected) -> None:
+        """Finish all files, and say so in the journal."""
+        for stream in streams:
+            self._add(stream, stream.staging.flushed(), progress, parts, rejected)
+        parts.finish()
+        progress.number, progress.rejected, progress.rejected_bytes = parts.number, dict(rejected.counts), rejected.kept()
+        journal.write(progress)
+
+    def _add(self, stream: _Stream, many: Iterable[Staged], progress: Progress, parts: Parts, rejected: Rejected) -> None:
+        """Decode messages, and write them as tables."""
+        options = dict(self.options)
+        columns, clocks = options.pop("columns", None), options.pop("clocks", CLOCKS)
+        topic = stream.channel.topic
+        for staged in many:
+            first = progress.seen.get(topic, 0)
+            part = decoded_staged(stream.channel.decoder, staged, stream.batch, rejected.on_error, first)
+            stream.batch = part.batch
+            rejected.add(topic, first, part.batch.errors, staged.data, staged.offsets, staged.log_ns)
+            if len(part.log_ns):
+                parts.add(stream.name, table_of(part, columns, clocks, options), part.log_ns)
+            progress.seen[topic] = first + len(staged.log_ns)

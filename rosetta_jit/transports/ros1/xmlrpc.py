@@ -1,0 +1,122 @@
+"""XML-RPC, by which nodes talk to the master and to each other: one request a connection, answers of bounded size."""
+
+from __future__ import annotations
+
+import http.client
+import socket
+import threading
+import xmlrpc.client
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import urlsplit
+from xml.parsers.expat import ExpatError
+
+from rosetta_jit.errors import TransportError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+MAX_BYTES = 4 << 20
+MAX_REQUESTS = 32
+"""At a time, of who asks this node."""
+
+TIMEOUT_S = 3.0
+
+
+def ask(uri: str, method: str, *arguments: Any) -> Any:
+    """The value that a node or the master answers with.
+
+    Raises
+    ------
+    TransportError
+        Nothing answers there, or with a failure.
+    """
+    try:
+        place = urlsplit(uri)
+        connection = http.client.HTTPConnection(place.hostname or "", place.port or 11311, timeout=TIMEOUT_S)
+        try:
+            body = xmlrpc.client.dumps(arguments, method).encode()
+            connection.request("POST", place.path or "/", body, {"Content-Type": "text/xml"})
+            answer = connection.getresponse().read(MAX_BYTES)
+        finally:
+            connection.close()
+        values: tuple[Any, ...] = xmlrpc.client.loads(answer)[0]
+    except (OSError, http.client.HTTPException, ValueError) as error:
+        raise TransportError("unreachable", uri, f"no answer: {getattr(error, 'strerror', None) or error}") from None
+    except (ExpatError, xmlrpc.client.Error, TypeError, LookupError) as error:
+        raise TransportError("protocol", uri, f"no answer of a ROS node: {type(error).__name__}") from None
+    match values:
+        case ([1, _, value],):
+            return value
+        case ([code, text, _],):
+            raise TransportError("refused", uri, f"{method} failed ({code}): {str(text)[:500]}")
+        case _:
+            raise TransportError("protocol", uri, f"{method} is not answered as ROS does")
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+    request_queue_size = 64
+
+    def __init__(self, place: tuple[str, int], methods: Mapping[str, Callable[..., object]]) -> None:
+        self.address_family = socket.AF_INET6 if ":" in place[0] else socket.AF_INET
+        self.methods = methods
+        self.room = threading.BoundedSemaphore(MAX_REQUESTS)
+        super().__init__(place, _Handler)
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        if not self.room.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        super().process_request(request, client_address)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self.room.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A peer that went away is its own business."""
+
+
+class _Handler(BaseHTTPRequestHandler):
+    timeout = TIMEOUT_S
+
+    def do_POST(self) -> None:
+        size = self.headers.get("Content-Length", "")
+        if not size.isdecimal() or int(size) > MAX_BYTES:
+            self.send_error(413)
+            return
+        try:
+            arguments, method = xmlrpc.client.loads(self.rfile.read(int(size)))
+            answer: Any = cast("_Server", self.server).methods[method or ""](*arguments)
+        except (ExpatError, xmlrpc.client.Error, LookupError, TypeError, ValueError, OSError) as error:
+            answer = [-1, type(error).__name__, 0]
+        body = xmlrpc.client.dumps((answer,), methodresponse=True, allow_none=False).encode()
+        self.send_response(200)
+        self.send_header("Content-Type", "text/xml")
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - as the base class names it
+        """Say nothing."""
+
+
+class Answering:
+    """A server of methods, in threads of its own."""
+
+    def __init__(self, host: str, methods: Mapping[str, Callable[..., object]]) -> None:
+        try:
+            self._server = _Server((host, 0), methods)
+        except OSError as error:
+            raise TransportError("unreachable", host, f"cannot listen there: {error.strerror or error}") from None
+        self.port = int(self._server.server_address[1])
+        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.05,), name="ros1 xmlrpc", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Answer no more."""
+        self._server.shutdown()
+        self._server.server_close()

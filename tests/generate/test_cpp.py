@@ -1,0 +1,151 @@
+"""Generated C++ does what the library does, with classes of its own and with those of frameworks."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.cli import main
+from rosetta_jit.errors import Kind, SchemaError
+from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.cpp.language import INCLUDE, SHARED
+from tests.generate import cpp, native
+from tests.generate.corpora import corpora
+from tests.generate.driver import answers, expected, harmed
+from tests.generate.test_c import HOSTILE, SUBJECTS, TORSO
+from tests.golden import GOLDEN, check_golden
+
+BOTH = ("decode", "encode")
+CMAKE = INCLUDE.parents[1] / "cmake"
+HERE = Path(__file__).parent
+MODELS = f"-I{HERE / 'models'}"
+QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+OUTER = "=" * 80 + "\nMSG: evil/Inner\nfloat32 while\nstring memcpy\nuint8 holder\nint64[2] which\nstring codec\nbool[] std\n"
+
+
+def same(found: list[str], decode, encode, messages: list[bytes]) -> None:
+    """What a program says is what the library says; entries of maps may come in another order."""
+    assert len(found) == len(messages)
+    for line, message in zip(found, messages, strict=True):
+        wanted = expected(decode, encode, message)
+        if line != wanted:
+            assert line.startswith("ok") == wanted.startswith("ok"), (line, wanted)
+            assert line.startswith("ok"), (line, wanted)
+            assert decode(bytes.fromhex(line[3:])) == decode(message), message.hex()
+
+
+@cpp.needs_cpp
+def test_cpp_answers_as_the_library_does(tmp_path):
+    """Built once as people do, with all warnings, and once with a sanitizer: strings, lists of strings, vectors of numbers."""
+    request, good = SUBJECTS["joints"]
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "joints"))
+    messages = harmed(good, 12, name)
+    found = answers(cpp.program(tmp_path, name, options=QUICK), messages)
+    assert {line.split()[0] for line in found} >= {"ok", "truncated"}
+    same(found, rj.Decoder.of(request.type, encoding="ros1"), rj.Encoder.of(request.type, encoding="ros1"), messages)
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("compiler", ["g++", "clang++"])
+def test_no_compiler_complains_of_a_hostile_schema(tmp_path, compiler):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"{compiler} is not installed")
+    request = type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": HOSTILE + OUTER})
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "evil"))
+    subprocess.run([compiler, *cpp.STRICT, "-fsyntax-only", f"-I{tmp_path}", tmp_path / f"{name}.cpp"], check=True)
+
+
+@pytest.mark.parametrize("end", ["hpp", "cpp"])
+def test_the_text_is_the_same_every_time(end):
+    texts = generated(TORSO, "cpp", BOTH, "torso_state", Wishes(holder="protobuf"))
+    check_golden(GOLDEN / "generate" / f"torso_state.{end}", texts[f"torso_state.{end}"])
+
+
+@cpp.needs_cpp
+def test_a_class_that_reads_and_writes_itself_on_a_port(tmp_path):
+    """With a model of YARP's classes, which have these signatures."""
+    name = cpp.write(tmp_path, generated(TORSO, "cpp", BOTH, "torso_state", Wishes(holder="yarp")))
+    said = subprocess.run(
+        [cpp.program(tmp_path, name, options=("-O0", MODELS), main=HERE / "portable.cpp")], capture_output=True, text=True, check=True
+    )
+    assert said.stdout.splitlines() == [
+        "1 3 1.5708",
+        "1 32",
+        "0 truncated at .roll, byte 16: the message ends here",
+        "truncated .roll 16",
+        "index at .angles[2]: no such element (torso_state.mapping:13:3)",
+    ]
+
+
+@pytest.mark.campaign
+@cpp.needs_cpp
+def test_a_converter_for_rsb(tmp_path):
+    """With protoc's real class, and a model of RSB's."""
+    native.needs_protoc()
+    if not native.finds("boost/make_shared.hpp"):
+        pytest.skip("Boost is not installed")
+    request = type_request("decode", "rst.kinematics.JointAngles", {"encoding": "protobuf"})
+    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "joint_angles", Wishes(holder="rsb")))
+    subprocess.run(["protoc", f"--cpp_out={tmp_path}", "-I", native.ROOT / "idl", "rst/kinematics/JointAngles.proto"], check=True)
+    around = (f"-isystem{tmp_path}", MODELS, "-O0", str(tmp_path / "rst/kinematics/JointAngles.pb.cc"))
+    said = subprocess.run(
+        [cpp.program(tmp_path, name, "-lprotobuf", options=around, main=HERE / "converter.cpp")], capture_output=True, text=True, check=True
+    )
+    assert said.stdout.splitlines() == [".rst.kinematics.JointAngles 1", "rst.kinematics.JointAngles -2"]
+
+
+@pytest.mark.campaign
+@cpp.needs_cpp
+@pytest.mark.parametrize(("holder", "type_"), native.NATIVE, ids=lambda each: each)
+def test_the_classes_of_frameworks(holder, type_, tmp_path):
+    """Classes that the frameworks' own generators made."""
+    corpus = next(each for each in corpora() if each.name == f"{holder} {type_}")
+    options, include = native.OF[holder](type_, tmp_path)
+    name = cpp.write(tmp_path, generated(corpus.request, "cpp", BOTH, "unit", Wishes(holder=holder, include=include)))
+    messages = harmed(list(corpus.messages), 12, type_)
+    same(answers(cpp.program(tmp_path, name, *options), messages), *corpus.programs(), messages)
+
+
+@pytest.mark.campaign
+@cpp.needs_cpp
+@pytest.mark.parametrize("corpus", corpora(), ids=lambda each: each.name)
+def test_messages_of_peers(corpus, tmp_path):
+    name = cpp.write(tmp_path, generated(corpus.request, "cpp", BOTH, "unit"))
+    messages = harmed(list(corpus.messages), 4, corpus.name)
+    same(answers(cpp.program(tmp_path, name, options=QUICK), messages), *corpus.programs(), messages)
+
+
+def test_the_shared_header_has_the_version_and_all_kinds_of_errors():
+    text = (INCLUDE / SHARED).read_text()
+    assert f'#define ROSETTA_JIT_VERSION "{rj.__version__}"' in text
+    for number, part in zip(rj.__version__.split("."), ("MAJOR", "MINOR", "PATCH"), strict=False):
+        assert f"ROSETTA_JIT_VERSION_{part} " in text, number
+    assert f'set(PACKAGE_VERSION "{rj.__version__}")' in (CMAKE / "rosetta_jitConfigVersion.cmake").read_text()
+    for kind in get_args(Kind):
+        assert f'case status::{kind}{"_" if kind in RESERVED else ""}:\n        return "{kind}";' in text
+
+
+def test_classes_without_such_fields_are_refused():
+    request = type_request("decode", "rst.vision.Image", {"encoding": "protobuf"})
+    with pytest.raises(SchemaError, match="not-in-holder"):
+        generated(request, "cpp", BOTH, "image", Wishes(holder="ros1"))
+
+
+def test_an_unknown_holder_is_said(capsys, tmp_path):
+    asked = ["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "cpp", "--holder", "dds", "-o", str(tmp_path)]
+    assert main(asked) == 1
+    assert "error[unknown-holder]" in capsys.readouterr().err
+
+
+def test_the_mapping_that_decodes_alone_has_no_encoder():
+    request = request_of("decode", {"encoding": "yarp3"}, mapping="yarp/icub/torso_state.mapping")
+    text = generated(request, "cpp", ("decode",), "torso")["torso.hpp"]
+    assert "try_decode(" in text
+    assert "encode(" not in text.replace("decode(", "")

@@ -1,0 +1,6 @@
+from collections.abc import Callable, Iterable
+from typing import Any
+
+class DataFrame: ...
+
+def from_map(func: Callable[..., Any], iterable: Iterable[Any], *, meta: object, label: str, enforce_metadata: bool) -> DataFrame: ...
