@@ -137,6 +137,7 @@ class Framework:
     def tree(self, source: str, target: str) -> Tree | None:
         """What messages of one encoding become in another one, if they describe themselves and differ in codes alone."""
         return cast("TreeOf", _found(self.transcoding))(source, target) if self.transcoding else None
+
     definition: str = ""
 
     def probes(self) -> Probes:
