@@ -118,11 +118,8 @@ def latency(count: int = 3000) -> dict[str, Any]:
                     program.terminate()
     both = {kind: np.concatenate(each) for kind, each in found.items()}
     shown: dict[str, Any] = {f"{kind}_p{part}_us": float(np.percentile(each, part)) for kind, each in both.items() for part in (50, 99)}
-    return {
-        **shown,
-        "added_p50_us": shown["bridge_p50_us"] - shown["copy_p50_us"],
-        "added_p99_us": shown["bridge_p99_us"] - shown["copy_p99_us"],
-    }
+    added = {f"added_p{part}_us": shown[f"bridge_p{part}_us"] - shown[f"copy_p{part}_us"] for part in (50, 99)}
+    return {**shown, **added}
 
 
 def topics(count: int = 100, rate: int = 1000, seconds: float = 10.0) -> dict[str, Any]:
@@ -198,20 +195,20 @@ def soak(seconds: float = 3600.0) -> dict[str, Any]:
     """Mapped messages at a thousand a second: how the bridge's memory grows, in kilobytes, from a tenth of the time on."""
     bottle = rj.Encoder(TORSO, encoding="yarp4")({"angles": [0.1, 0.2, 0.3]})
     source, target = free_ports(2)
-    with socket.create_server(("127.0.0.1", target)) as listener:
-        with running(f'[[route]]\nsource = "tcp:{source}"\ntarget = "tcp:{target}"\n{MAPPED}') as program:
-            threading.Thread(target=_last, args=(program,), daemon=True).start()
-            accepted, _ = listener.accept()
-            threading.Thread(target=_drain, args=([accepted],), daemon=True).start()
-            sender, message = connected(source), framed(bottle)
-            begun, sent, first = time.monotonic(), 0, 0
-            while (passed := time.monotonic() - begun) < seconds:
-                due = int(passed * 1000) - sent
-                sender.sendall(message * due)
-                sent += due
-                first = first or (_memory_kb(program.pid) if passed > seconds / 10 else 0)
-                time.sleep(0.001)
-            return {"messages": sent, "memory_kb": _memory_kb(program.pid), "grown_kb": _memory_kb(program.pid) - first}
+    route = f'[[route]]\nsource = "tcp:{source}"\ntarget = "tcp:{target}"\n{MAPPED}'
+    with socket.create_server(("127.0.0.1", target)) as listener, running(route) as program:
+        threading.Thread(target=_last, args=(program,), daemon=True).start()
+        accepted, _ = listener.accept()
+        threading.Thread(target=_drain, args=([accepted],), daemon=True).start()
+        sender, message = connected(source), framed(bottle)
+        begun, sent, first = time.monotonic(), 0, 0
+        while (passed := time.monotonic() - begun) < seconds:
+            due = int(passed * 1000) - sent
+            sender.sendall(message * due)
+            sent += due
+            first = first or (_memory_kb(program.pid) if passed > seconds / 10 else 0)
+            time.sleep(0.001)
+        return {"messages": sent, "memory_kb": _memory_kb(program.pid), "grown_kb": _memory_kb(program.pid) - first}
 
 
 def _drain(sockets: list[socket.socket]) -> None:
@@ -222,12 +219,14 @@ def _drain(sockets: list[socket.socket]) -> None:
         chosen.register(each, selectors.EVENT_READ)
     while chosen.get_map():
         for key, _ in chosen.select(1.0):
+            connection = key.fileobj
+            assert isinstance(connection, socket.socket)
             try:
-                count = key.fileobj.recv_into(buffer)  # pyright: ignore[reportUnknownMemberType, reportAttributeAccessIssue] - a socket
+                count = connection.recv_into(buffer)
             except OSError:
                 count = 0
             if not count:
-                chosen.unregister(key.fileobj)
+                chosen.unregister(connection)
 
 
 def _last(program: subprocess.Popen[str]) -> list[dict[str, Any]]:
