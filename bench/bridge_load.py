@@ -128,8 +128,8 @@ def topics(count: int = 100, rate: int = 1000, seconds: float = 10.0) -> dict[st
     message = framed(bottle)
     ports = free_ports(2 * count)
     routes = "".join(
-        f'[[route]]\nname = "{number}"\nsource = "tcp:{ports[number]}"\ntarget = "tcp:{ports[count + number]}"\nbetween = ["yarp4", "yarp3"]\n'
-        for number in range(count)
+        f'[[route]]\nname = "{number}"\nsource = "tcp:{one}"\ntarget = "tcp:{other}"\nbetween = ["yarp4", "yarp3"]\n'
+        for number, (one, other) in enumerate(zip(ports[:count], ports[count:], strict=True))
     )
     listeners = [socket.create_server(("127.0.0.1", port)) for port in ports[count:]]
     with running(routes) as program:

@@ -50,7 +50,9 @@ def mistakes(configuration: Configuration) -> list[Diagnostic]:
         if transport is not None and route.full == "block" and "pipe" not in transport.schemes:
             found.append(words.cannot_wait(places.of(*here, "full"), transport.name))
         key = "call" if route.calls else "target"
-        _checked(route.target, "call" if route.calls else "publish", places.of(*here, key), found)
+        target = _checked(route.target, "call" if route.calls else "publish", places.of(*here, key), found)
+        if target is not None and not route.calls and _lacks_type(route.target, target):
+            found.append(words.no_type(places.of(*here, key), target.name, target.options["type"].meaning))
         _compiled(route.translation, configuration, here, found)
     for rpc in configuration.rpcs:
         here = ("rpc", rpc.number)
@@ -79,6 +81,11 @@ def _checked(text: str, direction: str, span: Span, found: list[Diagnostic]) -> 
     elif module and find_spec(module) is None:
         found.append(words.bad_address(span, text, f"{transport.name} takes a package", f"pip install 'rosetta-jit[{extra}]'"))
     return transport
+
+
+def _lacks_type(text: str, transport: Transport) -> bool:
+    """Whether who is sent to must be told a type, and is not."""
+    return "type" in transport.options and transport.options["type"].default == "" and "type" not in parse(text, installed()).options
 
 
 def _example(direction: str) -> str:

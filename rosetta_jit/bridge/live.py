@@ -125,7 +125,7 @@ class LiveRoute:
                 taken = sink.send(data, time=time)
             except TransportError as error:
                 self._sender = 0
-                self.lost(error.kind if error.kind != "closed" else "the route was closed")
+                self.lost(f"{error.kind}: {error.detail}")
                 return True  # there is nothing to be tried again
             finally:
                 self._sender = 0

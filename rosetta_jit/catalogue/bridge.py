@@ -63,6 +63,12 @@ def cannot_list(span: Span, transport: str) -> Diagnostic:
     return Diagnostic("error", "no-pattern", what, span, "a pattern", help="write a route for each channel")
 
 
+def no_type(span: Span, transport: str, meaning: str) -> Diagnostic:
+    """A target that must be told what it is sent."""
+    what = f"{transport} must be told what it is sent"
+    return Diagnostic("error", "no-type", what, span, "without a type", help=f"add ?type=…, {meaning}")
+
+
 def cannot_wait(span: Span, transport: str) -> Diagnostic:
     """A source that nothing can hold back."""
     what = f"{transport} sends on, whether anybody waits or not"

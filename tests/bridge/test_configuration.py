@@ -30,7 +30,7 @@ full = "newest"
 
 [[route]]
 source = "yarp:/icub/*/state:o"
-target = "rsb:/icub/{1}"
+target = "rsb:/icub/{1}?type=bottle"
 between = ["yarp3", "yarp4"]
 
 [[rpc]]
@@ -47,7 +47,12 @@ def write(tmp_path, text):
 def test_what_a_file_means(tmp_path, capsys):
     path = write(tmp_path, GOOD)
     first, second = read(path).routes
-    assert (first.name, first.rate, first.full, second.name) == ("torso", 30.0, "newest", "yarp:/icub/*/state:o > rsb:/icub/{1}")
+    assert (first.name, first.rate, first.full, second.name) == (
+        "torso",
+        30.0,
+        "newest",
+        "yarp:/icub/*/state:o > rsb:/icub/{1}?type=bottle",
+    )
     assert "  by   read yarp/icub/torso_state.mapping (yarp4), write the data-holder as it is" in lines(checked(path))
     assert main(["bridge", path, "--check"]) == 0
     assert "at most 30 a second, 100 wait for the target; when that many do, new ones are dropped" in capsys.readouterr().out
@@ -95,6 +100,7 @@ def read_one(text):
             "two routes `a`",
             ":6:6",
         ),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "rsb:/a"\n', "add ?type=…, the wire schema", ":3:10"),
         ('[[rpc]]\nserve = "tcp:1"\n', "lacks `serve` or `call`", ":1:1"),
         ('[[rpc]]\nserve = "tcp:1"\ncall = "tcp:2"\nrequest = 5\n', "`request` is the mapping", ":4:11"),
         ("route = 5\n", "written as [[route]]", ":1:9"),

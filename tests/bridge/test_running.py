@@ -21,6 +21,7 @@ from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
 from tests.transports.free import free_port, until
+from tests.transports.name_server import NameServer
 
 TORSO = "yarp/icub/torso_state.mapping"
 
@@ -234,6 +235,43 @@ def test_what_cannot_be_opened_is_tried_again(run):
         assert any("taken" in line for line in said)
         in_the_way.close()
         until(lambda: not bridge.snapshot()[0]["problem"])
+
+
+def test_channels_are_found(run):
+    """Ports that a pattern names, also one that comes later; each becomes a route with its own target."""
+    names, target = NameServer(), free_port()
+    server = f"?server=127.0.0.1:{names.port}"
+    try:
+        with rj.subscribe(f"tcp:{target}") as there, rj.publish(f"yarp:/icub/head/state:o{server}") as head:
+            bridge, _ = run(f'[[route]]\nname = "all"\nsource = "yarp:/icub/*/state:o{server}"\ntarget = "tcp:{target}"\n')
+            until(lambda: head.connections)
+            head.send(struct.pack("<iid", 266, 1, 1.5))
+            assert there.take(5).data == struct.pack("<iid", 266, 1, 1.5)
+            with rj.publish(f"yarp:/icub/torso/state:o{server}") as torso:
+                until(lambda: torso.connections)
+                torso.send(struct.pack("<iid", 266, 1, 2.5))
+                assert there.take(5).data == struct.pack("<iid", 266, 1, 2.5)
+            assert [each["route"] for each in bridge.snapshot()] == ["all /icub/head/state:o", "all /icub/torso/state:o"]
+            bridge.stop(0.5)
+    finally:
+        names.close()
+
+
+def test_a_target_that_comes_back(run):
+    """What it did not take while it was away is what it gets first."""
+    source, target = free_port(), free_port()
+    there = rj.subscribe(f"tcp:{target}")
+    bridge, _ = run(route(source, target))
+    with rj.publish(f"tcp:{source}") as robot:
+        robot.send(b"first")
+        assert there.take(5).data == b"first"
+        there.close()
+        until(lambda: not next(iter(bridge.live.values()))._sink.connections)
+        for number in range(20):
+            robot.send(bytes([number]))
+        until(lambda: bridge.snapshot()[0]["taken"] == 21)
+        with rj.subscribe(f"tcp:{target}") as again:
+            assert [again.take(10).data for _ in range(20)] == [bytes([number]) for number in range(20)]
 
 
 def test_causes_are_bounded():
