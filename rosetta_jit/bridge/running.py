@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
 
 RETRY_S = 1.0
 """How long after a channel could not be opened it is tried again, and after which channels are listed again."""
+
+FIRST_S = 1.0
+"""How long the start waits for what is opened at once; the rest follows."""
+
+MAX_OPENING = 16
+"""Routes that are being opened at the same time."""
 
 MAX_FOUND = 1000
 """Routes that one pattern may become: a hostile name server could name any number of channels."""
@@ -63,6 +70,8 @@ class Running:
         self._lock = threading.RLock()
         self._stopping = threading.Event()
         self._patterns: set[str] = set()
+        self._trying: set[str] = set()
+        self._pool = ThreadPoolExecutor(MAX_OPENING, "opens routes")
         self._opener = threading.Thread(target=self._keep_open, name="opens routes", daemon=True)
 
     def start(self) -> None:
@@ -74,7 +83,7 @@ class Running:
             A mapping cannot be compiled.
         """
         self._change(self.configuration)
-        self._open_all()
+        self._open_all(FIRST_S)
         self._opener.start()
 
     def reload(self, configuration: Configuration) -> None:
@@ -86,7 +95,7 @@ class Running:
             A mapping cannot be compiled; everything goes on as before.
         """
         self._change(configuration)
-        self._open_all()
+        self._open_all(FIRST_S)
 
     def stop(self, linger_s: float = LINGER_S) -> None:
         """Take nothing more, send what was taken, and close."""
@@ -97,6 +106,7 @@ class Running:
             self._sources.clear()
             for each in self.live.values():
                 each.close(linger_s)
+        self._pool.shutdown(wait=False, cancel_futures=True)
         if self._opener.is_alive():
             self._opener.join(2 * RETRY_S)
 
@@ -130,13 +140,18 @@ class Running:
 
     def _drop(self, name: str) -> None:
         gone = self.live.pop(name)
-        for address, shared in [*self._sources.items()]:
-            left = tuple(each for each in shared.routes if each is not gone)
-            shared.routes = left
-            if not left:
-                shared.source.close()
-                del self._sources[address]
+        self._forget(gone)
         gone.close()
+
+    def _forget(self, gone: Live) -> None:
+        """Bring a route no more messages; where it was the last one of its source, close that."""
+        with self._lock:
+            for address, shared in [*self._sources.items()]:
+                left = tuple(each for each in shared.routes if each is not gone)
+                shared.routes = left
+                if not left:
+                    shared.source.close()
+                    del self._sources[address]
 
     # --- opening -------------------------------------------------------------------------------------------------------
 
@@ -144,30 +159,49 @@ class Running:
         while not self._stopping.wait(RETRY_S):
             self._open_all()
 
-    def _open_all(self) -> None:
+    def _open_all(self, wait_s: float = 0.0) -> None:
+        """Try to open what is not open, side by side: a peer that does not answer holds up its own routes alone."""
         with self._lock:
             if self._stopping.is_set():
                 return
-            for route in self.configuration.routes:
-                if _is_pattern(route):
-                    self._look_for(route)
-            for name, each in [*self.live.items()]:
+            closed: dict[str, list[tuple[str, Live]]] = {}
+            for name, each in self.live.items():
                 if each.problem and each.problem != "closed":
-                    self._try(name, each)
+                    closed.setdefault(each.route.source if isinstance(each, LiveRoute) else name, []).append((name, each))
+            begun = [self._pool.submit(self._try_all, key, routes) for key, routes in closed.items() if key not in self._trying]
+            patterns = {f"pattern {each.name}": each for each in self.configuration.routes if _is_pattern(each)}
+            begun += [self._pool.submit(self._look_for, key, each) for key, each in patterns.items() if key not in self._trying]
+            self._trying |= closed.keys() | patterns.keys()
+        wait(begun, wait_s)
 
-    def _look_for(self, route: Route) -> None:
+    def _try_all(self, key: str, routes: list[tuple[str, Live]]) -> None:
+        """Those of one source, one after the other."""
+        try:
+            for name, each in routes:
+                self._try(name, each)
+        finally:
+            self._trying.discard(key)
+
+    def _look_for(self, key: str, route: Route) -> None:
         """Make routes of the channels that a pattern finds."""
         try:
             found = [*matching(route, [name for name, _ in names(place_to_list(route.source))])]
+            self._patterns.discard(route.name)
+            self._add(route, [each for each in found[:MAX_FOUND] if each.name not in self.live])
         except RosettaError as error:
             if route.name not in self._patterns:
                 self._say(f"{route.name}: {error}")
                 self._patterns.add(route.name)
-            return
-        self._patterns.discard(route.name)
-        for each in found[:MAX_FOUND]:
-            if each.name not in self.live:
-                self.live[each.name] = self._made(each, self.configuration.search_path)
+        finally:
+            self._trying.discard(key)
+
+    def _add(self, pattern: Route, found: list[Route]) -> None:
+        made = {each.name: self._made(each, self.configuration.search_path) for each in found}
+        with self._lock:
+            if pattern in self.configuration.routes and not self._stopping.is_set():
+                self.live.update(made)
+        if made:
+            self._open_all()
 
     def _try(self, name: str, each: Live) -> None:
         try:
@@ -180,6 +214,11 @@ class Running:
             if each.problem != str(error):
                 self._say(f"{name}: {error}")
             each.problem = str(error)
+        with self._lock:
+            is_gone = self.live.get(name) is not each or self._stopping.is_set()
+        if is_gone:  # while it was being opened
+            self._forget(each)
+            each.close(0.0)
 
     def _open_route(self, each: LiveRoute) -> None:
         route = each.route
@@ -194,13 +233,15 @@ class Running:
     def _listen(self, each: LiveRoute) -> None:
         """Let a source bring its messages to this route, too."""
         address = each.route.source
-        shared = self._sources.get(address)
-        if shared is not None:
-            shared.routes = (*shared.routes, each)
-            return
+        with self._lock:
+            shared = self._sources.get(address)
+            if shared is not None:
+                shared.routes = (*shared.routes, each)
+                return
         shared = _Shared(each)
         shared.source = subscribe(address, shared.deliver, lost=shared.lost)
-        self._sources[address] = shared
+        with self._lock:
+            self._sources[address] = shared
 
 
 def _is_pattern(route: Route | Rpc) -> bool:
