@@ -61,14 +61,10 @@ def translated(log: Log, channel: Channel, folders: Iterable[str] = ()) -> Strea
     SchemaError
         A field has no successor.
     """
-    return _stream(log, channel, SearchPath.of(folders))
-
-
-def _stream(log: Log, channel: Channel, search: SearchPath) -> Stream:
     if channel.encoding != "ros1":
         raise LogError((words.not_of_ros1(log.name, channel.topic, channel.encoding),))
     type_ = successor(channel.type)
-    text = definition(type_, search.loader(Reading()))
+    text = definition(type_, SearchPath.of(folders).loader(Reading()))
     if text is None:
         raise LogError((words.no_successor(log.name, channel.topic, type_),))
     bridge = channel.bridge_to(type_, {"encoding": "cdr", "schema": text})

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rosetta_jit.errors import EncodeError
+from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.kernel.state import CLEAN, VALID
+from rosetta_jit.model.types import same_name
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.holder.classes import settle_lanes
+from rosetta_jit.runtime.holder.classes import plain, settle_lanes
+from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
@@ -37,8 +39,8 @@ class EncoderBase(Program):
         def __call__(self, holder: Any, buffer: Buffer | None = None, offset: int = 0) -> Any:
             """The message as bytes, or, written into a buffer, the offset behind it.
 
-            The holder may also be a dict, as `Holder.from_dict` takes it, or an object whose attributes are called as the type's fields:
-            of a framework's own class, a dataclass.
+            The holder may also be a part of another holder that has the same type, a dict, as `Holder.from_dict` takes it, or an object
+            whose attributes are called as the type's fields: of a framework's own class, a dataclass.
 
             Raises
             ------
@@ -64,7 +66,7 @@ class EncoderBase(Program):
 
     def size(self, holder: Any) -> int:
         """How many bytes the message takes."""
-        if is_foreign(holder):
+        if self._is_to_be_taken(holder):
             return self._of_foreign(holder, self.size)
         checked = self._checked(holder)
         with checked.lanes_ as lanes:
@@ -78,7 +80,7 @@ class EncoderBase(Program):
         Parameters
         ----------
         batch : Batch
-            Or a table or frame with Arrow's interface, as `Batch.from_arrow` takes it.
+            Or a table or frame with Arrow's interface, as `Batch.from_arrow` takes it; or a list of whatever the encoder encodes alone.
 
         Returns
         -------
@@ -96,6 +98,8 @@ class EncoderBase(Program):
         ValuesError
             A column of the table is of no field, or its values are not those that the field can have.
         """
+        if isinstance(batch, list | tuple):
+            return self._one_by_one(cast("Sequence[object]", batch))
         lanes = self._lanes_of(self._batch_of(batch))
         with lanes:
             self._settle(lanes)
@@ -106,6 +110,18 @@ class EncoderBase(Program):
                 buffer = np.empty(int(offsets[-1]), np.uint8)
             self._all(lanes, lambda first: self._written(lanes, buffer, offsets, first))
         return buffer, offsets
+
+    def _one_by_one(self, holders: Sequence[object]) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+        offsets, messages = np.zeros(len(holders) + 1, np.int64), list[bytes]()
+        for number, holder in enumerate(holders):
+            try:
+                messages.append(self(holder))
+            except EncodeError as error:
+                raise EncodeError(error.kind, f"[{number}]{error.path}", error.detail) from error
+            except ValuesError as error:
+                raise ValuesError(f"[{number}]{error.path}", error.detail) from error
+        np.cumsum([len(each) for each in messages], out=offsets[1:])
+        return np.frombuffer(bytearray().join(messages), np.uint8), offsets
 
     def _batch_of(self, source: Any) -> Batch:
         from rosetta_jit.runtime.batch import Batch
@@ -173,7 +189,7 @@ class EncoderBase(Program):
             arguments = (*arguments, 0)
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
-        if is_foreign(arguments[0]):
+        if self._is_to_be_taken(arguments[0]):
             return self._of_foreign(arguments[0], self, *arguments[1:])
         holder = self._checked(arguments[0])
         target, offset = (None, 0) if len(arguments) == 1 else (run.writable(arguments[1]), arguments[2])
@@ -181,11 +197,22 @@ class EncoderBase(Program):
             self._make_usable(holder)
             return self._bytes(lanes) if target is None else self._put(lanes, target, offset)
 
+    def _is_to_be_taken(self, value: object) -> bool:
+        """Whether a value is no holder of this program's, but has the values of one: it is foreign, or of the same type elsewhere."""
+        own = self._loaded.holder_type
+        if isinstance(value, Message):
+            return type(value) is not own and same_name(value.access_.record.struct, own.family_.tree.root.struct)
+        return is_foreign(value)
+
     def _of_foreign(self, value: object, use: Callable[..., Any], *more: object) -> Any:
         """What comes of a holder with the values of an object of another class, or of a dict."""
         holder = self._borrow()
         try:
-            self._loaded.holder_type.family_.takers.take(holder, value)
+            takers = self._loaded.holder_type.family_.takers
+            if isinstance(value, Message):
+                takers.take_plain(holder, plain(value))
+            else:
+                takers.take(holder, value)
             return use(holder, *more)
         finally:
             self._give_back(holder)

@@ -350,3 +350,35 @@ class Whole:
         self.flag, self.x, self.samples, self.axis, self.raw, self.names = False, 0.0, [], [0.0] * 3, b"", []
         self.part, self.parts, self.times = Part(), [], []
 """
+
+
+def test_parts_of_holders_are_encoded_as_their_type(encode):
+    alone = rj.Encoder.of("p/Part", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"])
+    whole = encode.new()
+    whole.part.number, whole.part.label = 7, "seven"
+    whole.parts = [{"number": 8, "label": "eight", "when": {"secs": 1, "nsecs": 2}}]
+    part = alone.new()
+    part.number, part.label = 7, "seven"
+    assert alone(whole.part) == alone(part)
+    assert alone.size(whole.parts[0]) == len(alone(whole.parts[0])) == 21
+    buffer = bytearray(30)
+    assert alone(whole.parts[0], buffer, 3) == 24
+    assert buffer[3:24] == alone({"number": 8, "label": "eight", "when": {"secs": 1, "nsecs": 2}})
+    with pytest.raises(TypeError, match=r"a holder of p\.Part is needed, not Whole"):
+        alone(whole)
+
+
+def test_lists_of_messages_are_encoded_in_one_call(encode):
+    alone = rj.Encoder.of("p/Part", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"])
+    part = alone.new()
+    part.label = "a"
+    messages = [part, {"number": 2, "label": "bc", "when": {"secs": 3, "nsecs": 4}}, Part(3, "", Moment(5, 6))]
+    buffer, offsets = alone.many(messages)
+    assert [buffer[begin:end].tobytes() for begin, end in zip(offsets, offsets[1:], strict=False)] == [alone(each) for each in messages]
+    buffer[0] = 1
+    assert [each.tolist() for each in alone.many(())] == [[], [0]]
+    with pytest.raises(ValuesError, match=r"at `\[1\]\.number`"):
+        alone.many([part, {"number": "two", "label": "", "when": {"secs": 0, "nsecs": 0}}])
+    encode_latin = rj.Encoder.of("p/Part", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"])
+    with pytest.raises(TypeError):
+        encode_latin.many([part, 3])

@@ -114,7 +114,7 @@ class Holder(Message, metaclass=HolderClass):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain Python values of what is present, named as in the IDL: enums by their names, arrays as lists."""
-        return self.lanes_.consistent(_plain, self)
+        return plain(self)
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any]) -> Self:
@@ -242,9 +242,14 @@ def _copied(holder: Holder) -> Lanes:
     return lanes.copied()
 
 
-def _plain(holder: Holder) -> dict[str, Any]:
-    lanes, row = place(holder)
-    return values.read_record(holder.access_.record, lanes, row, values.Form.PLAIN)
+def plain(message: Message) -> dict[str, Any]:
+    """Plain values of what is present in a message: of a holder, or of a part of one."""
+    return message.lanes_.consistent(_plain, message)
+
+
+def _plain(message: Message) -> dict[str, Any]:
+    lanes, row = place(message)
+    return values.read_record(message.access_.record, lanes, row, values.Form.PLAIN)
 
 
 def _present_case(holder: Holder, cases: tuple[str, ...]) -> str | None:
