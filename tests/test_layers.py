@@ -43,6 +43,7 @@ ANYTHING = (
         "explain",
         "demo",
         "transports",
+        "bridge",
         "",
     }
 )
@@ -127,6 +128,7 @@ MAY_IMPORT = {
         "pipeline.request",
     },
     "transports": REPORTS,
+    "bridge": REPORTS | {"api", "api.options", "transports"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,
