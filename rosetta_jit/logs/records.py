@@ -150,18 +150,19 @@ class Records:
                 blocks = self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
                 yield from (replace(each, piece=number) for each in blocks)
                 return
-            yield from (replace(each, piece=number) for each in self._segment(segment, wanted, scratch))
+            yield from (replace(each, piece=number) for each in self._segment(segment, wanted, scratch, end))
 
-    def _segment(self, segment: Chunk | Region, wanted: Wanted, scratch: Scratch) -> Iterator[Block]:
-        """The messages of a segment that is where the index says."""
+    def _segment(self, segment: Chunk | Region, wanted: Wanted, scratch: Scratch, end: int) -> Iterator[Block]:
+        """The messages of a segment that is where the index says; its last record may end in the next one, if that is not."""
         if isinstance(segment, Region):
-            yield from self._region(segment.at, segment.end, wanted, scratch)
+            yield from self._region(segment.at, end, wanted, scratch, range(segment.at, segment.end))
             return
         record = self._storage.read_into(segment.at, scratch.record(segment.size))
         size = self._grammar.head(bytes(record[:PEEK])).size
         yield from self._content(record, segment.at, scratch)
         if size < segment.size:
-            yield from self._region(segment.at + size, segment.at + segment.size, wanted, scratch)
+            behind = range(segment.at + size, segment.at + segment.size)
+            yield from self._region(behind.start, end, wanted, scratch, behind)
 
     def _is_true(self, chunk: Chunk) -> bool:
         """Whether there is a chunk, and no larger one than the index says."""
