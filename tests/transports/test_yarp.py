@@ -230,7 +230,7 @@ def test_a_reader_that_dies_with_messages_on_the_way_is_counted(at, names):
         for _ in range(3):
             sink.send(BOTTLE)
         peer.close()
-        until(lambda: not sink.connections)
+        until(lambda: sink.lost)
         assert sink.lost["the reader went away"] == 3
 
 
