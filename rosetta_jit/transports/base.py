@@ -125,7 +125,7 @@ class Counts:
 class Source(Counts):
     """Messages that arrive at an address; a context manager, and an iterable where no callback gets them.
 
-    Iterating ends when the source is closed, or where the channel has an end (a pipe, a connection of its own). Messages that nobody takes
+    Iterating ends when the source is closed, or where the channel has an end (a pipe, a file). Messages that nobody takes
     wait, at most ``queue`` of them; then the oldest is dropped, and counted as `queue full`.
     """
 

@@ -14,6 +14,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError, TransportError
 from rosetta_jit.transports.base import Source
+from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.stream import Stream
 from tests.transports.free import free_port, until
 
@@ -278,6 +279,29 @@ def test_what_is_wrong_with_an_address_is_said(address, said):
     with pytest.raises(AddressError, match=r"(?s)error\[") as caught:
         rj.subscribe(address)
     assert said in str(caught.value)
+
+
+def test_an_installed_package_may_offer_a_transport(tmp_path, monkeypatch):
+    (tmp_path / "toy_transport.py").write_text(
+        "from rosetta_jit.transports.base import Message, Transport\n"
+        "def subscribe(address, source, options):\n"
+        "    source.arrived(Message(address.rest.encode(), address.rest))\n"
+        "    source.ended()\n"
+        "TOY = Transport('toy', ('toy',), 'toy:a', subscribe='toy_transport:subscribe')\n"
+    )
+    described = tmp_path / "toy-1.dist-info"
+    described.mkdir()
+    (described / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
+    (described / "entry_points.txt").write_text("[rosetta_jit.transports]\ntoy = toy_transport:TOY\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    installed.cache_clear()
+    try:
+        with rj.subscribe("toy:hello") as source:
+            assert [each.data for each in source] == [b"hello"]
+        with pytest.raises(AddressError, match="cannot publish"):
+            rj.publish("toy:hello")
+    finally:
+        installed.cache_clear()
 
 
 def test_options_of_a_call_go_before_those_of_the_address():

@@ -193,7 +193,7 @@ def test_a_connection_that_says_nothing_is_closed(at, names, monkeypatch):
     with rj.subscribe(at("/in", "&open=yes")) as source, socket.create_connection(("127.0.0.1", int(names.ports["/in"][1]))) as silent:
         silent.settimeout(5)
         assert silent.recv(1) == b""
-        assert source.lost == {"a connection that said nothing": 1}
+        until(lambda: source.lost == {"a connection that said nothing": 1})
 
 
 def test_a_hundred_writers_at_once(at, names):
