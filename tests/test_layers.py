@@ -26,7 +26,7 @@ BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "b
 RUNTIME = {"runtime", "runtime.code", "runtime.cache", "runtime.functions"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
-FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions", "language.both_ways"}
+FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions"}
 FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts"}
 ANYTHING = (
     COMPILER

@@ -36,7 +36,9 @@ def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list
 
 
 def _stems(path: Path) -> Iterator[str]:
-    return (each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES))
+    """The files beside a path, of its suffix; none where such a folder cannot be, as its name is too long."""
+    with suppress(OSError):
+        yield from (each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES))
 
 
 def _packaged(asked: str, guesses: Iterable[str], front_ends: FrontEnds, search: SearchPath) -> Iterator[str]:

@@ -75,12 +75,12 @@ BOTH = {
 
 def report(text: str) -> str:
     """What is said of a mapping, in bounded time."""
-    start = time.perf_counter()
+    start = time.process_time()
     try:
         told = render_all(check(parse(Source("hostile.mapping", text)), READERS, SearchPath(files=FILES)).warnings)
     except MappingError as error:
         told = str(error)
-    assert time.perf_counter() - start < SECONDS
+    assert time.process_time() - start < SECONDS
     return told
 
 
