@@ -123,16 +123,17 @@ def check(mapping: str, *, search_path: Iterable[str] = (), parameters: Mapping[
 
 
 def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> str:
-    """Draft a bottle schema from captured messages, as text.
+    """Draft a schema from captured messages, as text: a bottle schema, or for ``encoding="protobuf"`` a `.proto` file.
 
     Raises
     ------
     DecodeError
-        A message is no bottle.
+        A message is no bottle, or none of protobuf.
     ReportError
-        The messages cannot be described by one schema; it says which one differs, and where.
+        The messages cannot be described by one schema; it says which one differs, and where. Or the bytes of the encoding do not tell
+        where a field begins.
     """
-    from rosetta_jit.frameworks.yarp.infer import infer as draft
+    from rosetta_jit.pipeline.infer import infer as draft
 
     return draft(messages, name=name, encoding=encoding)
 

@@ -152,3 +152,13 @@ def endless_copy(span: Span | None) -> Diagnostic:
     label = "it can hold messages of its own type, to any depth"
     help_ = "say how deep with `via`, or assign its fields one by one"
     return Diagnostic("error", "endless-copy", "this cannot be assigned as a whole", span, label, help=help_)
+
+
+def cannot_infer(encoding: str, known: Sequence[str], *, known_itself: bool) -> Diagnostic:
+    """An encoding whose messages do not say what they are of."""
+    listed = ", ".join(known)
+    if not known_itself:
+        return Diagnostic("error", "unknown-encoding", f"there is no encoding `{encoding}`", help=f"schemas are drafted of {listed}")
+    message = f"no schema can be drafted of messages in `{encoding}`: their bytes do not tell where a field begins"
+    help_ = f"take the definition from where they come: a bag, a log, the package of the type. Schemas are drafted of {listed}"
+    return Diagnostic("error", "no-draft", message, help=help_)

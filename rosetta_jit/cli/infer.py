@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands) -> None:
     """Declare the arguments."""
-    command = add_command(commands, "infer", "Draft a bottle schema from captured messages.", run)
+    command = add_command(commands, "infer", "Draft a schema from captured messages: of bottles, or of protobuf.", run)
     command.add_argument("files", metavar="FILE", nargs="+", help="one message, a recording (.rec, .rec.xz) or a log; - is standard input")
     add_topic(command)
     command.add_argument("--name", default="captured", help="name of the type (default: captured)")

@@ -11,7 +11,7 @@ from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosetta_jit.frameworks.definitions import Definition
     from rosetta_jit.frameworks.probe import Probes
@@ -75,6 +75,14 @@ class Define(Protocol):
         ...
 
 
+class Infer(Protocol):
+    """A function from captured messages to a schema that describes them."""
+
+    def __call__(self, messages: Iterable[bytes], *, name: str, encoding: str) -> str:
+        """The schema of a type of that name, as text."""
+        ...
+
+
 class FileOf(Protocol):
     """A function from a text to the name of the file that it would be."""
 
@@ -113,6 +121,8 @@ class Framework:
         A function that gives the `rosetta_jit.wire.tree.Tree` of two encodings. Empty where messages do not describe themselves.
     follows
         Older frameworks whose types this one has under the same names, and for each a function that says what became of a type's fields.
+    infer
+        A function that drafts a schema from captured messages. Empty where their bytes do not tell where a field begins.
     definition
         A function from a struct and its schema to its `Definition`; empty where logs carry none.
     """
@@ -129,6 +139,7 @@ class Framework:
     texts: str = ""
     transcoding: str = ""
     follows: Mapping[str, str] = field(default_factory=dict[str, str])
+    infer: str = ""
 
     def successors(self, older: str) -> Successors | None:
         """What became of types of an older framework's in this one; None where it does not follow that."""
@@ -151,6 +162,10 @@ class Framework:
     def encoding(self, name: str) -> Encoder:
         """The encoding of a name."""
         return cast("Encoder", _found(self.encodings[name]))
+
+    def drafts(self) -> Infer | None:
+        """What drafts schemas from captured messages; None where its bytes do not tell where a field begins."""
+        return cast("Infer", _found(self.infer)) if self.infer else None
 
     def reads(self, file: str) -> bool:
         """Whether it has a front end for a file of that name."""

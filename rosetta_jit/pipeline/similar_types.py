@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import ReportError
-from rosetta_jit.language.imports.search import shipped_folders
+from rosetta_jit.language.imports.search import refusal, shipped_folders
 from rosetta_jit.model.types import name_parts
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ MAX_READ = 8
 def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list[str]:
     """The names of types that are declared where ``asked`` would be; for a name without a package, in all packages that are shipped."""
     package = name_parts(asked)[:-1]
-    guesses = tuple(islice(front_ends.guesses(asked), MAX_GUESSES))
+    guesses = tuple(each for each in islice(front_ends.guesses(asked), MAX_GUESSES) if not refusal(each))
     if not package:
         return list(dict.fromkeys(name for name in _packaged(asked, guesses, front_ends, search)))
     separator = next(each for each in ("::", ".", "/") if each in asked)
@@ -36,9 +36,9 @@ def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list
 
 
 def _stems(path: Path) -> Iterator[str]:
-    """The files beside a path, of its suffix; none where such a folder cannot be, as its name is too long."""
-    with suppress(OSError):
-        yield from (each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES))
+    """The files beside a path, of its suffix."""
+    with suppress(OSError, ValueError):  # a name that no folder can have, or one that cannot be read
+        yield from [each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES)]
 
 
 def _packaged(asked: str, guesses: Iterable[str], front_ends: FrontEnds, search: SearchPath) -> Iterator[str]:

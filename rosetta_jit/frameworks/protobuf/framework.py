@@ -13,5 +13,6 @@ FRAMEWORK = Framework(
     definition=f"{HERE}.definition:definition",
     idl={".proto": f"{HERE}.idl:parse"},
     encodings={"protobuf": ENCODING, "protobuf-partial": ENCODING},
+    infer=f"{HERE}.infer:infer",
     manners=f"{HERE}.manners:PROTOBUF",
 )

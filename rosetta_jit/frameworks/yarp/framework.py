@@ -12,6 +12,7 @@ FRAMEWORK = Framework(
     features=f"{HERE}.features:PROBES",
     definition=f"{HERE}.definition:definition",
     idl={".bottle-schema": f"{HERE}.schema:parse", ".thrift": f"{HERE}.thrift:parse"},
+    infer=f"{HERE}.infer:infer",
     manners=f"{HERE}.manners:BOTTLE",
     transcoding=f"{HERE}.transcoding:tree",
     encodings={"yarp": ENCODING, "yarp3": ENCODING, "yarp4": ENCODING, "yarp2012": ENCODING},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.mapping import For, Relation, When
@@ -20,10 +21,11 @@ OF_TYPES = frozenset(("type-clash", "lossy-conversion"))
 """Mistakes that each direction of a relation reports in its own words."""
 
 OF_INVERSES = frozenset(("no-inverse",))
+"""Mistakes of packing alone."""
 
 
 def relations_of(rules: tuple[Rule, ...]) -> list[Span]:
-    """Where relations stand, those in blocks included."""
+    """Where relations stand, those in blocks included, in the order of the text."""
     return [span for span in _spans(rules) if span is not None]
 
 
@@ -40,25 +42,39 @@ def _spans(rules: tuple[Rule, ...]) -> Iterator[Span | None]:
                 pass
 
 
-def unclear(problems: Iterable[Diagnostic], relations: Iterable[Span]) -> bool:
+def unclear(problems: Iterable[Diagnostic], relations: list[Span]) -> bool:
     """Whether a relation names what there is not: then it is open which field it packs."""
-    named = [each.span for each in problems if each.code in OF_NAMES and each.span is not None]
-    return any(_within(name, relation) for name in named for relation in relations)
+    return any(_relation(each, relations) is not None for each in problems if each.code in OF_NAMES)
 
 
-def causes(problems: list[Diagnostic], relations: Iterable[Span]) -> list[Diagnostic]:
-    """The reports without those that follow from others, in their order.
+def causes(problems: list[Diagnostic], relations: list[Span]) -> list[Diagnostic]:
+    """The reports without those that follow from others, in their order; ``relations`` are in the order of the text.
 
     A function that there is not has no inverse either, and what has the wrong type for one direction of a relation has it for the other.
     """
-    named = [each.span for each in problems if each.code in OF_NAMES and each.span is not None]
-    found = [each for each in problems if each.code not in OF_INVERSES or not any(each.span and _within(span, each.span) for span in named)]
-    for relation in relations:
-        here = [each for each in found if each.severity == "error" and each.span is not None and _within(each.span, relation)]
-        follows = {id(each) for each in here[1:] if each.code in OF_TYPES}
-        found = [each for each in found if id(each) not in follows]
+    named = {_relation(each, relations) for each in problems if each.code in OF_NAMES}
+    found: list[Diagnostic] = []
+    wrong: set[int] = set()
+    for each in problems:
+        relation = _relation(each, relations)
+        if relation is not None and each.severity == "error":
+            if (each.code in OF_INVERSES and relation in named) or (each.code in OF_TYPES and relation in wrong):
+                continue
+            if each.code not in OF_INVERSES:
+                wrong.add(relation)
+        found.append(each)
     return found
 
 
-def _within(span: Span, around: Span) -> bool:
-    return span.source is around.source and around.start <= span.start and span.end <= around.end
+def _relation(problem: Diagnostic, relations: list[Span]) -> int | None:
+    """The number of the relation that a report is about."""
+    span = problem.span
+    if span is None:
+        return None
+    number = bisect_right(relations, span.start, key=_start) - 1
+    around = relations[number] if number >= 0 else None
+    return number if around is not None and around.source is span.source and span.end <= around.end else None
+
+
+def _start(span: Span) -> int:
+    return span.start
