@@ -50,6 +50,18 @@ def test_the_example_in_cpp_runs(tmp_path, monkeypatch):
     assert done.stdout.endswith(said)
 
 
+def test_the_example_in_python_runs(tmp_path, monkeypatch):
+    """In a process that does not know this library."""
+    from rosetta_jit.cli import main
+
+    text = (ROOT / "docs" / "python.md").read_text()
+    (generate, _), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "py", "text"))
+    monkeypatch.chdir(tmp_path)
+    assert main(generate.split()[1:]) == 0
+    Path("main.py").write_text(source)
+    assert subprocess.run([sys.executable, "-S", "main.py"], capture_output=True, text=True, check=True).stdout == said
+
+
 def test_the_documented_mapping_is_the_shipped_one():
     text = (ROOT / "docs" / "mappings.md").read_text()
     shipped = (ROOT / "mappings" / "yarp" / "icub" / "torso_state.mapping").read_text()
