@@ -24,14 +24,14 @@ def names_of(unit: Unit) -> dict[str, str]:
     """The classes and enums of a unit by their names in the schema."""
     scope = Namespace(RESERVED | NOT_CLASSES | {unit.name})
     found: dict[str, str] = {}
-    for name in _reached(unit):
+    for name in reached_types(unit):
         simple = re.split(r"[./:]+", name)[-1]
         whole = "_".join(re.split(r"[./:]+", name))
         found[name] = scope.identifier(simple if simple not in scope.identifiers else whole)
     return found
 
 
-def _reached(unit: Unit) -> dict[str, None]:
+def reached_types(unit: Unit) -> dict[str, None]:
     """The declared types that the message contains, each behind those that it contains itself."""
     found: dict[str, None] = {}
     pending: list[tuple[str, bool]] = [(unit.type, False)]
