@@ -16,13 +16,16 @@ ifneq ($(wildcard $(YARP)/cmake/.built),)
 export YARP_DIR ?= $(abspath $(YARP))/cmake
 endif
 
-.PHONY: help demo test check campaign conformance bench bench-check bench-compare native yarp clean
+.PHONY: help demo usecase test check campaign conformance bench bench-check bench-compare native yarp clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
 
 demo: $(VENV)/.demo ## play the bundled recordings through compiled kernels; writes pictures to $(OUTPUT)
 	$(BIN)/rosetta-jit demo --output $(OUTPUT)
+
+usecase: $(VENV)/.test ## a component on RSB moves a simulated iCub on YARP (a real one where `make yarp` has built it); writes a page
+	$(BIN)/python -m usecase $(ARGS)
 
 test: check ## lint, check types, run all tests but the campaigns
 	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile $(ARGS)

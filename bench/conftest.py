@@ -28,6 +28,7 @@ ORDER = (
     "columns",
     "numba",
     "logs",
+    "large_logs",
     "start",
     "memory",
     "limits",

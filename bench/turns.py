@@ -75,14 +75,20 @@ class Effort:
         return {name: tuple(values) for name, values in taken.items()}
 
     def call(
-        self, function: Callable[..., object], *arguments: object, count: int | None = None, messages: int = 1, threaded: bool = False
+        self,
+        function: Callable[..., object],
+        *arguments: object,
+        count: int | None = None,
+        messages: int = 1,
+        threaded: bool = False,
+        clock: Callable[[], float] = time.thread_time,
     ) -> Call:
         """A contender: a function that is called ``count`` times a round, or as often as fills one. Threads need a common clock."""
         names = [f"argument{number}" for number in range(len(arguments))]
         given = {"given_function": function, **{f"given_{name}": argument for name, argument in zip(names, arguments, strict=True)}}
         setup = "; ".join(f"{name} = given_{name}" for name in ("function", *names))
-        clock = time.perf_counter if threaded else time.thread_time
-        timer = timeit.Timer(f"function({', '.join(names)})", setup, clock, given)
+        chosen = time.perf_counter if threaded else clock
+        timer = timeit.Timer(f"function({', '.join(names)})", setup, chosen, given)
         return Call(function, arguments, timer, count or self._count(timer), messages)
 
     def placed(self, place: Callable[[], Callable[[], float]]) -> Placed:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import (
     AddressError,
+    BridgeError,
     CacheWarning,
     DecodeError,
     EncodeError,
@@ -51,6 +52,7 @@ __all__ = [
     "AddressError",
     "Batch",
     "Bridge",
+    "BridgeError",
     "CacheWarning",
     "DecodeError",
     "Decoder",

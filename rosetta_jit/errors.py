@@ -6,6 +6,7 @@ RosettaError
         MappingError        in a mapping
         LogError            in a log that cannot be read at all
         AddressError        in the address of a transport
+        BridgeError         in the file of a bridge
     MessageError        what is wrong with one message: kind and field path
         DecodeError         bytes that are not what the schema promises; with byte offset
         EncodeError         a holder whose values the wire cannot carry
@@ -67,6 +68,10 @@ class MappingError(ReportError):
 
 class LogError(ReportError):
     """A log that cannot be read, or asks for what is not there."""
+
+
+class BridgeError(ReportError):
+    """A file of a bridge that cannot be used."""
 
 
 class AddressError(ReportError):

@@ -26,7 +26,7 @@ BACKENDS = {"backends", "backends.llvm", "backends.numba", "backends.python", "b
 RUNTIME = {"runtime", "runtime.code", "runtime.cache", "runtime.functions"}
 COMPILER = REPORTS | LANGUAGE | KERNEL | LOWERING | BACKENDS | RUNTIME | {"model", "parsing", "wire", "frameworks"}
 API = {"api", "api.options", "api.cacheable"}
-FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions", "language.both_ways"}
+FUNCTIONS = REPORTS | {"model", "kernel", "language", "language.functions"}
 FUNCTIONS |= {"lowering", "lowering.codec", "lowering.texts"}
 ANYTHING = (
     COMPILER
@@ -44,6 +44,7 @@ ANYTHING = (
         "draft",
         "demo",
         "transports",
+        "bridge",
         "",
     }
 )
@@ -129,6 +130,7 @@ MAY_IMPORT = {
     },
     "transports": REPORTS,
     "draft": REPORTS | LANGUAGE | {"model", "parsing", "frameworks", "pipeline"},
+    "bridge": REPORTS | {"api", "api.options", "transports"},
     "explain": COMPILER - LOWERING - BACKENDS - RUNTIME | {"pipeline", "pipeline.request"},
     "demo": ANYTHING,
     "cli": ANYTHING,

@@ -14,6 +14,7 @@ import sys
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.cli import (
+    bridge,
     cache,
     cat,
     check,
@@ -52,6 +53,7 @@ COMMANDS = (
     cat,
     convert,
     plot,
+    bridge,
     doctor,
     draft,
     dump,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.explain.nodes import by_span, names_of, nodes, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
-from rosetta_jit.language.both_ways.inverse_texts import as_written, for_type
+from rosetta_jit.language.both_ways.typed_inverse import as_written, for_type
 from rosetta_jit.language.places import shown_fields
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, When

@@ -6,6 +6,7 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row
+from rosetta_jit.language.limits import MAX_OTHERS
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.arithmetic import align, others
 
@@ -14,8 +15,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Call
     from rosetta_jit.lowering.evaluation import Evaluation
 
-MAX_OTHERS = 16
-"""Numbers that are left out."""
 
 LEFT_OUT = Row(
     "numbers",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.kernel.ir import Binary, Unary
 from rosetta_jit.language.affine_steps import LostError
 from rosetta_jit.language.function import Function, Row, Undone
-from rosetta_jit.language.typed import Const
+from rosetta_jit.language.typed import Const, Given
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Arithmetic, Expr
@@ -67,5 +67,5 @@ def if_same_constants(opening: Call, step: Call, before: Value) -> Value | None:
 
 
 def constants_of(call: Call) -> list[object]:
-    """The arguments of a call that are known."""
-    return [each.value for each in call.arguments if isinstance(each, Const)]
+    """The arguments of a call that are known, or will be when parameters are given."""
+    return [each if isinstance(each, Given) else each.value for each in call.arguments if isinstance(each, Const | Given)]

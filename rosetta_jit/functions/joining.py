@@ -148,7 +148,7 @@ def _with_end(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Ex
 def _added_again(opening: typed.Call, step: typed.Call, before: Value) -> Value | None:
     """`behind(s, "a")` and `"a" + s`, `before(s, "a")` and `s + "a"`, in this order or the other."""
     sum_, end = (opening, step) if opening.function == "+" else (step, opening)
-    is_there = isinstance(sum_.arguments[0 if end.function == "behind" else 1], typed.Const)
+    is_there = isinstance(sum_.arguments[0 if end.function == "behind" else 1], typed.Const | typed.Given)
     return before if is_there and constants_of(opening) == constants_of(step) else None
 
 

@@ -15,9 +15,8 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select, Unary
 from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Error, LostError
-from rosetta_jit.language.both_ways.inverse_texts import MOMENT
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.function import SEVERAL, Function, Texts, Whole
+from rosetta_jit.language.function import SEVERAL, Function, Texts, Whole, untyped
 from rosetta_jit.language.functions.texts import TEXT, is_textual, type_texts
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.texts.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
@@ -31,6 +30,8 @@ if TYPE_CHECKING:
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.texts.views import View
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
 
 BEYOND = float(1 << 63)
 """The first float that is no int64."""
@@ -141,11 +142,15 @@ def _nanoseconds_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, mo
 
 
 def _moment_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Expr] | None:
-    return (call.arguments[0], model.Call(MOMENT, (value,), call.span)) if len(call.arguments) == 1 else None
+    return (call.arguments[0], untyped("nanoseconds", (value,), call.span)) if len(call.arguments) == 1 else None
 
 
 def _moment_of_seconds(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Expr]:
-    return call.arguments[0], model.Call(MOMENT, (value, model.Literal(0, call.span)), call.span)
+    return call.arguments[0], untyped("seconds", (value, model.Literal(0, call.span)), call.span)
+
+
+def _moment_as(arguments: tuple[model.Expr, ...], type_: Type | None, span: Span | None) -> model.Expr:
+    return model.Call("timestamp" if isinstance(type_, Float) else "iso8601", arguments, span)
 
 
 def _split(call: model.Call, value: model.Expr) -> tuple[tuple[model.Expr, model.Expr], tuple[model.Expr, model.Expr]]:
@@ -161,7 +166,7 @@ def _split_number(call: model.Call, value: model.Expr) -> tuple[tuple[model.Expr
 
 
 def _joined(call: model.Call, high: model.Expr, low: model.Expr) -> model.Expr:
-    return model.Call(MOMENT, (high, low), call.span)
+    return untyped("seconds", (high, low), call.span)
 
 
 def _below(call: model.Call) -> int | None:
@@ -243,6 +248,7 @@ FUNCTIONS = (
         _moment_of_seconds,
         undone_by(iso8601=_spelt_again, timestamp=loses("what is behind the point is dropped")),
         (*OF_TEXT, *OF_FLOAT),
+        typed_inverse=_moment_as,
         whole=Whole("fraction", _below, _joined),
     ),
     of_moments("fraction", OF_MOMENT, _lower_fraction, SEVERAL, undone_by(), (*OF_TEXT, *OF_FLOAT)),
@@ -254,5 +260,6 @@ FUNCTIONS = (
         undone_by(iso8601=_spelt_again, timestamp=_timed_again),
         (*ALL_OF_TEXT, *ALL_OF_PAIR, *OF_FLOAT),
         split=_split_number,
+        typed_inverse=_moment_as,
     ),
 )

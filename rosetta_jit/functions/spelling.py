@@ -10,10 +10,10 @@ from rosetta_jit.catalogue import texts as words
 from rosetta_jit.functions.forms import if_same_constants, loses, of_texts, row, undone_by
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
 from rosetta_jit.language import typed
-from rosetta_jit.language.both_ways.inverse_texts import WRITTEN
 from rosetta_jit.language.conversions import FLOAT64, describe
-from rosetta_jit.language.function import Texts
+from rosetta_jit.language.function import Texts, untyped
 from rosetta_jit.language.functions.texts import BYTES, TEXT, argument, is_textual
+from rosetta_jit.language.limits import MAX_DECIMALS
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.texts.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
 from rosetta_jit.lowering.texts.number_reading import read_float, read_integer
@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.lowering.texts.number_reading import Read
     from rosetta_jit.lowering.texts.views import View
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
 
-MAX_DECIMALS = 17
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
 
@@ -94,9 +95,14 @@ def _text_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Exp
         case (inner, model.Literal(str()) as encoding):
             return inner, model.Call("bytes", (value, encoding), call.span)
         case (inner, *_):
-            return inner, model.Call(WRITTEN, (value,), call.span)
+            return inner, untyped("text", (value,), call.span)
         case _:
             raise AssertionError(call)
+
+
+def _number_of(arguments: tuple[model.Expr, ...], type_: Type | None, span: Span | None) -> model.Expr:
+    """The number that a text spells."""
+    return model.Call("number" if type_ is None or isinstance(type_, Float) else "integer", arguments, span)
 
 
 def _read_integer(opening: typed.Call, _step: typed.Call, before: Value) -> Value | None:
@@ -173,6 +179,7 @@ FUNCTIONS = (
         _text_of,
         undone_by(integer=_read_integer, number=_read_float, bytes=if_same_constants),
         (*ENCODED, *DECIMAL, *DECIMALS),
+        typed_inverse=_number_of,
     ),
     of_texts("bytes", Texts(("text", "encoding"), BYTES), _lower_bytes, _bytes_of, undone_by(text=if_same_constants), ENCODED),
     of_texts("integer", Texts(("text",), INT64), _lower_integer, _spelt, undone_by(text=loses(SPELLING)), SPELT),

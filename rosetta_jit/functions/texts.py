@@ -3,33 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import loses, of_texts, row, undone_by
 from rosetta_jit.kernel.ir import Binary, Compare, Const, If
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.language.both_ways.inverse_texts import FILLED
-from rosetta_jit.language.function import SEVERAL, Texts
+from rosetta_jit.language.function import SEVERAL, Texts, untyped
 from rosetta_jit.lowering.texts.making import padded, replaced, with_case
 from rosetta_jit.lowering.texts.search import find, stripped
 from rosetta_jit.lowering.texts.values import expect, placed_of, quoted
 from rosetta_jit.lowering.texts.views import View, byte_at, lies_in, sound
 from rosetta_jit.lowering.writer import block
-from rosetta_jit.model.expr import Call, Expr
-from rosetta_jit.model.types import String
+from rosetta_jit.model.expr import Call, Expr, Literal
+from rosetta_jit.model.types import Array, Bytes, String
 
 if TYPE_CHECKING:
-    from typing import Literal
-
     from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.model.types import Type
+    from rosetta_jit.source import Span
 
 BLANKS = " \t\n\r\v\f"
 BEHIND_NUL = "what is behind the first NUL is dropped"
 
 
 def _lower_case(call: typed.Call, values: Evaluation) -> View:
-    return with_case(values.writer, placed_of(call.arguments[0], values), cast("Literal['lower', 'upper']", call.function))
+    return with_case(values.writer, placed_of(call.arguments[0], values), "lower" if call.function == "lower" else "upper")
 
 
 def _lower_strip(call: typed.Call, values: Evaluation) -> View:
@@ -75,8 +74,15 @@ def _lower_padded(call: typed.Call, values: Evaluation) -> View:
 
 
 def _filled(call: Call, value: Expr) -> tuple[Expr, Expr]:
+    return call.arguments[0], untyped("until_nul", (value,), call.span)
+
+
+def _filled_to(arguments: tuple[Expr, ...], type_: Type | None, span: Span | None) -> Expr:
     """NULs behind the text, where the field has one size."""
-    return call.arguments[0], Call(FILLED, (value,), call.span)
+    if type_ is None:
+        return Call("padded", arguments, span)
+    size = type_.length if isinstance(type_, Array | Bytes) else None
+    return Call("padded", (*arguments, Literal(size, span)), span) if isinstance(size, int) else arguments[0]
 
 
 def _until_nul(call: Call, value: Expr) -> tuple[Expr, Expr]:
@@ -96,6 +102,14 @@ FUNCTIONS = (
     of_texts("strip", Texts(("text", "characters"), None, optional=1), _lower_strip, SEVERAL, undone_by(), OF_BLANKS),
     of_texts("replace", Texts(("text", "pattern", "quoted"), None), _lower_replace, SEVERAL, undone_by(), OF_REPLACING),
     of_texts("slice", Texts(("text", "integer", "integer"), None), _lower_slice, SEVERAL, undone_by(), OF_BYTES),
-    of_texts("until_nul", Texts(("text",), None), _lower_until_nul, _filled, undone_by(padded=loses(BEHIND_NUL)), BEFORE_NUL),
+    of_texts(
+        "until_nul",
+        Texts(("text",), None),
+        _lower_until_nul,
+        _filled,
+        undone_by(padded=loses(BEHIND_NUL)),
+        BEFORE_NUL,
+        typed_inverse=_filled_to,
+    ),
     of_texts("padded", Texts(("text", "size"), None), _lower_padded, _until_nul, undone_by(until_nul=loses(BEHIND_NUL)), WITH_NULS),
 )

@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 from typing import Literal as OneOf
 
+from rosetta_jit.model.expr import Call
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.entry_points import may_be_offered
 from rosetta_jit.startup.garbage import imported
@@ -22,11 +23,13 @@ from rosetta_jit.startup.garbage import imported
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from rosetta_jit.language import typed
     from rosetta_jit.language.affine_steps import Value
     from rosetta_jit.language.scope import Scope
-    from rosetta_jit.language.typed import Call, Expr
+    from rosetta_jit.language.typed import Expr
     from rosetta_jit.model import expr as model
     from rosetta_jit.model.types import Float, Int, Type
+    from rosetta_jit.source import Span
 
     Solved = tuple[model.Expr, model.Expr]
     """An argument of a call, and what it must be."""
@@ -35,8 +38,9 @@ if TYPE_CHECKING:
     """A signature of its own: the typed call of typed arguments; None where there is none, and the problem is in the scope."""
 
     Inverse = Callable[[model.Call, model.Expr], Solved | None]
+    TypedInverse = Callable[[tuple[model.Expr, ...], Type | None, Span | None], model.Expr]
     Split = Callable[[model.Call, model.Expr], tuple[Solved, Solved]]
-    Back = Callable[[Call, Call, Value], Value | None]
+    Back = Callable[[typed.Call, typed.Call, Value], Value | None]
     """Of a call, the one behind it, and the value before both: the value behind both; None where it is not undone."""
 
 GROUP = "rosetta_jit.functions"
@@ -124,7 +128,7 @@ class Affine:
     ``exact`` says that each value comes from one argument alone, or the step refuses it; ``rounds``, that it rounds if computed in floats.
     """
 
-    follow: Callable[[Call, Value], Value]
+    follow: Callable[[typed.Call, Value], Value]
     exact: bool = False
     rounds: bool = False
 
@@ -190,6 +194,8 @@ class Function:
     inverse
         Of a call and its value: the argument that holds the field, and what that must be; None where such a call has no inverse. As a text:
         why there is none.
+    typed_inverse
+        Of an inverse that is `untyped`, with its arguments: the expression for a field of a type, or (None) where no field asks for one.
     law
         What comes back of its argument.
     rows
@@ -219,10 +225,34 @@ class Function:
     operation: Operation = "arithmetic"
     units: Units = Units()
     split: Split | None = None
+    typed_inverse: TypedInverse | None = None
     whole: Whole | None = None
     remark: str = ""
     kept: bool = True
     changes: bool = False
+
+
+# --- inverses that depend on a type --------------------------------------------------------------------------------------
+
+UNTYPED = "inverse of "
+"""What the names of such calls begin with. No mapping can write it."""
+
+
+def untyped(function: str, arguments: tuple[model.Expr, ...], span: Span | None) -> model.Expr:
+    """The inverse of a function, to be chosen when the type of its field is known."""
+    return Call(UNTYPED + function, arguments, span)
+
+
+def for_field(call: model.Call, type_: Type | None) -> model.Expr:
+    """A call for a field of a type, or where no field asks for one; calls that mappings write stay as they are."""
+    if not call.function.startswith(UNTYPED):
+        return call
+    function = functions()[call.function.removeprefix(UNTYPED)]
+    assert function.typed_inverse is not None
+    return function.typed_inverse(call.arguments, type_, call.span)
+
+
+# --- the table -----------------------------------------------------------------------------------------------------------
 
 
 @cache

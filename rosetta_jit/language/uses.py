@@ -32,13 +32,6 @@ class EnoughError(Exception):
     """What is wrong is so large that nothing more is looked at; never leaves `language.resolve.rules`."""
 
 
-MAX_USES = 1000
-"""How often mappings may be used in all: each use is a copy of its rules."""
-
-MAX_COPIED = 10_000
-"""Rules that all uses together copy."""
-
-
 @dataclass(frozen=True, slots=True)
 class Use:
     """That a rule is made by a mapping whose ``side`` is what the rule sets: at ``place``, from ``origin``."""

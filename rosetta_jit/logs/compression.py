@@ -30,13 +30,23 @@ class Scratch:
     """Memory that is used for one chunk after another, of those that are read at the same time."""
 
     def __init__(self) -> None:
-        self._memory = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
+        self._contents = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
+        self._records = [np.empty(0, np.uint8) for _ in range(AT_ONCE)]
 
     def room(self, size: int) -> Bytes:
-        """So many bytes; what was there three chunks before is gone."""
-        memory = self._memory.pop(0)
-        self._memory.append(memory if memory.size >= size else np.empty(size, np.uint8))
-        return self._memory[-1][:size]
+        """So many bytes for the content of a chunk; what was there three chunks before is gone."""
+        return _turned(self._contents, size)
+
+    def record(self, size: int) -> Bytes:
+        """The same for a chunk as it is in the file, which is its content where it is not compressed."""
+        return _turned(self._records, size)
+
+
+def _turned(memory: list[Bytes], size: int) -> Bytes:
+    """The oldest memory, large enough."""
+    oldest = memory.pop(0)
+    memory.append(oldest if oldest.size >= size else np.empty(size, np.uint8))
+    return memory[-1][:size]
 
 
 def decompressed(name: str, compression: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:

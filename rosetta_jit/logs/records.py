@@ -10,7 +10,6 @@ writer was killed, or one whose index lies.
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 
@@ -18,6 +17,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Block, Piece
+from rosetta_jit.logs.checksum import crc32
 from rosetta_jit.logs.compression import Scratch, decompressed
 from rosetta_jit.logs.storage import MAX_RECORD_BYTES
 from rosetta_jit.logs.walking import Why, walk
@@ -116,7 +116,7 @@ class Grammar(Protocol):
         """Channel and number of messages that a record of an index tells of the chunk before it. ValueError on a damaged one."""
         ...
 
-    def packed(self, record: bytes) -> Packed:
+    def packed(self, record: memoryview) -> Packed:
         """The content of a chunk, which may be cut short. ValueError if not even its head is whole."""
         ...
 
@@ -150,18 +150,19 @@ class Records:
                 blocks = self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
                 yield from (replace(each, piece=number) for each in blocks)
                 return
-            yield from (replace(each, piece=number) for each in self._segment(segment, wanted, scratch))
+            yield from (replace(each, piece=number) for each in self._segment(segment, wanted, scratch, end))
 
-    def _segment(self, segment: Chunk | Region, wanted: Wanted, scratch: Scratch) -> Iterator[Block]:
-        """The messages of a segment that is where the index says."""
+    def _segment(self, segment: Chunk | Region, wanted: Wanted, scratch: Scratch, end: int) -> Iterator[Block]:
+        """The messages of a segment that is where the index says; its last record may end in the next one, if that is not."""
         if isinstance(segment, Region):
-            yield from self._region(segment.at, segment.end, wanted, scratch)
+            yield from self._region(segment.at, end, wanted, scratch, range(segment.at, segment.end))
             return
-        record = self._storage.read(segment.at, segment.size)
-        size = self._grammar.head(record[:PEEK]).size
+        record = self._storage.read_into(segment.at, scratch.record(segment.size))
+        size = self._grammar.head(bytes(record[:PEEK])).size
         yield from self._content(record, segment.at, scratch)
         if size < segment.size:
-            yield from self._region(segment.at + size, segment.at + segment.size, wanted, scratch)
+            behind = range(segment.at + size, segment.at + segment.size)
+            yield from self._region(behind.start, end, wanted, scratch, behind)
 
     def _is_true(self, chunk: Chunk) -> bool:
         """Whether there is a chunk, and no larger one than the index says."""
@@ -184,7 +185,7 @@ class Records:
                     yield item
                 case Chunk():
                     if item.piece.has(wanted):
-                        yield from self._content(self._storage.read(item.at, item.size), item.at, scratch)
+                        yield from self._content(self._storage.read_into(item.at, scratch.record(item.size)), item.at, scratch)
 
     def items(self, at: int, end: int, own: range | None = None) -> Iterator[Chunk | Block]:
         """Go from record to record: the chunks, and the messages outside of chunks. Definitions are learned on the way.
@@ -238,11 +239,11 @@ class Records:
         if chunk.counts is not None and all(map(self._grammar.knows, chunk.counts)):
             return dict(chunk.counts)
         counts: dict[int, int | None] = {}
-        for block in self._content(self._storage.read(chunk.at, chunk.size), chunk.at, Scratch()):
+        for block in self._content(memoryview(self._storage.read(chunk.at, chunk.size)), chunk.at, Scratch()):
             add_counts(counts, block.rows)
         return counts
 
-    def _content(self, record: bytes, at: int, scratch: Scratch) -> Iterator[Block]:
+    def _content(self, record: memoryview, at: int, scratch: Scratch) -> Iterator[Block]:
         """The messages of a chunk."""
         try:
             packed = self._grammar.packed(record)
@@ -250,7 +251,7 @@ class Records:
             self._tell(words.chunk_damaged(self._storage.name, at, str(error)))
             return
         data, wrong = decompressed(self._storage.name, packed.compression, packed.body, packed.size, scratch)
-        if not wrong and self._check and packed.crc is not None and zlib.crc32(data.data) != packed.crc:
+        if not wrong and self._check and packed.crc is not None and crc32(data) != packed.crc:
             self._tell(words.checksum(self._storage.name, at))
             return
         if wrong:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 BYTES, MESSAGES = 4 << 20, 16_384
 """What is decoded at once; a longer message is alone."""
 
+LARGE = 1 << 17
+"""Messages from here on are decoded where they lie, one by one: to copy them takes longer."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Staged:
@@ -49,6 +52,10 @@ class Staging:
     def put(self, block: Block, rows: Rows) -> Iterator[Staged]:
         """Add messages of a block; gives those that have to leave for them."""
         done, sizes = 0, rows.ends - rows.begins
+        if len(rows) and int(sizes.min()) >= LARGE:
+            yield from self.flushed()
+            yield from (_alone(block, rows.only(slice(each, each + 1))) for each in range(len(rows)))
+            return
         while done < len(rows):
             taken = self._fitting(sizes[done:])
             if taken:
@@ -78,3 +85,9 @@ class Staging:
             offsets = self._offsets[: count + 1]
             yield Staged(self._data[: int(offsets[-1])], offsets, self._times[0, :count], self._times[1, :count])
         self._count = 0
+
+
+def _alone(block: Block, rows: Rows) -> Staged:
+    """A message where it lies."""
+    begin, end = int(rows.begins[0]), int(rows.ends[0])
+    return Staged(block.data[begin:end], np.array([0, end - begin]), rows.log_ns, rows.publish_ns)

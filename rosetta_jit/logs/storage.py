@@ -50,6 +50,16 @@ class Storage:
             self._file.seek(at)
             return self._file.read(size)
 
+    def read_into(self, at: int, memory: NDArray[np.uint8]) -> memoryview:
+        """As many bytes as there is memory for; fewer where the file ends. Fresh memory would take as long as reading into it."""
+        view = memory[: max(0, min(memory.size, self.size - at))].data
+        filled = 0
+        with self._lock:
+            self._file.seek(at)
+            while filled < len(view) and (count := cast("Any", self._file).readinto(view[filled:])):
+                filled += count
+        return view[:filled]
+
     def array(self, at: int, size: int) -> NDArray[np.uint8]:
         """The same as an array."""
         return np.frombuffer(self.read(at, size), np.uint8)

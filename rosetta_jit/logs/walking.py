@@ -126,12 +126,16 @@ def _function(name: str) -> Any:
 
 @cache
 def _library() -> Library:
-    """The code, from the kernel cache or compiled."""
-    text = Path(__file__).with_name("walk.ll").read_text("utf-8")
-    return native.load(kept("walks", text, lambda: _assembled(text)), SYMBOLS)
+    return library_of("walk.ll", SYMBOLS)
 
 
-def _assembled(text: str) -> bytes:
-    from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
+def library_of(file: str, symbols: tuple[str, ...]) -> Library:
+    """The code of a file beside this one in LLVM's language, from the kernel cache or compiled."""
+    text = Path(__file__).with_name(file).read_text("utf-8")
 
-    return assembled(text, SYMBOLS)
+    def compiled() -> bytes:
+        from rosetta_jit.runtime.code.assembler import assembled  # imports LLVM
+
+        return assembled(text, symbols)
+
+    return native.load(kept("walks", text, compiled), symbols)

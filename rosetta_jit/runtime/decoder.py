@@ -11,8 +11,8 @@ from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import THREAD
-from rosetta_jit.runtime.lanes import roomier
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.runtime.room import roomier
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:

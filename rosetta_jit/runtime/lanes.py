@@ -10,7 +10,6 @@ Compiled entries keep to the same rule by themselves (`backends/entry/*.ll`).
 
 from __future__ import annotations
 
-import operator
 from _thread import allocate_lock
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Self, TypeVar, assert_never, cast
@@ -40,7 +39,7 @@ from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
-from rosetta_jit.runtime.plan import Plan, begun, plan
+from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:
     from _thread import LockType
@@ -393,24 +392,3 @@ _MADE: dict[str, Callable[[Lanes], Any]] = {
     "cells": lambda lanes: Cells(lanes.memory),
     "arrays": lambda lanes: Arrays(lanes.memory, lanes.plan.dtypes, lanes.array_type),
 }
-
-
-def born(plan: Plan) -> Plan:
-    """The plan of one message, which is born from the start."""
-    if not plan.births:
-        return plan
-    prototype = Lanes(plan)
-    prototype.bear(plan.births, 0, 1)
-    for lane in range(len(plan.strides)):
-        prototype.words[lane_word(lane, ADDRESS)] = 0
-    return begun(plan, bytes(prototype.memory.first).rstrip(b"\0"))
-
-
-def roomier(plan_: Plan, lanes: Lanes, most: int = MOST_AT_ONCE) -> Plan:
-    """The plan of one message with the room that others of its layout have come to, as long as that is no more than so many bytes."""
-    room = [lanes.capacity(lane) for lane in range(len(plan_.strides))]
-    sizes = tuple(map(operator.mul, room, plan_.strides))
-    if sum(sizes) > most or all(map(operator.le, sizes, plan_.sizes)):
-        return plan_
-    wanted = plan(plan_.layout, births=plan_.births, room=room)
-    return born(wanted) if wanted.size_bytes <= most else plan_

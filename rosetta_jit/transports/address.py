@@ -33,7 +33,8 @@ class Option:
     Attributes
     ----------
     kind
-        `text`, `number` (an integer of at least 0), `size` (bytes: `64M`), `seconds`, `flag` (`yes` or `no`), or the words that it may be.
+        `text`, `number` (an integer of at least 0), `size` (bytes: `64M`), `seconds`, `flag` (`yes` or `no`), the words that it may be, or
+        `object`, which only a call can give.
     default
         Where nobody says it.
     meaning
@@ -59,7 +60,7 @@ class Option:
             case "flag":
                 return "`yes` or `no`"
             case str():
-                return self.kind
+                return "an object of Python, given by name in the call"
             case choices:
                 return "one of " + ", ".join(f"`{each}`" for each in choices)
 
@@ -97,6 +98,8 @@ class Option:
                 return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < float("inf")
             case "flag":
                 return isinstance(value, bool)
+            case "object":
+                return not isinstance(value, str)
             case _:
                 return isinstance(value, str) and value in self.kind
 

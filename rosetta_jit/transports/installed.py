@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 GROUP = "rosetta_jit.transports"
 """The entry-point group in which packages offer transports of their own: a `Transport` each."""
 
-OURS = ("sockets", "yarp", "rsb", "ros1")
+OURS = ("sockets", "yarp", "rsb", "ros1", "lcm", "mqtt", "zenoh", "cyclone", "iceoryx")
 """Folders beside this file with a `transport.TRANSPORTS`."""
 
 

@@ -248,3 +248,11 @@ pack-rules:
     encode = rj.Encoder("m.mapping", schema=schemas, backend=backend)
     values = {"kind": "B", "at": [0, -1, 2**30 * SECOND + 7]}
     assert decode(encode(encode.holder_type.from_dict(values))).to_dict() == values
+
+
+def test_a_moment_that_disagrees_is_told_as_a_person_reads_it():
+    rules = [".a <-> seconds(.t)", ".b <-> fraction(.t)", ".c <-> .t"]
+    pair = Pair(rules, {"t": "string"}, {"a": "int64", "b": "int64", "c": "string"}, "interpreter")
+    assert pair.pack(a=0, b=0, c="1970-01-01T00:00:00Z") == {"t": "1970-01-01T00:00:00Z"}
+    with pytest.raises(rj.EncodeError, match=r"`\.c` is not `iso8601\(\.a, \.b\)`, as the mapping says"):
+        pair.pack(a=1, b=0, c="1970-01-01T00:00:00Z")

@@ -362,3 +362,25 @@ def test_an_integer_that_its_float_lacks_is_refused(kind, value):
     with pytest.raises(rj.MappingError) as error:
         rj.Decoder("m.mapping", schema=files(rules), encoding="yarp3", backend="interpreter", parameters={"scale": value})
     assert f"{value} does not fit {kind}" in str(error.value)
+
+
+@pytest.mark.parametrize(("relation", "text"), [("prefix + .s", "v1/"), (".s + prefix", "/v1"), ("prefix + .s", "")])
+def test_a_text_beside_a_field_is_taken_away_whatever_it_is(tmp_path, relation, text):
+    """The mapping is checked, and its laws are known, before the text is."""
+    schemas = {
+        "w.bottle-schema": '"w" (("s" :string))',
+        "h.proto": 'syntax = "proto2"; message H { required string s = 1; }',
+        "m.mapping": f"{HEAD}parameter prefix: string\nrules:\n  .s <-> {relation}\n",
+    }
+    for name, content in schemas.items():
+        (tmp_path / name).write_text(content)
+    laws = rj.check(tmp_path / "m.mapping").laws
+    assert laws is not None
+    assert {laws.messages.kind, laws.holders.kind} == {"exact"}
+    options = {"schema": schemas, "encoding": "yarp3", "backend": "interpreter", "parameters": {"prefix": text}}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    whole = text + "topic" if relation.startswith("prefix") else "topic" + text
+    message = encode(encode.holder_type.from_dict({"s": whole}))
+    assert b"topic" in message
+    assert (text.encode() in message) == (not text)
+    assert decode(message).to_dict() == {"s": whole}

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.language.imports.search import MAX_FILE_BYTES, Reading, SearchPath, shipped_folders
+from rosetta_jit.language.imports.search import Reading, SearchPath, shipped_folders
+from rosetta_jit.language.limits import MAX_FILE_BYTES
 from rosetta_jit.source import Source
 
 

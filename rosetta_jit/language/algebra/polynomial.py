@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.counters import counter_of
+from rosetta_jit.language.limits import MAX_ATOM_DEPTH, MAX_ATOMS
 from rosetta_jit.language.places import shown_shape
 from rosetta_jit.language.typed import (
     Access,
@@ -43,15 +44,9 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.typed import Expr, Place, Step
 
-MAX_SIZE = 1000
-"""Atoms of the largest polynomial: products of sums and nested substitutions grow exponentially."""
-
-MAX_DEPTH = 40
-"""Atoms within arguments of atoms: substitutions nest them, and every walk is recursive."""
-
 
 class TooComplexError(Exception):
-    """An expression whose normal form is larger than `MAX_SIZE` or deeper than `MAX_DEPTH`; never leaves the checker."""
+    """An expression whose normal form is larger than `MAX_ATOMS` or deeper than `MAX_ATOM_DEPTH`; never leaves the checker."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +114,7 @@ def subtract(left: Polynomial, right: Polynomial) -> Polynomial:
 
 def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
     """``left · right``"""
-    if len(left.terms) * len(right.terms) > MAX_SIZE:
+    if len(left.terms) * len(right.terms) > MAX_ATOMS:
         raise TooComplexError
     terms: Counter[Monomial] = Counter()
     for monomial, coefficient in left.terms:
@@ -258,7 +253,7 @@ def _of(terms: Counter[Monomial]) -> Polynomial:
     arguments = [argument for monomial, _ in kept for factor, _ in monomial for argument in factor.arguments]
     size = sum(1 + len(monomial) for monomial, _ in kept) + sum(argument.size for argument in arguments)
     depth = 1 + max((argument.depth for argument in arguments), default=0)
-    if size > MAX_SIZE or depth > MAX_DEPTH:
+    if size > MAX_ATOMS or depth > MAX_ATOM_DEPTH:
         raise TooComplexError
     return Polynomial(kept, size, depth)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.algebra.polynomial import Atom, Polynomial, add, multiply, number, product, shown_atom, subtract
+from rosetta_jit.language.limits import MAX_SUBSTITUTED
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.algebra.polynomial import Monomial
 
-MAX_KNOWN = 20
-"""Numbers that are put in the place of others."""
 
 SECOND = 10**9
 
@@ -51,7 +50,7 @@ def are_same(left: Polynomial, right: Polynomial, facts: Facts = NOTHING) -> boo
         return True
     rest = subtract(_put(left, facts.equal), _put(right, facts.equal))
     rest = _reduced(_reduced(rest, facts), facts)
-    return _put(rest, list(_products(rest))[:MAX_KNOWN]) == number(0)
+    return _put(rest, list(_products(rest))[:MAX_SUBSTITUTED]) == number(0)
 
 
 def mentions(polynomial: Polynomial, atom: Atom) -> bool:
@@ -62,7 +61,7 @@ def mentions(polynomial: Polynomial, atom: Atom) -> bool:
 
 def _put(polynomial: Polynomial, known: Sequence[Fact]) -> Polynomial:
     """A number with what atoms are equal to in their places, one fact after the other."""
-    for each, value in known[:MAX_KNOWN]:
+    for each, value in known[:MAX_SUBSTITUTED]:
         polynomial = _replaced(polynomial, each, value)
     return polynomial
 

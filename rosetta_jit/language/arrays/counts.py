@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
+from rosetta_jit.language.limits import MAX_KNOWN_COUNT
 from rosetta_jit.model.expr import Binary, Call, Literal
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Expr, Operator
 
-MAX_KNOWN = 1 << 62
-"""Larger numbers stay written out, and are refused where they are typed."""
 
 ZERO, ONE = Literal(0), Literal(1)
 
@@ -64,7 +63,7 @@ def over(total: Expr, size: Expr, call: Call) -> Expr:
 def folded(expr: Expr) -> Expr:
     """An operation on numbers that are known as its result."""
     match expr:
-        case Binary(operator, Literal(int(left)), Literal(int(right))) if abs(known := _result(operator, left, right)) < MAX_KNOWN:
+        case Binary(operator, Literal(int(left)), Literal(int(right))) if abs(known := _result(operator, left, right)) < MAX_KNOWN_COUNT:
             return Literal(known, expr.span)
         case _:
             return expr

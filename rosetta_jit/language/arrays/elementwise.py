@@ -17,6 +17,7 @@ from rosetta_jit.language.arrays.element_loops import Moves, element_of
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, PADDED, view_of
 from rosetta_jit.language.arrays.parts import has_each, is_many, sources_in, substituted
 from rosetta_jit.language.conversions import same, widens
+from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
 from rosetta_jit.language.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
-MAX_MADE = 1000
-"""Rules for single elements that a block comes to."""
 
 Lengths = dict[Path, "Expr"]
 """What is known of the lengths of the target's arrays."""

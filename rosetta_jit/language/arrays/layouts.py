@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
 from rosetta_jit.language.folding import folded as literal
+from rosetta_jit.language.limits import MAX_LISTED
 from rosetta_jit.model.expr import Binary, Call, Each, Len, List, Literal, Path, Pick, Slice
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -48,9 +49,6 @@ ARGUMENTS: dict[str, tuple[int, int]] = {
 OPPOSITE = {"planar": "interleaved", "interleaved": "planar", "rows": PADDED, PADDED: "rows"}
 KEEP_LENGTH = frozenset(ARGUMENTS) - {"rows", PADDED}
 """Functions that give an array as long as theirs."""
-
-MAX_LISTED = 256
-"""Elements that a list names."""
 
 
 @dataclass(frozen=True, slots=True)

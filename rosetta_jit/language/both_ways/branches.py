@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved, subject_of
 from rosetta_jit.language.folding import folded, is_constant
+from rosetta_jit.language.limits import MAX_TESTED
 from rosetta_jit.model.expr import Binary, Call, Choice, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Reject, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, rebuilt
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
 
-MAX_TESTED = 16
-"""Constants of one block that a field is compared with."""
 
 Constants = frozenset["Literal | Name"]
 

@@ -12,11 +12,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing, checks_of
+from rosetta_jit.language.limits import MAX_CONDITIONS
 from rosetta_jit.model.expr import Len
 from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
-
-MAX_CONDITIONS = 8
-"""Conditions within each other that choose among fields that are parts of one value."""
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -23,10 +23,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
-from rosetta_jit.language.both_ways.inverse_texts import without
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, Function, written
-from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.model.types import String
 from rosetta_jit.model.walk import parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -163,7 +163,7 @@ def _undone(call: Call, value: Expr, function: Function) -> tuple[Expr, Expr]:
 
 
 def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
-    if (found := without(expr, value)) is not None:
+    if (found := _without(expr, value)) is not None:
         return found
     left = bool(fields_in(expr.left))
     inner, other = (expr.left, expr.right) if left else (expr.right, expr.left)
@@ -185,6 +185,17 @@ def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:
             return inner, Binary("^", value, other, span)
         case operator, _:
             raise NoInverseError(expr, f"`{operator}` gives the same for several values")
+
+
+def _without(sum_: Binary, value: Expr) -> tuple[Expr, Expr] | None:
+    """The field of a sum of texts of which one is written down."""
+    match sum_:
+        case Binary("+", Literal(str()) | Given(type=String()) as start, inner, span):
+            return inner, Call("behind", (value, start), span)
+        case Binary("+", inner, Literal(str()) | Given(type=String()) as end, span):
+            return inner, Call("before", (value, end), span)
+        case _:
+            return None
 
 
 def _table(expr: Choice, value: Expr) -> tuple[Expr, Expr]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.language.limits import MAX_PARTS
 from rosetta_jit.model.expr import Call, Each, Expr, Held, Index, Len, Name, Path
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 from rosetta_jit.startup.dataclass import dataclass
@@ -18,10 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse_parts import Digit
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Relation
-
-
-MAX_PARTS = 100_000
-"""Parts of all expressions that are put in place of fields."""
 
 
 @dataclass(frozen=True, slots=True)

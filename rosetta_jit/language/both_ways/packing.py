@@ -19,8 +19,10 @@ from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, t
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
+from rosetta_jit.language.both_ways.typed_inverse import as_written
 from rosetta_jit.language.folding import FALSE, TRUE, folded
 from rosetta_jit.language.function import written
+from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
@@ -36,9 +38,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Span
-
-MAX_BLOCKS = 200
-"""Blocks that conditions in expressions are split into: a sum of them doubles with each."""
 
 
 NOTHING: Mapping[Field, Expr] = MappingProxyType({})
@@ -296,7 +295,7 @@ def checks_of(beside: Beside) -> tuple[Rule, ...]:
 
 def _within(digit: Digit, span: Span | None) -> Rule:
     is_below, is_above = Binary("<", digit.value, Literal(0, span), span), Binary(">=", digit.value, Literal(digit.below, span), span)
-    reason = words.no_digit(show_expr(digit.value), digit.below)
+    reason = words.no_digit(show_expr(as_written(digit.value)), digit.below)
     return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
 
 
@@ -313,7 +312,7 @@ def _setting(place: Path, value: Expr, span: Span | None, *, length: bool) -> Ru
 def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
     """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
     held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
-    reason = words.disagrees(show_expr(place), show_expr(wanted))
+    reason = words.disagrees(show_expr(place), show_expr(as_written(wanted)))
     return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
 

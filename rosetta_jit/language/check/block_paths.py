@@ -11,6 +11,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
+from rosetta_jit.language.limits import MAX_CHECKED_WAYS
 from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
 from rosetta_jit.model.types import Optional, Struct, Union
 
@@ -20,14 +21,12 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Field
     from rosetta_jit.source import Span
 
-MAX_WAYS = 64
-"""Ways through a block that are checked."""
 
 Ways = list[tuple["Rule", ...]]
 
 
 class TooManyWaysError(Exception):
-    """More ways than `MAX_WAYS`; never leaves the checker."""
+    """More ways than `MAX_CHECKED_WAYS`; never leaves the checker."""
 
     def __init__(self, span: Span | None) -> None:
         super().__init__()
@@ -44,7 +43,7 @@ def ways(rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Ways:
     found: Ways = [()]
     for rule in rules:
         parts = _ways_of(rule, problems)
-        if len(found) * len(parts) > MAX_WAYS:
+        if len(found) * len(parts) > MAX_CHECKED_WAYS:
             raise TooManyWaysError(rule.span)
         found = [(*before, *part) for before, part in product(found, parts)]
     return found

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.language.algebra.polynomial import Polynomial, TooComplexError, number
-from rosetta_jit.language.check.block_paths import MAX_WAYS, TooManyWaysError, ways
+from rosetta_jit.language.check.block_paths import TooManyWaysError, ways
 from rosetta_jit.language.check.cases import contradictions, contradictions_in_elements, implied
 from rosetta_jit.language.check.coverage import coverage
 from rosetta_jit.language.check.written_places import Write, enter, writes_of
+from rosetta_jit.language.limits import MAX_CHECKED_WAYS
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.scope import element_type
 from rosetta_jit.language.typed import Const
@@ -40,7 +41,7 @@ def check_complete(rules: TypedRules, target: Message, missing: Missing) -> list
     try:
         found = [_check_way(way, rules, target, missing) for way in ways(rules.rules, shared)]
     except TooManyWaysError as error:
-        return [words.too_many_ways(error.span, MAX_WAYS)]
+        return [words.too_many_ways(error.span, MAX_CHECKED_WAYS)]
     ways_with = Counter(problem for problems in found for problem in dict.fromkeys(problems))
     # Where rounds set different places, what one way through them lacks is the same mistake again.
     some = [words.in_one_way(problem) for problem, count in ways_with.items() if count < len(found) and not shared]

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.language.algebra.polynomial import add, number
 from rosetta_jit.language.check.tiling import interval, join, overlap
+from rosetta_jit.language.limits import MAX_ELEMENTS_SHOWN
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.algebra.polynomial import Polynomial
     from rosetta_jit.language.check.tiling import Run
     from rosetta_jit.source import Span
-
-MAX_SHOWN = 8
 
 
 def coverage(path: str, runs: list[Run], length: Polynomial, span: Span | None, *, optional: bool) -> list[Diagnostic]:
@@ -44,7 +43,7 @@ def coverage(path: str, runs: list[Run], length: Polynomial, span: Span | None, 
     place = joined[0].span if joined else span
     if len(joined) == 1 and not joined[0].dimensions and joined[0].start == number(0):
         return [words.loop_of_other_length(place, path, str(length), str(joined[0].length))]
-    return [words.coverage(place, path, str(length), tuple(_shown(run) for run in joined[:MAX_SHOWN]))]
+    return [words.coverage(place, path, str(length), tuple(_shown(run) for run in joined[:MAX_ELEMENTS_SHOWN]))]
 
 
 def _is_whole(joined: list[Run], length: Polynomial) -> bool:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.language.check.discriminators import discriminator_of
+from rosetta_jit.language.limits import MAX_LABELS
 from rosetta_jit.language.places import field_names, rules_within, shown_fields
 from rosetta_jit.language.typed import Assign, Const, Default, For, IndexStep, Local, SetLength, When
 from rosetta_jit.model.types import Array, Bool, Map
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
 
 COMPUTED, ANY = "computed", "any"
 """Instead of the indices of a spot: all those that are not constant, and all."""
-
-MAX_LABELS = 5_000
-"""Labels that all values of discriminators together are compared with."""
 
 
 def discriminators_first(rules: tuple[Rule, ...], unions: Mapping[Names, Discriminator], problems: list[Diagnostic]) -> tuple[Rule, ...]:

@@ -7,6 +7,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.language.limits import MAX_NAME
 from rosetta_jit.model.types import Struct, name_parts
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema
 
 QUALIFIED = re.compile(r"[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z][A-Za-z0-9_]*)+")
-MAX_NAME = 200
 
 
 def misnamed(mapping: Mapping, schema: Schema) -> Iterator[Diagnostic]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe, same
 from rosetta_jit.language.functions.texts import comparison, type_pieces
+from rosetta_jit.language.limits import MAX_CASES, MAX_COMPARED
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Choice, Const, IsText, Unary
 from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model.types import Bool, Bytes, Enum, Float, Int, String
@@ -28,11 +29,6 @@ if TYPE_CHECKING:
     CompareTexts = Callable[[Expr, Expr, model.Binary], Expr | None]
 
 EQUALITY = frozenset(("==", "!="))
-MAX_TEXT = 64
-"""Bytes of a text that a field is compared with."""
-
-MAX_CASES = 500
-"""Cases of a choice among numbers."""
 
 
 def type_condition(expr: model.Expr, scope: Scope, type_expr: TypeExpr) -> Expr | None:
@@ -74,8 +70,8 @@ def type_comparison(expr: model.Binary, scope: Scope, type_expr: TypeExpr, texts
     found = _comparison(expr, left, right)
     if found is None:
         scope.problems.append(words.not_comparable(expr.span, expr.operator, describe(left.type), describe(right.type)))
-    elif isinstance(found, IsText) and len(found.text.encode()) > MAX_TEXT:
-        scope.problems.append(words.long_text(expr.span, MAX_TEXT))
+    elif isinstance(found, IsText) and len(found.text.encode()) > MAX_COMPARED:
+        scope.problems.append(words.long_text(expr.span, MAX_COMPARED))
         return None
     return found if not isinstance(found, IsText) or expr.operator == "==" else Unary("not", found, BOOL, expr.span)
 

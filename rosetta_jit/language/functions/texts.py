@@ -12,7 +12,8 @@ from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe
 from rosetta_jit.language.function import Texts
-from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert
+from rosetta_jit.language.limits import MAX_PADDED, MAX_PATTERN, MAX_WRITTEN
+from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert, Given
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 
 if TYPE_CHECKING:
@@ -28,12 +29,6 @@ if TYPE_CHECKING:
 
 TEXT, BYTES = String(), Bytes()
 ENCODINGS = ("utf-8", "ascii", "latin-1", "utf-16le", "utf-16be")
-MAX_PATTERN = 64
-"""Bytes of a text that another is searched for."""
-
-MAX_PADDED = 1 << 16
-MAX_WRITTEN = 4096
-"""Bytes of a text in quotes that is computed with."""
 
 
 def is_textual(type_: Type) -> bool:
@@ -168,6 +163,8 @@ def _usable(function: str, value: Expr, scope: Scope) -> bool:
 
 def _pattern_problem(function: str, kind: str, value: Expr) -> words.Diagnostic | None:
     quoted = _quoted(value)
+    if isinstance(value, Given) and isinstance(value.type, String):
+        return None  # a parameter, whose text is looked at when it is given
     if quoted is None:
         return words.quoted_needed(value.span, function)
     if not quoted and kind != "quoted":

@@ -11,6 +11,7 @@ from rosetta_jit.catalogue import functions as words
 from rosetta_jit.language.conversions import convert, describe, word_for
 from rosetta_jit.language.function import names
 from rosetta_jit.language.functions.calls import FLOATS, INTEGERS, named_type
+from rosetta_jit.language.limits import MAX_PARAMETERS
 from rosetta_jit.language.typed import HostCall
 from rosetta_jit.language.uses import Signature
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
 SCALARS = (*INTEGERS, *FLOATS, "bool")
-MAX_PARAMETERS = 32
 
 
 def signatures(mappings: Iterable[Mapping], problems: list[Diagnostic]) -> dict[str, Signature]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.errors import ReportError
 from rosetta_jit.language.both_ways.directions import in_each_direction
+from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.uses import Others
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 
 MAPPING_SUFFIX = ".mapping"
 """Of an import that is a mapping."""
-
-MAX_MAPPINGS = 64
-"""Mappings that one mapping may use, those that they use included."""
 
 
 def read_others(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.language.limits import MAX_FILE_BYTES, MAX_TEXT_BYTES
 from rosetta_jit.source import Source
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.parsing.idl import Load
 
-MAX_FILE_BYTES = 4 << 20
-MAX_TEXT_BYTES = 64 << 20
-"""Of all files that one program is made from."""
 ENVIRONMENT_VARIABLE = "ROSETTA_JIT_PATH"
 
 

@@ -20,7 +20,7 @@ from rosetta_jit.language.affine_steps import UNSHOWN as NOT_SHOWN
 from rosetta_jit.language.conversions import EXACT_BITS
 from rosetta_jit.language.function import Affine, NotFollowed, Undone, functions
 from rosetta_jit.language.laws.integers import as_whole, squeezed
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, LenOf, Nearest, Unary
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Given, LenOf, Nearest, Unary
 from rosetta_jit.model.types import Float, Int
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -111,7 +111,7 @@ def _inner(expr: Expr) -> Expr | None:
         case Binary(_, Const(), right):
             return right
         case Call(function, arguments) if not isinstance(functions()[function].law, NotFollowed):
-            unknown = [each for each in arguments if not isinstance(each, Const)]
+            unknown = [each for each in arguments if not isinstance(each, Const | Given)]
             return unknown[0] if len(unknown) == 1 else None
         case Choice():
             found = table_of(expr)

@@ -12,7 +12,9 @@ from rosetta_jit.language.algebra.equality import given_back, reads_other, same_
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.check.left_out import untouched
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.language.laws.roundtrip import Result, Trip, UnfollowedError, Way, ways
+from rosetta_jit.language.laws.roundtrip import Result, Trip
+from rosetta_jit.language.laws.ways import UnfollowedError, Way, ways
+from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, When
 from rosetta_jit.startup.dataclass import dataclass
@@ -27,9 +29,6 @@ if TYPE_CHECKING:
 
 ORDINARY = (1e-30, 1e30)
 """Magnitudes beyond which a bound is not shown."""
-
-MAX_WORK = 200_000
-"""Rules of the second direction, times ways through the first one, that are followed."""
 
 
 @dataclass(frozen=True, slots=True)

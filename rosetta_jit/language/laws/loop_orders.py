@@ -20,6 +20,7 @@ from rosetta_jit.language.algebra.polynomial import (
     subtract,
 )
 from rosetta_jit.language.algebra.quotients import are_same
+from rosetta_jit.language.limits import MAX_LOOPS
 from rosetta_jit.language.typed import INT64, Binary, Const, IndexStep, Local
 
 if TYPE_CHECKING:
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.algebra.quotients import Facts
     from rosetta_jit.language.typed import Expr, Place
 
-MAX_LOOPS = 6
-"""Loops within each other that are looked at."""
 
 Strides = tuple["Polynomial", ...]
 """How far each index of a place goes with each number of a loop."""

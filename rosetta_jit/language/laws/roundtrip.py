@@ -17,6 +17,7 @@ from rosetta_jit.language.laws.chain import come_back, field_in
 from rosetta_jit.language.laws.loop_orders import round_of
 from rosetta_jit.language.laws.parts import simplified
 from rosetta_jit.language.laws.refusals import may_refuse
+from rosetta_jit.language.limits import MAX_LOOKED, MAX_ORDERED
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import (
     BOOL,
@@ -49,64 +50,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.language.algebra.equality import Ranges
+    from rosetta_jit.language.laws.ways import Way
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
-
-MAX_WAYS = 64
-"""Ways through the first direction that are followed."""
-
-MAX_LOOKED = 300
-"""Rules for one field that are looked at."""
-
-MAX_ORDERED = 1_000
-"""Rules in loops that are compared with other loops."""
-
-Known = tuple[tuple["Expr", bool, "Ranges"], ...]
-"""Conditions, whether they hold, and the loops in all of whose rounds."""
-
-
-class UnfollowedError(Exception):
-    """More ways than `MAX_WAYS`; never leaves the laws."""
-
-
-@dataclass(frozen=True, slots=True)
-class Way:
-    """One way through a direction: what is known on it, and the rules that run."""
-
-    known: Known
-    rules: tuple[Rule, ...]
-
-
-def ways(rules: tuple[Rule, ...]) -> list[Way]:
-    """Every way through a direction that is not rejected.
-
-    Raises
-    ------
-    UnfollowedError
-    """
-    found = [Way((), ())]
-    for rule in rules:
-        parts = _ways_of(rule)
-        if len(found) * len(parts) > MAX_WAYS:
-            raise UnfollowedError
-        found = [Way((*before.known, *part.known), (*before.rules, *part.rules)) for before in found for part in parts]
-    return found
-
-
-def _ways_of(rule: Rule) -> list[Way]:
-    match rule:
-        case When(condition, then, otherwise):
-            blocks = [(condition, True, then), (condition, False, otherwise)]
-            return [Way(((known, holds, ()), *way.known), way.rules) for known, holds, block in blocks for way in ways(block)]
-        case For(_, start, stop, body):
-            found = ways(body)
-            around = [tuple((known, holds, ((start, stop), *ranges)) for known, holds, ranges in way.known) for way in found]
-            return [Way(known, (replace(rule, body=way.rules),)) for known, way in zip(around, found, strict=True)]
-        case Reject():
-            return []
-        case _:
-            return [Way((), (rule,))]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bind as words
 from rosetta_jit.language.folding import folded
+from rosetta_jit.language.limits import MAX_CHOSEN
 from rosetta_jit.language.parameters.list_rules import spread
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.model.expr import Call, Choice, Given, Item, List, Literal, Name
@@ -80,10 +81,6 @@ def _value(parameter: Parameter, given: Dictionary[str, object] | None, problems
         problems.append(words.unfit(span, parameter.name, found))
         return unknown
     return found
-
-
-MAX_CHOSEN = 5000
-"""Items of all lists at all places where one of them is chosen."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosetta_jit.language.limits import MAX_SINGLE
 from rosetta_jit.model.expr import Given, Index, Item, Len, List, Literal, Name, Path
 from rosetta_jit.model.mapping import Assign, For, Relation, SetLength
 from rosetta_jit.model.types import Array, Int
@@ -16,9 +17,6 @@ from rosetta_jit.model.types import Array, Int
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
-
-MAX_SINGLE = 32
-"""Items of a list of constants that are assigned one by one."""
 
 
 def spread(rule: Rule, variables: tuple[str, ...]) -> tuple[Rule, ...]:

@@ -7,6 +7,7 @@ import struct
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.language.conversions import holds
+from rosetta_jit.language.limits import MAX_ITEMS, MAX_LIST_BYTES, MAX_PARAMETER_BYTES
 from rosetta_jit.model.expr import List, Literal
 from rosetta_jit.model.types import Bool, Float, Int, String
 
@@ -17,14 +18,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Parameter
     from rosetta_jit.model.types import Type
 
-MAX_ITEMS = 500
-"""Items of a list."""
-
-MAX_TEXT = 1000
-"""Bytes of a text."""
-
-MAX_TEXTS = 20_000
-"""Bytes of all texts of a list."""
 
 SCALARS: Mapping[str, Type] = {
     "bool": Bool(),
@@ -63,8 +56,8 @@ def accepted(value: object, parameter: Parameter) -> Expr | str:
     items = cast("list[object]", value)
     if len(items) > MAX_ITEMS:
         return f"a list has at most {MAX_ITEMS} items, not {len(items)}"
-    if sum(len(item) for item in items if isinstance(item, str)) > MAX_TEXTS:
-        return f"the texts of a list have at most {MAX_TEXTS} bytes together"
+    if sum(len(item) for item in items if isinstance(item, str)) > MAX_LIST_BYTES:
+        return f"the texts of a list have at most {MAX_LIST_BYTES} bytes together"
     found: list[Expr] = []
     for number, item in enumerate(items):
         known = _scalar(item, type_, parameter.type)
@@ -107,7 +100,7 @@ def _text(value: str) -> Expr | str:
         size = len(value.encode())
     except UnicodeEncodeError:
         return "the text cannot be written as UTF-8"
-    return Literal(value) if size <= MAX_TEXT else f"a text has at most {MAX_TEXT} bytes, not {size}"
+    return Literal(value) if size <= MAX_PARAMETER_BYTES else f"a text has at most {MAX_PARAMETER_BYTES} bytes, not {size}"
 
 
 def _shown(value: object) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError
+from rosetta_jit.language.limits import MAX_CHARACTERS, MAX_IMPORTS, MAX_LIMIT, MAX_LIMIT_DIGITS, MAX_NESTING, MAX_TOKENS
 from rosetta_jit.language.parse.rules import Context, read_parameter, read_rule, read_string
 from rosetta_jit.language.parse.templates import grammar
 from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
@@ -26,15 +27,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Source
 
-MAX_CHARACTERS = 1 << 20
-MAX_TOKENS = 50_000
-"""Words and signs of one mapping: some sixteen thousand rules, which take seconds."""
 
-MAX_IMPORTS = 200
-
-MAX_NESTING = 64
-MAX_LIMIT, MAX_LIMIT_DIGITS = 1 << 40, 20
-"""What a mapping's `limit` is at most, and what is read of it before it is one: Python refuses to read numbers of thousands of digits."""
 """Brackets, blocks, operators of one expression, steps of one path: deeper is refused, so that every walk is bounded."""
 
 NESTING = frozenset(

@@ -10,6 +10,7 @@ import re
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.language.limits import MAX_DIGITS
 from rosetta_jit.language.parse.templates import pieces_of
 from rosetta_jit.model.expr import (
     Binary,
@@ -43,9 +44,6 @@ if TYPE_CHECKING:
 ESCAPES = {'"': '"', "\\": "\\", "n": "\n", "t": "\t", "r": "\r"}
 
 OTHERWISE = ("otherwise", "otherwise_of_both")
-
-MAX_DIGITS = 400
-"""The longest number that is looked at: a float64 has at most 309 digits before its point."""
 
 
 @dataclass(frozen=True, slots=True)

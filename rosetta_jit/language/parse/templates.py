@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.language.limits import MAX_PIECES, MAX_VALUE_TOKENS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.parsing.parsers import parser_of
@@ -30,11 +31,7 @@ MISTAKES = ("UNCLOSED", "STRANGE")
 """Tokens that stand for mistakes."""
 
 PIECES = re.compile(r"\{\{|\}\}|\{[^{}]*\}|[{}]")
-MAX_PIECES = 20
-"""Values and the texts between them."""
 
-MAX_TOKENS = 64
-"""Of a value: that bounds how deep it nests."""
 
 BEFORE = (("UNPACK_RULES", "unpack-rules"), ("COLON", ":"), ("REJECT", "reject"), ("STRING", '""'), ("GUARD", "when"))
 """The tokens before a condition."""
@@ -76,8 +73,8 @@ def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable
 def _value(text: str, place: Span, problems: list[Diagnostic]) -> Tree | None:
     """The tree of what stands in braces; mistakes at its end are reported for all of it."""
     tokens = [token.at(place.start + 1 + token.start_pos, place.start + 1 + token.end_pos) for token in grammar().lex(text)]
-    if len(tokens) > MAX_TOKENS:
-        problems.append(words.nesting(place, MAX_TOKENS))
+    if len(tokens) > MAX_VALUE_TOKENS:
+        problems.append(words.nesting(place, MAX_VALUE_TOKENS))
         return None
     before = [Token(kind, text, place.start, place.start) for kind, text in BEFORE]
     tree = parse_tokens(grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)

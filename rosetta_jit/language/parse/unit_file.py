@@ -14,6 +14,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
+from rosetta_jit.language.limits import MAX_UNIT_FIELDS, MAX_UNIT_PROBLEMS, MAX_UNIT_STEPS
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Source
 
 SUFFIX = ".units"
-MAX_FIELDS = 5000
-MAX_STEPS = 64
-MAX_PROBLEMS = 50
 
 TYPE = re.compile(r'("[^"\n]+"|[A-Za-z_](?:[\w.:/]*\w)?)[ \t]*:')
 STEP = re.compile(r'\.(?:([A-Za-z_]\w*)|"([^"\n]+)")|\[([0-9]{0,9})\]')
@@ -73,7 +71,7 @@ def parse(source: Source, problems: list[Diagnostic]) -> UnitFile:
     reader = _Reader(source, [], [], [])
     at = 0
     for line in source.text.split("\n"):
-        if len(reader.problems) >= MAX_PROBLEMS:
+        if len(reader.problems) >= MAX_UNIT_PROBLEMS:
             break
         reader.line(at, at + len(line.partition("#")[0].rstrip()))
         at += len(line) + 1
@@ -93,8 +91,8 @@ class _Reader:
         if start == end:
             return
         head = TYPE.fullmatch(self.source.text, start, end)
-        if max(len(self.types), len(self.fields)) == MAX_FIELDS:
-            self.problems[:] = [words.too_many(self.span(start, end), MAX_FIELDS)]
+        if max(len(self.types), len(self.fields)) == MAX_UNIT_FIELDS:
+            self.problems[:] = [words.too_many(self.span(start, end), MAX_UNIT_FIELDS)]
         elif head is not None:
             self.types.append(Named(head[1].strip('"'), self.span(head.start(1), head.end(1))))
         elif self.source.text[start] not in ".[" or not self.types:
@@ -105,11 +103,11 @@ class _Reader:
     def field(self, start: int, end: int) -> None:
         path: list[Step] = []
         at = start
-        while (step := STEP.match(self.source.text, at, end)) is not None and len(path) <= MAX_STEPS:
+        while (step := STEP.match(self.source.text, at, end)) is not None and len(path) <= MAX_UNIT_STEPS:
             path.append(Step(_to(step), self.span(at, step.end())))
             at = step.end()
         colon = self.behind_blanks(at, end)
-        if not path or len(path) > MAX_STEPS or self.source.text[colon:end][:1] != ":":
+        if not path or len(path) > MAX_UNIT_STEPS or self.source.text[colon:end][:1] != ":":
             self.problems.append(words.no_path(self.span(at, max(at + 1, end))))
             return
         units = tuple(self.units(colon + 1, end))

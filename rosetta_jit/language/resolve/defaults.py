@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.language.limits import MAX_DEFAULT_DEPTH, MAX_DEFAULTS
 from rosetta_jit.language.resolve.absent_texts import written
 from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, Place
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Optional, String, Struct
@@ -18,12 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.model.types import Field, Schema, Type
     from rosetta_jit.source import Span
-
-MAX_DEFAULTS = 1_000
-"""Fields that one `default` sets: a struct of structs of structs has many."""
-
-MAX_NESTED = 20
-"""Structs within each other that are looked into for defaults."""
 
 
 class ManyDefaultsError(Exception):
@@ -52,7 +47,7 @@ def _rules(place: Place, message: Message, span: Span | None) -> Iterator[Rule]:
         yield Default(place, span)
     elif known is not None:
         yield known
-    elif isinstance(place.type, Struct) and len(place.steps) < MAX_NESTED and _has_defaults(place.type, message):
+    elif isinstance(place.type, Struct) and len(place.steps) < MAX_DEFAULT_DEPTH and _has_defaults(place.type, message):
         for field in place.type.fields:
             if field.constant is None:
                 yield from _rules(_below(place, field, message), message, span)
@@ -91,7 +86,7 @@ def _has_defaults(struct: Struct, message: Message, depth: int = 0) -> bool:
         if field.required or field.default is not None:
             return True
         inner = message.schema.resolve(field.type)
-        if isinstance(inner, Struct) and depth < MAX_NESTED and _has_defaults(inner, message, depth + 1):
+        if isinstance(inner, Struct) and depth < MAX_DEFAULT_DEPTH and _has_defaults(inner, message, depth + 1):
             return True
     return False
 

@@ -12,8 +12,9 @@ from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.language.both_ways.inverse_texts import for_comparison, for_type
+from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, holds, in_single, is_single
+from rosetta_jit.language.function import for_field
 from rosetta_jit.language.functions.calls import type_call
 from rosetta_jit.language.functions.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.language.functions.texts import concatenation, is_textual
@@ -67,7 +68,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Call("has" | "index" as function, (model.Path() as path,)):
             return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
         case model.Call():
-            return type_call(for_comparison(expr), scope, type_expr)
+            return _call(expr, scope)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
@@ -76,6 +77,12 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             return type_held(expr, scope, type_expr, type_index) if isinstance(expr, model.Held) else type_nearest(expr, scope, type_expr)
         case _:
             assert_never(expr)
+
+
+def _call(expr: model.Call, scope: Scope) -> Expr | None:
+    """A call; an inverse that depends on a type is here compared with something that asks for none."""
+    found = for_field(expr, None)
+    return type_call(expr, scope, type_expr) if found is expr else type_expr(found, scope)
 
 
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:

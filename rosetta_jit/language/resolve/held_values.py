@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.both_ways.inverse_texts import for_type
+from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.conversions import convert
 from rosetta_jit.language.functions.calls import rules_between
 from rosetta_jit.language.scope import Broken, resolve_path

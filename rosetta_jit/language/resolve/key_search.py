@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.functions.decisions import type_comparison
+from rosetta_jit.language.limits import MAX_KEY_SHOWN
 from rosetta_jit.language.resolve.absent_texts import text_there
 from rosetta_jit.language.resolve.list_items import compared_text
 from rosetta_jit.language.scope import Broken, resolve_path
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
-
-MAX_SHOWN = 80
-"""Characters of a key that an error shows."""
 
 
 def type_search(sought: Sought, scope: Scope, type_expr: TypeExpr) -> Search | None:
@@ -63,7 +61,7 @@ def _wanted(step: model.Keyed) -> str:
     if not isinstance(step.value, model.Literal | model.Name):
         return f"whose `{name}` is what is looked for"
     shown = show_expr(step.value)
-    return f"whose `{name}` is {shown if len(shown) <= MAX_SHOWN else f'{shown[:MAX_SHOWN]}...'}"
+    return f"whose `{name}` is {shown if len(shown) <= MAX_KEY_SHOWN else f'{shown[:MAX_KEY_SHOWN]}...'}"
 
 
 def is_found(place: Place) -> list[Expr]:

@@ -9,6 +9,7 @@ from rosetta_jit.catalogue import bind as words
 from rosetta_jit.catalogue import resolve as names
 from rosetta_jit.language.conversions import as_int64, convert, describe
 from rosetta_jit.language.functions.decisions import unified
+from rosetta_jit.language.limits import MAX_ITEMS
 from rosetta_jit.language.typed import BOOL, Access, Const, Given, IsText, Listed, Unary
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.types import Bytes, String
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
-
-MAX_ITEMS = 500
-"""Items of a list that one is chosen of."""
 
 
 def type_listed(expr: model.List | model.Item | model.Given, scope: Scope, type_expr: TypeExpr) -> Expr | None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.limits import MAX_COPIED, MAX_USES, MAX_VIA_DEPTH
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
 from rosetta_jit.language.typed import (
@@ -30,7 +31,7 @@ from rosetta_jit.language.typed import (
     SetLength,
     When,
 )
-from rosetta_jit.language.uses import MAX_COPIED, MAX_USES, EnoughError, Use
+from rosetta_jit.language.uses import EnoughError, Use
 from rosetta_jit.model.expr import Path
 from rosetta_jit.model.types import Array, Optional, Struct, same_name
 
@@ -44,9 +45,6 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
     RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[Rule, ...]]
-
-MAX_DEPTH = 16
-"""The deepest `to depth`."""
 
 
 def nest(rule: model.Assign, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...] | None:
@@ -127,8 +125,8 @@ def _used(
     others.uses.append(Use(mapping, side, place, origin, rule.span))
     depth = others.using.count(mapping.source.name)
     most = None if rule.via is None else rule.via.depth
-    if depth and (most is None or most > MAX_DEPTH):
-        scope.problems.append(words.no_depth(rule.span, mapping.source.name, MAX_DEPTH))
+    if depth and (most is None or most > MAX_VIA_DEPTH):
+        scope.problems.append(words.no_depth(rule.span, mapping.source.name, MAX_VIA_DEPTH))
     elif len(others.uses) > MAX_USES:
         scope.problems.append(words.many_uses(rule.span, MAX_USES))
         raise EnoughError

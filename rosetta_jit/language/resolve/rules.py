@@ -10,37 +10,33 @@ from dataclasses import field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.catalogue import layouts, texts
+from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
-from rosetta_jit.language.both_ways.inverse_texts import for_type
-from rosetta_jit.language.conversions import convert, describe, other_way, same, widens, word_for
-from rosetta_jit.language.function import functions
+from rosetta_jit.language.both_ways.typed_inverse import for_type
+from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.functions.decisions import type_condition
-from rosetta_jit.language.functions.texts import is_bytes, is_textual, type_pieces
+from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.functions.user_functions import signatures
+from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
-from rosetta_jit.language.resolve.defaults import MAX_DEFAULTS, ManyDefaultsError, default_rules, has_array
+from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules, has_array
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
+from rosetta_jit.language.resolve.fitting import fit
 from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
-from rosetta_jit.language.resolve.list_items import adapted
 from rosetta_jit.language.resolve.nested import nest
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rule_for, unlike
 from rosetta_jit.language.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
 from rosetta_jit.language.typed import (
-    Access,
     Assign,
-    Call,
     Choice,
     Const,
-    Convert,
     Default,
     For,
     Ignore,
-    Listed,
     Local,
     Reject,
     SetLength,
@@ -52,7 +48,7 @@ from rosetta_jit.language.uses import EnoughError
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
 from rosetta_jit.model.expansion import excess
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, Union, same_name
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, same_name
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -62,15 +58,8 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.types import Schema, Type
+    from rosetta_jit.model.types import Schema
     from rosetta_jit.source import Span
-
-
-MAX_TEXTS = 50
-"""Cases of a choice among texts."""
-
-MAX_PROBLEMS = 200
-"""Reports of one mapping after which no more rules are looked at: most of them say the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,7 +235,7 @@ class _Block:
             value = in_unit(value, place, scope)
         if value is not None and rule.fits:
             value = fitted(value, place.type)
-        fitting = None if value is None else _fit(value, place, scope)
+        fitting = None if value is None else fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
             return None
@@ -305,108 +294,6 @@ def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
     for condition, chosen in reversed(value.cases):
         rest = (When(condition, (_by_case(place, chosen, span),), rest, span),)
     return rest[0]
-
-
-def _fit(value: Expr, place: Place, scope: Scope) -> Expr | None:
-    """The value as the type of the place, reported where that takes a word or cannot be."""
-    target = place.type
-    if isinstance(value, Choice) and isinstance(target, String | Bytes):
-        return _fit_choice(value, place, scope)
-    if isinstance(value, Choice):
-        value = _adapted(value, target)
-    if isinstance(value, Listed):
-        value = adapted(value, target)
-    if isinstance(value, Access) and _whole(value.type, target, scope):
-        return value
-    is_image = isinstance(value, Call) and functions()[value.function].operation == "image compression"
-    if is_image and isinstance(value.type, Bytes) and is_bytes(target):
-        return value
-    if isinstance(value, Call) and value.function == "split" and _holds_texts(target, scope):
-        return value
-    if isinstance(value, Call) and is_textual(value.type) and not is_image:
-        if is_textual(target):
-            return value
-        if isinstance(target, String):
-            scope.problems.append(texts.text_length(value.span))
-            return None
-    scalar = not isinstance(target, Array | Struct | Union | Map)
-    fitting = convert(value, target) if scalar else None
-    if fitting is None:
-        scope.problems.append(_mismatch(value, target))
-    return fitting
-
-
-def _holds_texts(target: Type, scope: Scope) -> bool:
-    """Whether a type is an array of texts."""
-    if not isinstance(target, Array):
-        return False
-    element = scope.messages[scope.target].value_type(target.element)
-    return isinstance(element, String | Bytes) and is_textual(element)
-
-
-def _adapted(value: Choice, target: Type) -> Choice:
-    """A choice whose values all fit without a word, as that type."""
-    cases = [(condition, _adapted_to(chosen, target)) for condition, chosen in value.cases]
-    otherwise = None if value.otherwise is None else _adapted_to(value.otherwise, target)
-    known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
-    if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
-        return value
-    return replace(value, cases=known, otherwise=otherwise, type=target)
-
-
-def _adapted_to(value: Expr, target: Type) -> Expr | None:
-    if isinstance(value, Convert) and value.rule == "widen":  # as its choice needed it, not as the place does
-        value = value.operand
-    return convert(_adapted(value, target) if isinstance(value, Choice) else value, target)
-
-
-def _fit_choice(value: Choice, place: Place, scope: Scope) -> Choice | None:
-    """Each text of a choice as the type of the place."""
-    if len(value.cases) > MAX_TEXTS:
-        scope.problems.append(words.many_cases(value.span, MAX_TEXTS))
-        return None
-    cases = [(condition, _fit(chosen, place, scope)) for condition, chosen in value.cases]
-    otherwise = None if value.otherwise is None else _fit(value.otherwise, place, scope)
-    known = tuple((condition, chosen) for condition, chosen in cases if chosen is not None)
-    if len(known) < len(cases) or (otherwise is None) != (value.otherwise is None):
-        return None
-    return replace(value, cases=known, otherwise=otherwise, type=place.type)
-
-
-def _whole(source: Type, target: Type, scope: Scope) -> bool:
-    """Whether an array, struct, text or blob can be assigned as a whole."""
-    origin, aim = (scope.messages[side] for side in (scope.origin, scope.target))
-    source, target = origin.value_type(source), aim.value_type(target)
-    match source, target:
-        case ((String() | Bytes()), (String() | Bytes())):
-            return True
-        case Array(length=int(length)), Array(length=int(other)) if length != other:
-            return False
-        case Array(element=element), Array(element=wanted):
-            return _whole(element, wanted, scope) or same(element, wanted) or widens(element, wanted)
-        case (Struct(), Struct()) | (Union(), Union()) | (Map(), Map()):
-            return source == target
-        case _:
-            return False
-
-
-def _mismatch(value: Expr, target: Type) -> Diagnostic:
-    source, aim = describe(value.type), describe(target)
-    match value, target:
-        case Const(value=int(number), type=Int()), Int() | Float():
-            return words.constant_range(value.span, str(number), aim)
-        case Const(value=float(number), type=Float()), Float():
-            return words.constant_range(value.span, repr(number), aim)
-        case _ if isinstance(value.type, Bool | Enum) and isinstance(target, Int):
-            return words.no_number(value.span, source, aim, word_for(value.type, target))
-        case _:
-            how = word_for(value.type, target)
-            spelt = isinstance(value, Const) and isinstance(value.type, String)
-            return (
-                words.needs_word(value.span, source, aim, how)
-                if how
-                else words.type_clash(value.span, source, aim, "" if spelt else other_way(value.type, target))
-            )
 
 
 def _length_can_be(value: Expr, place: Place, scope: Scope) -> bool:

@@ -10,13 +10,14 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
+from rosetta_jit.language.limits import MAX_UNIT
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"
 UNIT = rf"(1 ?/ ?)?{WORD}( ?[*/·] ?{WORD}| {WORD})*"
 """What is given to the library that knows units: words with small powers, multiplied and divided."""
-MAX_UNIT = 64
 
 USUAL = frozenset(
     [

@@ -10,6 +10,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
+from rosetta_jit.language.limits import MAX_KINDS
 from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep
 from rosetta_jit.model.types import Array, Optional
 from rosetta_jit.startup.dataclass import dataclass
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.typed import Expr, Place, Step
     from rosetta_jit.model.types import Field, PartUnit, Type
-
-MAX_KINDS = 500
-"""Kinds of elements that are told apart."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import unit_files as words
 from rosetta_jit.language.conversions import describe
-from rosetta_jit.language.parse.unit_file import MAX_PROBLEMS
+from rosetta_jit.language.limits import MAX_UNIT_PROBLEMS
 from rosetta_jit.language.scope import Message, members_of
 from rosetta_jit.language.units.dimensions import conversion, is_unit, known_units
 from rosetta_jit.language.units.places import Context
@@ -45,7 +45,7 @@ def annotated(schema: Schema, files: Sequence[UnitFile], is_elsewhere: Callable[
     adding = _Adding(schema, is_elsewhere)
     for file in files:
         adding.file(file)
-    problems += adding.problems[:MAX_PROBLEMS]
+    problems += adding.problems[:MAX_UNIT_PROBLEMS]
     types = {name: _with_units(declared, adding.found[name]) for name, declared in schema.types.items()}
     return replace(schema, types=types)
 
@@ -77,12 +77,12 @@ class _Adding:
     def file(self, file: UnitFile) -> None:
         names = {name_parts(name): name for name, type_ in self.schema.types.items() if isinstance(type_, Struct)}
         for type_ in file.types:
-            if name_parts(type_.text) not in names and len(self.problems) < MAX_PROBLEMS and not self.is_elsewhere(type_.text):
+            if name_parts(type_.text) not in names and len(self.problems) < MAX_UNIT_PROBLEMS and not self.is_elsewhere(type_.text):
                 self.problems.append(words.unknown_type(type_.span, type_.text, names.values()))
         for each in file.fields:
             name = names.get(name_parts(each.type.text))
             struct = None if name is None else self.schema.types[name]
-            if isinstance(struct, Struct) and len(self.problems) < MAX_PROBLEMS:
+            if isinstance(struct, Struct) and len(self.problems) < MAX_UNIT_PROBLEMS:
                 self.units(struct, each)
 
     def units(self, struct: Struct, said: UnitsOf) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.limits import MAX_WHOLE_DEPTH, MAX_WHOLE_VALUES
 from rosetta_jit.language.typed import Access, Binary, Const, Convert, EachElement, EachMember, Rescale
 from rosetta_jit.language.units.conversion import factors_between, shown, unit_of
 from rosetta_jit.language.units.dimensions import conversion
@@ -24,10 +25,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Assign, Change, Expr, Place
     from rosetta_jit.language.units.places import Context
     from rosetta_jit.model.types import Field, Type
-
-MAX_DEPTH = 20
-MAX_VALUES = 10_000
-"""Values within a whole one that are looked at."""
 
 
 def change_within(value: Expr, place: Place, scope: Scope) -> Change | None:
@@ -66,7 +63,7 @@ class _Finder:
         source, target = (message.value_type(type_) for message, type_ in zip(self.messages, types, strict=True))
         if self.reported or (contexts[0] == contexts[1] and source == target):
             return None
-        if depth > MAX_DEPTH or self.seen > MAX_VALUES:
+        if depth > MAX_WHOLE_DEPTH or self.seen > MAX_WHOLE_VALUES:
             return self.report(words.too_much_within(self.value.span, describe(self.value.type)))
         match source, target:
             case ((Int() | Float()), (Int() | Float())):

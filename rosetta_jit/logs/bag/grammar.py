@@ -89,10 +89,10 @@ class BagGrammar:
         header, _ = header_of(record)
         return number(header, b"conn"), number(header, b"count")
 
-    def packed(self, record: bytes) -> Packed:
+    def packed(self, record: memoryview) -> Packed:
         header, at = header_of(record)
         promised = int(struct.unpack_from("<I", record, at - 4)[0]) if len(record) >= at else 0
-        return Packed(_text(header.get(b"compression", b"none")), number(header, b"size"), memoryview(record)[at : at + promised])
+        return Packed(_text(header.get(b"compression", b"none")), number(header, b"size"), record[at : at + promised])
 
     def knows(self, channel: int) -> bool:
         return channel in self.connections

@@ -89,7 +89,7 @@ class McapGrammar:
         fields = Fields(record, PREFIX.size)
         return fields.u16(), fields.u32() // 16
 
-    def packed(self, record: bytes) -> Packed:
+    def packed(self, record: memoryview) -> Packed:
         fields = Fields(record, PREFIX.size)
         fields.view(16)
         size, crc, compression, promised = fields.u64(), fields.u32(), fields.text(), fields.u64()

@@ -8,7 +8,8 @@ Bottles come out as YARP 3 writes them. The text has lost the widths of integers
 
 from __future__ import annotations
 
-from decimal import Decimal, InvalidOperation
+import re
+from decimal import Decimal
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import logs as words
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
 DIALECT = DIALECTS["yarp3"]
 IMAGES = {b"[rgb]": "yarp.sig.ImageOfPixelRgb", b"[mono]": "yarp.sig.ImageOfPixelMono", b"[dec]": "yarp.sig.ImageOfPixelFloat"}
 """The types of images, by the pixels that a line tells."""
+
+TIME = re.compile(rb"-?\d{1,10}(\.\d{0,9})?")
+"""Seconds: an exponent, or more digits, might become a number without an end, and is nothing that YARP writes."""
 
 MAX_LINE_BYTES = 256 << 20
 PATH_BYTES = 4096
@@ -104,7 +108,7 @@ class DumperReader:
             while line := file.readline(MAX_LINE_BYTES):
                 try:
                     yield _message(port, line)
-                except (ValueError, EncodeError, ImageError, InvalidOperation, OSError) as error:
+                except (ValueError, EncodeError, ImageError, OSError) as error:
                     cut = not line.endswith(b"\n")
                     self._tell(words.log_cut(str(path), at) if cut else words.bad_line(str(path), at, str(error)))
                 at += len(line)
@@ -136,7 +140,9 @@ def _message(port: Port, line: bytes) -> tuple[int, int, bytes]:
     times: list[int] = []
     for _ in range(port.times(number)):
         time, _, rest = rest.partition(b" ")
-        times.append(int(Decimal(time.decode("ascii", "replace")) * 10**9))
+        if not TIME.fullmatch(time):
+            raise ValueError(f"{time[:40]!r} is no time")
+        times.append(int(Decimal(time.decode("ascii")) * 10**9))
     if not line.endswith(b"\n"):
         raise ValueError("the line has no end")
     data = bottle.write(parse_text(rest, DIALECT), DIALECT) if port.kind == "Bottle" else image_message(port.folder, rest)

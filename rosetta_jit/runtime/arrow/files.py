@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-ROWS, BYTES = 1 << 17, 32 << 20
+ROWS, BYTES = 1 << 17, 16 << 20
 """What Parquet keeps together, in a group of rows that readers can skip: so many rows, or so many bytes."""
 
 

@@ -16,6 +16,9 @@ LEAVES = range(16)
 OF_THE_MACHINE = ((0, 1), (5, 2))
 """Leaf and word: the core that was asked (CPUID 1, EBX), and how many there are (0x80000008, ECX); not what the processor can do."""
 
+USABLE_ECX = 6
+"""Where the text has what can be used of the third word of leaf 0."""
+
 _WORDS = ctypes.c_uint32 * 8
 """Four words that the processor gave, and four of them with what can be used of it."""
 
@@ -29,6 +32,14 @@ def processor() -> str:
     import llvmlite.binding as llvm
 
     return " ".join((llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()))
+
+
+def multiplies_without_carries() -> bool:
+    """Whether it is of x86-64 and has PCLMULQDQ (CPUID 1, ECX, bit 1)."""
+    known = processor()
+    if "+" in known:
+        return known.startswith("x86_64") and "+pclmul" in known
+    return bool(int(known.split(" ")[USABLE_ECX], 16) & 2)
 
 
 def _asked_of_glibc() -> str:

@@ -21,13 +21,14 @@ from rosetta_jit.runtime.holder.access import Access, read_field, write_field
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row, recipe
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
-from rosetta_jit.runtime.holder.record import Tree
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
 from rosetta_jit.runtime.holder.serialising import serialising_methods
-from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes, born, roomier
+from rosetta_jit.runtime.holder.tree import Tree
+from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
+from rosetta_jit.runtime.room import born, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256

@@ -13,21 +13,21 @@ Nodes are never changed, and not frozen only because every process pays for the 
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING, ClassVar, assert_never, cast
+from typing import TYPE_CHECKING, ClassVar, assert_never
 
 from rosetta_jit.model import layout as slots
-from rosetta_jit.model.initial_values import Births, selected, selecting
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
-from rosetta_jit.runtime.cells import SCALARS, cell_key
+from rosetta_jit.model.initial_values import selected
+from rosetta_jit.model.types import Bool, Enum, Field, Float, Int, String, Type, Union
+from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.initial_values import Birth
-    from rosetta_jit.model.layout import Layout, Slot
-    from rosetta_jit.model.types import Constant, Schema
+    from rosetta_jit.model.types import Constant
 
 ScalarType = Bool | Int | Float | Enum
-_SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))
+SIZE = dict(zip(SCALARS, (1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8), strict=True))
+"""Bytes of a scalar."""
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -219,191 +219,13 @@ class Entry:
     births: tuple[Birth, ...] = ()
 
 
-class Tree:
-    """The nodes of a layout. ``root`` is the message, born with ``births``; ``recursive`` has the record of each recursive lane.
-
-    Raises
-    ------
-    ValueError
-        If the type is not a struct, or holds a union elsewhere than as a field.
-    """
-
-    def __init__(self, type_: Type, schema: Schema, layout: Layout) -> None:
-        self.schema = schema
-        self.layout = layout
-        self.recursive: dict[int, Record] = {}
-        self._births = Births(schema, layout)
-        self.births = self._births.of_elements(type_, 0)
-        root = self._element(type_, 0)
-        if not isinstance(root, Record):
-            raise ValueError("a message is a struct")  # noqa: TRY004  the type is the user's data, not a mistaken call
-        self.root = root
-
-    def _cell(self, lane: int, offset: int, scalar: str) -> Cell:
-        size = _SIZE[scalar]
-        return Cell(cell_key(lane, scalar), self.layout.lanes[lane].stride // size, offset // size)
-
-    def _element(self, type_: Type, lane: int) -> Node:
-        """The node of the rows of a lane."""
-        if lane in self.recursive:
-            return self.recursive[lane]
-        slot = self.layout.lanes[lane].element
-        resolved = self.schema.resolve(type_)
-        if isinstance(resolved, Struct):
-            return self._record(resolved, slot, lane, (), recursive=self.layout.lanes[lane].links is not None)
-        return self._node(resolved, slot, lane, ())
-
-    def births_of(self, lane: int) -> tuple[Birth, ...]:
-        """What each row of the lane of a recursive struct is born with."""
-        return self._births.of_elements(Ref(self.recursive[lane].struct), lane)
-
-    def _node(self, type_: Type, slot: Slot, lane: int, touch: tuple[Presence, ...]) -> Node:
-        match type_, slot:
-            case Bool() | Int() | Float() | Enum(), slots.Number(offset, scalar):
-                return Scalar(self._cell(lane, offset, scalar), type_)
-            case String(), slots.Span(offset, target):
-                return Text(self._cell(lane, offset, "i64"), target, type_)
-            case Bytes(_, length, maximum), slots.Span(offset, target):
-                return Blob(self._cell(lane, offset, "i64"), target, length if isinstance(length, int) else None, maximum)
-            case Array(), slots.Span(offset, target):
-                return self._array(type_, self._cell(lane, offset, "i64"), target)
-            case Map(key, value), slots.Span(offset, target):
-                return self._pairs(key, value, self._cell(lane, offset, "i64"), target)
-            case Ref(), slots.Span(offset, target):
-                record = cast("Record", self._element(type_, target))
-                return Child(self._cell(lane, offset, "i64"), target, record, self._births.of_elements(type_, target))
-            case ((Ref() | Optional()), _):
-                value = type_.value if isinstance(type_, Optional) else self.schema.types[type_.name]
-                return self._node(value, slot, lane, touch)
-            case Struct(), slots.Row():
-                return self._record(type_, slot, lane, touch, recursive=False)
-            case _:
-                raise ValueError(f"{type(type_).__name__} cannot be held there")
-
-    def _array(self, type_: Array, span: Cell, target: int) -> Node:
-        resolved = self.schema.resolve(type_.element)
-        if isinstance(resolved, Bool | Int | Float | Enum):
-            return Numbers(span, target, resolved, type_.fixed, type_.maximum)
-        element, births = self._element(type_.element, target), self._births.of_elements(type_.element, target)
-        return Items(span, target, element, type_.fixed, type_.maximum, births, _shape(type_.fixed, element))
-
-    def _pairs(self, key: Type, value: Type, span: Cell, target: int) -> Pairs:
-        pair = slots.map_entry(key, value)
-        record = self._element(pair, target)
-        assert isinstance(record, Record)
-        births = self._births.of_elements(pair, target)
-        return Pairs(span, target, record, cast("Scalar | Text", record.entries["key"].node), record.entries["value"], births)
-
-    def _record(self, struct: Struct, slot: Slot, lane: int, touch: tuple[Presence, ...], *, recursive: bool) -> Record:
-        assert isinstance(slot, slots.Row)
-        record = Record(struct.name, lane, slot.offset, _end(slot), touch)
-        if slot.unknown is not None:
-            record.unknown = Blob(self._cell(lane, slot.unknown.offset, "i64"), slot.unknown.lane)
-        if recursive:
-            self.recursive[lane] = record
-        choices = self._choices(struct, slot, lane)
-        for each, member in zip(struct.fields, slot.members, strict=True):
-            if isinstance(each.type, Union) and isinstance(member.slot, slots.Variant):
-                self._cases(record, each, member.slot, touch, choices.get(each.type.discriminator))
-                continue
-            births = self._births.of(each.type, member.slot, lane)
-            presence = None
-            if member.presence is not None:
-                word, bit = divmod(member.presence, 64)
-                presence = Bit(self._cell(lane, slot.offset + 8 * word, "u64"), 1 << bit, births)
-            node = self._entry(record, each, member.slot, touch, presence, births)
-            if isinstance(node, Scalar):
-                node.choice = choices.get(each.name)
-        return record
-
-    def _choices(self, struct: Struct, slot: slots.Row, lane: int) -> dict[str, Choice]:
-        """The choices of a struct by the names of their discriminators."""
-        unions = {each.type.discriminator: each.type for each in struct.fields if isinstance(each.type, Union)}
-        return {
-            each.name: Choice(self._cell(lane, member.slot.offset, member.slot.scalar), self.schema.resolve(each.type), unions[each.name])
-            for each, member in zip(struct.fields, slot.members, strict=True)
-            if each.name in unions and isinstance(member.slot, slots.Number)
-        }
-
-    def _cases(self, record: Record, union: Field, slot: slots.Variant, touch: tuple[Presence, ...], choice: Choice | None) -> None:
-        assert isinstance(union.type, Union)
-        cell, cases = self._cell(record.lane, slot.offset, "i64"), union.type.cases
-        name = union.type.name.rpartition(".")[2] if choice is None else union.name
-        record.unions[name] = tuple(case.name for case in cases)
-        for number, (case, member) in enumerate(zip(cases, slot.members, strict=True), 1):
-            births = self._births.of(case.type, member.slot, record.lane)
-            presence = Case(cell, number, slot.offset + 8, _end(slot), births, choice)
-            if choice is not None:
-                presence.label = selecting(union.type, choice.type, number)
-                choice.cases.append(presence)
-            self._entry(record, case, member.slot, touch, presence)
-
-    def _entry(
-        self,
-        record: Record,
-        each: Field,
-        slot: Slot,
-        touch: tuple[Presence, ...],
-        presence: Presence | None,
-        births: tuple[Birth, ...] = (),
-    ) -> Node:
-        inner = touch if presence is None else (*touch, presence)
-        node = self._node(each.type, slot, record.lane, inner)
-        record.entries[each.name] = Entry(each.name, node, presence, each, _default(each, node), births if presence is None else ())
-        return node
-
-
-def _shape(length: int | None, element: Node) -> tuple[int, ...]:
-    """The shape of an array of arrays of numbers, if every length is fixed."""
-    match element:
-        case Numbers(_, _, _, int(inner)) if length is not None:
-            return (length, inner)
-        case Items() if length is not None and element.shape:
-            return (length, *element.shape)
-        case _:
-            return ()
-
-
-def _default(each: Field, node: Node) -> Constant | None:
-    if each.default is not None and not isinstance(node, Record | Child):
-        return each.default
-    match node:
-        case Scalar(_, Enum(_, values, closed)):
-            return values[0][1] if closed and values else 0
-        case Scalar(_, type_):
-            return False if isinstance(type_, Bool) else 0.0 if isinstance(type_, Float) else 0
-        case Text():
-            return ""
-        case Blob():
-            return b""
-        case Numbers() | Items() | Pairs() | Record() | Child():
-            return None
-        case _:
-            assert_never(node)
-
-
-def _end(slot: Slot) -> int:
-    """The offset behind a slot."""
-    match slot:
-        case slots.Number(offset, scalar):
-            return offset + _SIZE[scalar]
-        case slots.Span(offset, _):
-            return offset + slots.SPAN_BYTES
-        case slots.Row(offset, _, _, members):
-            return max([offset + slot.head_bytes, *(_end(member.slot) for member in members)])
-        case slots.Variant(offset, members):
-            return max([offset + 8, *(_end(member.slot) for member in members)])
-        case _:
-            assert_never(slot)
-
-
 def extent(node: Node) -> tuple[int, int, int]:
     """Lane, first byte and last (exclusive) of a node in each row: what is zero while it is absent."""
     match node:
         case Record():
             return node.lane, node.start, node.end
         case Scalar(cell, _):
-            size = _SIZE[SCALARS[cell.key & 15]]
+            size = SIZE[SCALARS[cell.key & 15]]
             return cell.lane, cell.index * size, (cell.index + 1) * size
         case Text(span) | Blob(span) | Numbers(span) | Items(span) | Pairs(span) | Child(span):
             return span.lane, span.index * 8, span.index * 8 + slots.SPAN_BYTES

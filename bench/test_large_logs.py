@@ -1,0 +1,144 @@
+"""Large logs: what point clouds and images cost a byte, what opening reads, and how much memory a long conversion takes."""
+
+from __future__ import annotations
+
+import struct
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
+
+import rosetta_jit as rj
+from bench.figures import Spread
+from bench.peers.mcap import definition
+from bench.processes import run
+from bench.subjects import IMAGE_2, POINT_CLOUD_2
+from bench.test_logs import mcap_file
+from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, DATA_END, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS
+from rosetta_jit.logs.storage import Storage
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GIGABYTE = 1e9
+SIZE, QUICK_SIZE = 600_000_000, 200_000_000
+RATE = 1.5
+"""Gigabytes a second that one core is to decode."""
+
+MEMORY_MB = 300
+
+
+def uncompressed(path: Path, subject: Any, size: int) -> Path:
+    """A log of one message, again and again."""
+    with path.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.NONE, chunk_size=4 << 20)
+        writer.start(profile="ros2")
+        channel = writer.register_channel("/x", "cdr", writer.register_schema(subject.type, "ros2msg", definition(subject, 2).encode()))
+        for number in range(size // len(subject.message)):
+            writer.add_message(channel, number * 10**8, subject.message, number * 10**8)
+        writer.finish()
+    return path
+
+
+def seconds_a_gigabyte(work: Any, size: int, rounds: int) -> Spread:
+    """Seconds of all threads on processors."""
+    taken: list[float] = []
+    work()
+    for _ in range(rounds):
+        begin = time.process_time()
+        work()
+        taken.append((time.process_time() - begin) * GIGABYTE / size)
+    return Spread.of(taken)
+
+
+@pytest.mark.parametrize(("what", "subject"), [("point clouds", POINT_CLOUD_2), ("images", IMAGE_2)])
+def test_large_messages(what, subject, effort, record, tmp_path):
+    size = QUICK_SIZE if effort.quick else SIZE
+    path = uncompressed(tmp_path / "a.mcap", subject, size)
+    channel, rounds = rj.open(path)["/x"], 3 if effort.quick else 9
+    columns = seconds_a_gigabyte(lambda: sum(len(part.batch) for part in channel.parts()), path.stat().st_size, rounds)
+    record(f"{what}, uncompressed MCAP to columns", columns, 1 / RATE, "s a GB", "of processor; checksums compared")
+    tables = seconds_a_gigabyte(lambda: sum(table.num_rows for table in channel.tables()), path.stat().st_size, rounds)
+    record(f"{what}, uncompressed MCAP to Arrow", tables, None, "s a GB", "the same, with a copy for Arrow")
+
+    def theirs() -> int:
+        with path.open("rb") as file:
+            return sum(1 for _ in make_reader(file).iter_messages())
+
+    record(f"{what}, the mcap package, messages as bytes", seconds_a_gigabyte(theirs, path.stat().st_size, 3), None, "s a GB")
+
+
+def sparse(path: Path, size: int) -> Path:
+    """An MCAP file whose chunks are a hole: as many as a log of that size has, and an index of all of them."""
+
+    def record(opcode: int, content: bytes) -> bytes:
+        return PREFIX.pack(opcode, len(content)) + content
+
+    def text(value: str) -> bytes:
+        return struct.pack("<I", len(value)) + value.encode()
+
+    chunk = 1 << 20
+    definitions = record(SCHEMA, struct.pack("<H", 1) + text("std_msgs/msg/Bool") + text("ros2msg") + text("bool data"))
+    definitions += record(CHANNEL, struct.pack("<HH", 1, 1) + text("/x") + text("cdr") + struct.pack("<I", 0))
+    with path.open("wb") as file:
+        file.write(MAGIC + record(HEADER, text("ros2") + text("bench")))
+        begin = file.tell()
+        count = (size - begin) // chunk
+        file.seek(begin + count * chunk)
+        file.write(record(DATA_END, bytes(4)))
+        summary = file.tell()
+        file.write(definitions)
+        for each in range(count):
+            offsets = struct.pack("<IHQ", 10, 1, begin + each * chunk)
+            times = struct.pack("<QQQQ", each, each, begin + each * chunk, chunk)
+            file.write(record(CHUNK_INDEX, times + offsets + struct.pack("<Q", 0) + text("") + struct.pack("<QQ", chunk, chunk)))
+        counts = struct.pack("<IHQ", 10, 1, count)
+        file.write(record(STATISTICS, struct.pack("<QHIIIIQQ", count, 1, 1, 0, 0, count, 0, count) + counts))
+        file.write(record(FOOTER, struct.pack("<QQI", summary, 0, 0)) + MAGIC)
+    return path
+
+
+def test_opening_reads_the_index(effort, record, tmp_path, monkeypatch):
+    path = sparse(tmp_path / "sparse.mcap", 10 * 10**9)
+    reads: list[int] = []
+    read = Storage.read
+
+    def counted(self: Storage, at: int, size: int) -> bytes:
+        found = read(self, at, size)
+        reads.append(len(found))
+        return found
+
+    monkeypatch.setattr(Storage, "read", counted)
+    taken: list[float] = []
+    for _ in range(3 if effort.quick else 9):
+        reads.clear()
+        begin = time.thread_time()
+        log = rj.open(path)
+        taken.append((time.thread_time() - begin) * 1000)
+        assert log["/x"].count == len(log.pieces) - 2 > 9000
+    told = f"{len(reads)} reads, {sum(reads) / 1e6:.2f} MB of {path.stat().st_size / 1e9:.0f} GB"
+    record("bytes read to open an MCAP file of 10 GB", Spread.of([sum(reads) / 1e6]), 2.0, "MB", told)
+    record("time to open it", Spread.of(taken), None, "ms", told)
+
+
+CONVERT = """
+import sys
+from pathlib import Path
+from rosetta_jit.cli import main
+assert main(["convert", sys.argv[1], "-o", sys.argv[2]]) == 0
+print(next(int(line.split()[1]) for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("VmHWM")) / 1000)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the largest resident set from /proc")
+def test_memory(effort, record, tmp_path):
+    clouds = uncompressed(tmp_path / "clouds.mcap", POINT_CLOUD_2, QUICK_SIZE if effort.quick else 2 * SIZE)
+    imus = mcap_file(tmp_path / "imus.mcap", 50_000 if effort.quick else 1_000_000)
+    for what, path in (("point clouds", clouds), ("Imus, zstd", imus)):
+        for where, output in (("a folder", f"{path.stem}/"), ("one Parquet file", f"{path.stem}.parquet"), ("MCAP", f"{path.stem}-2.mcap")):
+            used = float(run("-c", CONVERT, str(path), f"{tmp_path}/{output}"))
+            told = f"a log of {path.stat().st_size / 1e6:.0f} MB"
+            record(f"memory of a conversion of {what} into {where}", Spread.of([used]), MEMORY_MB, "MB", told)

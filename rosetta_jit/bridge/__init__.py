@@ -1,0 +1,1 @@
+"""Bridges that run: routes between channels of middlewares, described by a file."""

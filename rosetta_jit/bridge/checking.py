@@ -1,0 +1,163 @@
+"""What can be said of a bridge's file without running it: whether its addresses and mappings are right, and what each route does."""
+
+from __future__ import annotations
+
+import json
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.bridge.configuration import read
+from rosetta_jit.bridge.patterns import is_pattern
+from rosetta_jit.bridge.translating import translator
+from rosetta_jit.catalogue import bridge as words
+from rosetta_jit.errors import AddressError, BridgeError, RosettaError
+from rosetta_jit.transports.address import parse, settle
+from rosetta_jit.transports.installed import installed
+from rosetta_jit.transports.opening import COMMON
+
+if TYPE_CHECKING:
+    from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+    from rosetta_jit.transports.base import Transport
+
+
+def checked(path: str) -> Configuration:
+    """A file in which nothing is wrong.
+
+    Raises
+    ------
+    BridgeError
+        With all that is wrong in it.
+    """
+    configuration = read(path)
+    found = mistakes(configuration)
+    if found:
+        raise BridgeError(tuple(found))
+    return configuration
+
+
+def mistakes(configuration: Configuration) -> list[Diagnostic]:
+    """What is wrong with addresses and mappings. Nothing is opened; mappings are compiled, or found in the cache."""
+    found: list[Diagnostic] = []
+    places = configuration.places
+    for route in configuration.routes:
+        here = ("route", route.number)
+        source = places.of(*here, "source")
+        transport = _checked(route.source, "subscribe", source, found)
+        if transport is not None and is_pattern(route.source) and not transport.names:
+            found.append(words.cannot_list(source, transport.name))
+        if transport is not None and route.full == "block" and "pipe" not in transport.schemes:
+            found.append(words.cannot_wait(places.of(*here, "full"), transport.name))
+        key = "call" if route.calls else "target"
+        target = _checked(route.target, "call" if route.calls else "publish", places.of(*here, key), found)
+        if target is not None and not route.calls and _lacks_type(route.target, target):
+            found.append(words.no_type(places.of(*here, key), target.name, target.options["type"].meaning))
+        _compiled(route.translation, configuration, here, found)
+    for rpc in configuration.rpcs:
+        here = ("rpc", rpc.number)
+        _checked(rpc.serve, "serve", places.of(*here, "serve"), found)
+        _checked(rpc.call, "call", places.of(*here, "call"), found)
+        _compiled(rpc.request, configuration, (*here, "request"), found)
+        _compiled(rpc.reply, configuration, (*here, "reply"), found)
+    return found
+
+
+def _checked(text: str, direction: str, span: Span, found: list[Diagnostic]) -> Transport | None:
+    """The transport of an address; None and a report where it has none that can do that."""
+    known = installed()
+    try:
+        address = parse(text, known)
+        transport = known[address.scheme]
+        settle(address, {**COMMON, **transport.options}, {})
+    except AddressError as error:
+        found += (words.bad_address(span, text, each.message, each.help) for each in error.diagnostics)
+        return None
+    extra, module = transport.extra
+    if not getattr(transport, direction):
+        found.append(
+            words.bad_address(span, text, f"{transport.name} cannot {direction}", f"another transport, such as {_example(direction)}")
+        )
+    elif module and find_spec(module) is None:
+        found.append(words.bad_address(span, text, f"{transport.name} takes a package", f"pip install 'rosetta-jit[{extra}]'"))
+    return transport
+
+
+def _lacks_type(text: str, transport: Transport) -> bool:
+    """Whether who is sent to must be told a type, and is not."""
+    return "type" in transport.options and transport.options["type"].default == "" and "type" not in parse(text, installed()).options
+
+
+def _example(direction: str) -> str:
+    return next(each.example for each in installed().values() if getattr(each, direction))
+
+
+def _compiled(translation: Translation, configuration: Configuration, here: tuple[str | int, ...], found: list[Diagnostic]) -> None:
+    try:
+        translator(translation, configuration.search_path)
+    except (RosettaError, TypeError, ValueError) as error:
+        given: dict[str, Any] = json.loads(translation.text)
+        keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in given]
+        path = (*here, "mapping") if keys[:1] == ["decode_mapping"] else (*here, *keys[:1])
+        found.append(words.bad_mapping(configuration.places.of(*path), str(error)))
+
+
+def explained(configuration: Configuration) -> list[dict[str, Any]]:
+    """Each route as plain data: from where to where, by what, and what happens to messages that are too many."""
+    return [*map(_explained_route, configuration.routes), *map(_explained_rpc, configuration.rpcs)]
+
+
+def _explained_route(route: Route) -> dict[str, Any]:
+    return {
+        "route": route.name,
+        "from": route.source,
+        "to": route.target,
+        "by": _by(route.translation),
+        "asks": route.calls,
+        "rate": route.rate,
+        "queue": route.queue,
+        "full": route.full,
+    }
+
+
+def _explained_rpc(rpc: Rpc) -> dict[str, Any]:
+    return {
+        "route": rpc.name,
+        "from": rpc.serve,
+        "to": rpc.call,
+        "by": _by(rpc.request),
+        "back": _by(rpc.reply),
+        "timeout_s": rpc.timeout_s,
+    }
+
+
+def _by(translation: Translation) -> str:
+    if not translation.text:
+        return "as they are"
+    given: dict[str, Any] = json.loads(translation.text)
+    if "between" in given:
+        return " to ".join(map(str, given["between"]))
+    sides = (("decode", "read"), ("encode", "write"))
+    parts: list[str] = []
+    for side, verb in sides:
+        what = given.get(f"{side}_mapping") or given.get(f"{side}_type") or "the data-holder as it is"
+        encoding = given.get(side, {}).get("encoding")
+        parts.append(f"{verb} {what}{f' ({encoding})' if encoding else ''}")
+    return ", ".join(parts)
+
+
+def lines(configuration: Configuration) -> list[str]:
+    """The same for people."""
+    shown: list[str] = []
+    for each in explained(configuration):
+        shown.append(each["route"])
+        shown.append(f"  from {each['from']}")
+        shown.append(f"  to   {each['to']}{' (a service, asked with each message)' if each.get('asks') else ''}")
+        shown.append(f"  by   {each['by']}")
+        if "back" in each:
+            shown.append(f"  back {each['back']}, within {each['timeout_s']:g} s")
+        else:
+            rate = f"at most {each['rate']:g} a second, " if each["rate"] else ""
+            full = {"oldest": "the oldest is dropped", "newest": "new ones are dropped", "block": "the source waits"}[each["full"]]
+            shown.append(f"       {rate}{each['queue']} wait for the target; when that many do, {full}")
+    return shown

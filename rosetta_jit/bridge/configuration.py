@@ -1,0 +1,233 @@
+"""The file of a bridge: what may stand in it, and what is wrong with it.
+
+    [bridge]      metrics search_path interval
+    [[route]]     name source target | call, reply, mapping…, rate, queue, full
+    [[rpc]]       name serve call, request, reply
+
+A mapping is what `rosetta_jit.Bridge` takes: `decode_mapping`, `encode_mapping` or types in place of them, `decode` and `encode` with their
+options, or `between` for messages that describe themselves. Without one, bytes pass as they are.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from rosetta_jit.bridge.places import Places, place_of_syntax
+from rosetta_jit.catalogue import bridge as words
+from rosetta_jit.errors import BridgeError
+from rosetta_jit.source import Source
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.diagnostics import Diagnostic
+
+Full = Literal["oldest", "newest", "block"]
+FULL: tuple[Full, ...] = ("oldest", "newest", "block")
+QUEUE = 100
+
+TRANSLATION = ("mapping", "decode_mapping", "encode_mapping", "decode_type", "encode_type", "decode", "encode", "between")
+KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
+    "name": (str, "a text"),
+    "source": (str, "the address of a channel"),
+    "target": (str, "the address of a channel"),
+    "call": (str, "the address of a service"),
+    "serve": (str, "the address of a service"),
+    "rate": ((int, float), "a number of messages a second, more than 0"),
+    "queue": (int, "a number of messages, 1 at least"),
+    "timeout": ((int, float), "a number of seconds, more than 0"),
+    "full": (str, '"oldest", "newest" or "block"'),
+    "mapping": (str, "the name of a mapping"),
+    "decode_mapping": (str, "the name of a mapping"),
+    "encode_mapping": (str, "the name of a mapping"),
+    "decode_type": (str, "the name of a type"),
+    "encode_type": (str, "the name of a type"),
+    "decode": (dict, 'options: { encoding = "yarp3" }'),
+    "encode": (dict, 'options: { encoding = "cdr" }'),
+    "between": (list, 'two encodings: ["yarp3", "yarp4"]'),
+    "request": (dict, "the mapping of requests"),
+    "reply": ((dict, str), "the mapping of replies"),
+    "metrics": (str, '"host:port"'),
+    "interval": ((int, float), "a number of seconds, more than 0"),
+    "search_path": (list, "a list of folders"),
+}
+"""What values may be, by key."""
+
+POSITIVE = ("rate", "queue", "timeout", "interval")
+ROUTE = ("name", "source", "target", "call", "timeout", "rate", "queue", "full", *TRANSLATION)
+RPC = ("name", "serve", "call", "timeout", "request", "reply")
+
+
+@dataclass(frozen=True, slots=True)
+class Translation:
+    """How messages become others: the arguments of `rosetta_jit.Bridge`, as JSON so that two can be compared. Empty: as they are."""
+
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """Messages from one channel to another, or to a service.
+
+    ``number`` is its place among the routes of the file. Where ``calls``, the target is a service, which each message asks.
+    """
+
+    name: str
+    source: str
+    target: str
+    translation: Translation
+    number: int
+    calls: bool = False
+    timeout_s: float = 5.0
+    rate: float | None = None
+    queue: int = QUEUE
+    full: Full = "oldest"
+
+
+@dataclass(frozen=True, slots=True)
+class Rpc:
+    """A service of one middleware that answers by a service of another."""
+
+    name: str
+    serve: str
+    call: str
+    request: Translation
+    reply: Translation
+    number: int
+    timeout_s: float = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """A file of a bridge."""
+
+    path: str
+    routes: tuple[Route, ...]
+    rpcs: tuple[Rpc, ...]
+    metrics: str | None
+    interval_s: float
+    search_path: tuple[str, ...]
+    places: Places
+
+
+def read(path: str) -> Configuration:
+    """Read a file.
+
+    Raises
+    ------
+    BridgeError
+        With all that is wrong in it, but for addresses and mappings: see `rosetta_jit.bridge.checking`.
+    OSError
+        It cannot be read.
+    """
+    source = Source(path, Path(path).read_text("utf-8", "replace"))
+    try:
+        plain = tomllib.loads(source.text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise BridgeError((words.no_toml(place_of_syntax(source, str(error)), str(error)),)) from None
+    reading = _Reading(Places(source), [])
+    configuration = reading.configuration(path, plain)
+    if reading.problems:
+        raise BridgeError(tuple(reading.problems))
+    return configuration
+
+
+@dataclass(slots=True)
+class _Reading:
+    places: Places
+    problems: list[Diagnostic]
+
+    def configuration(self, path: str, plain: Mapping[str, Any]) -> Configuration:
+        self.known(plain, ("bridge", "route", "rpc"), "the file", ())
+        settings = self.table(plain.get("bridge", {}), ("bridge",))
+        self.known(settings, ("metrics", "interval", "search_path"), "[bridge]", ("bridge",))
+        routes = [self.route(each, number) for number, each in enumerate(self.tables(plain, "route"))]
+        rpcs = [self.rpc(each, number) for number, each in enumerate(self.tables(plain, "rpc"))]
+        if not routes and not rpcs and not self.problems:
+            self.problems.append(words.no_routes(self.places.of()))
+        seen: set[str] = set()
+        for kind, each in (*(("route", each) for each in routes), *(("rpc", each) for each in rpcs)):
+            if each.name in seen:
+                self.problems.append(words.name_twice(self.places.of(kind, each.number, "name"), each.name))
+            seen.add(each.name)
+        folders = (str(Path(path).resolve().parent), *(str(each) for each in settings.get("search_path", ())))
+        interval = float(settings.get("interval", 1.0)) if isinstance(settings.get("interval", 1.0), int | float) else 1.0
+        return Configuration(path, tuple(routes), tuple(rpcs), settings.get("metrics"), interval, folders, self.places)
+
+    def tables(self, plain: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+        value = plain.get(key, [])
+        if not isinstance(value, list) or not all(isinstance(each, dict) for each in cast("list[Any]", value)):
+            self.problems.append(words.bad_value(self.places.of(key), key, f"written as [[{key}]]"))
+            return []
+        return cast("list[dict[str, Any]]", value)
+
+    def table(self, value: object, place: tuple[str | int, ...]) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            self.problems.append(words.bad_value(self.places.of(*place), str(place[-1]), f"written as [{place[-1]}]"))
+            return {}
+        return cast("dict[str, Any]", value)
+
+    def known(self, table: Mapping[str, Any], keys: tuple[str, ...], where: str, place: tuple[str | int, ...]) -> None:
+        """Note keys that mean nothing, and values of another kind."""
+        for key, value in table.items():
+            if key not in keys:
+                self.problems.append(words.unknown_key(self.places.of(*place, key), key, where, keys))
+            elif key in KINDS:
+                kind, wanted = KINDS[key]
+                is_wrong = not isinstance(value, kind) or isinstance(value, bool) or (key in POSITIVE and value <= 0)
+                if is_wrong or (key == "full" and value not in FULL):
+                    self.problems.append(words.bad_value(self.places.of(*place, key), key, wanted))
+
+    def route(self, table: dict[str, Any], number: int) -> Route:
+        place = ("route", number)
+        before = len(self.problems)
+        self.known(table, ROUTE, "a route", place)
+        if "source" not in table or ("target" in table) == ("call" in table):
+            self.problems.append(words.missing_key(self.places.of(*place), "this route", "a `source`, or one of `target` and `call`"))
+        if len(self.problems) > before:
+            return Route(str(table.get("name", number)), "", "", Translation(), number)
+        source, target = str(table["source"]), str(table.get("target") or table.get("call"))
+        if source == target:
+            self.problems.append(words.same_address(self.places.of(*place, "target"), source))
+        return Route(
+            name=str(table.get("name") or f"{source} > {target}"),
+            source=source,
+            target=target,
+            translation=self.translation(table, place),
+            number=number,
+            calls="call" in table,
+            timeout_s=float(table.get("timeout", 5.0)),
+            rate=float(table["rate"]) if "rate" in table else None,
+            queue=int(table.get("queue", QUEUE)),
+            full=cast("Full", table.get("full", "oldest")),
+        )
+
+    def rpc(self, table: dict[str, Any], number: int) -> Rpc:
+        place = ("rpc", number)
+        before = len(self.problems)
+        self.known(table, RPC, "an rpc", place)
+        if "serve" not in table or "call" not in table:
+            self.problems.append(words.missing_key(self.places.of(*place), "this rpc", "`serve` or `call`"))
+        if len(self.problems) > before:
+            return Rpc(str(table.get("name", number)), "", "", Translation(), Translation(), number)
+        serve, call = str(table["serve"]), str(table["call"])
+        request, reply = (self.table(table.get(key, {}), (*place, key)) for key in ("request", "reply"))
+        self.known(request, TRANSLATION, "a request", (*place, "request"))
+        self.known(reply, TRANSLATION, "a reply", (*place, "reply"))
+        translations = self.translation(request, place), self.translation(reply, place)
+        return Rpc(str(table.get("name") or f"{serve} > {call}"), serve, call, *translations, number, float(table.get("timeout", 5.0)))
+
+    def translation(self, table: Mapping[str, Any], place: tuple[str | int, ...]) -> Translation:
+        import json
+
+        given = {key: table[key] for key in TRANSLATION if key in table}
+        if "mapping" in given:
+            if "decode_mapping" in given:
+                self.problems.append(words.bad_value(self.places.of(*place, "mapping"), "mapping", "another word for `decode_mapping`"))
+            given["decode_mapping"] = given.pop("mapping")
+        if "between" in given and len(given["between"]) != 2:
+            self.problems.append(words.bad_value(self.places.of(*place, "between"), "between", KINDS["between"][1]))
+        return Translation(json.dumps(given, sort_keys=True, default=str) if given else "")

@@ -1,0 +1,105 @@
+"""What passed a route, what did not and why, and how long it took."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from time import monotonic
+from typing import Any
+
+MAX_CAUSES = 100
+"""Different causes that a route counts; further ones are counted together. A peer could think of any number."""
+
+OTHERS = "other causes"
+SUB = 8
+"""Parts that each power of two of nanoseconds is divided into: latencies are known to an eighth."""
+
+
+class Latencies:
+    """How often which latency was measured."""
+
+    __slots__ = ("_counts", "total")
+
+    def __init__(self) -> None:
+        self._counts = [0] * (64 * SUB)
+        self.total = 0
+
+    def add(self, nanoseconds: int) -> None:
+        """One more."""
+        power = nanoseconds.bit_length()
+        self._counts[power * SUB + (nanoseconds >> power - 4 & 7) if power > 3 else nanoseconds] += 1
+        self.total += 1
+
+    def quantile(self, part: float) -> int | None:
+        """The latency that so many are not above, in nanoseconds; None where there are none."""
+        left = self.total * part
+        for number, count in enumerate(self._counts):
+            left -= count
+            if count and left <= 0:
+                power, rest = divmod(number, SUB)
+                return number if power <= 3 else (SUB + rest + 1) << power - 4
+        return None
+
+
+class RouteCounts:
+    """The counts of one route.
+
+    Attributes
+    ----------
+    taken, sent : int
+        Messages that came, and that went.
+    bytes_in, bytes_out : int
+        Their bytes.
+    dropped : Counter
+        Messages that did not go on, by reason: a rate, a full queue, what the target's transport says.
+    failed : Counter
+        Messages that could not be translated or answered, by cause.
+    """
+
+    def __init__(self) -> None:
+        self.taken = self.sent = self.bytes_in = self.bytes_out = 0
+        self.dropped: Counter[str] = Counter()
+        self.failed: Counter[str] = Counter()
+        self.latencies = Latencies()
+        self._lock = threading.Lock()
+        self._before = (monotonic(), 0, 0, 0)
+
+    def drop(self, reason: str, count: int = 1) -> bool:
+        """Count messages that do not go on; whether this is worth a line, as it is at the first, the tenth, the hundredth …"""
+        return self._count(self.dropped, reason, count)
+
+    def fail(self, cause: str) -> bool:
+        """Count a message that could not be translated; as `drop`."""
+        return self._count(self.failed, cause, 1)
+
+    def _count(self, counter: Counter[str], cause: str, count: int) -> bool:
+        with self._lock:
+            known = cause if cause in counter or len(counter) < MAX_CAUSES else OTHERS
+            before = counter[known]
+            counter[known] += count
+            return len(str(before)) < len(str(before + count)) or not before
+
+    def snapshot(self) -> dict[str, Any]:
+        """All of it as plain data, and the rates since the last snapshot."""
+        now, then = (monotonic(), self.taken, self.sent, self.bytes_out), self._before
+        self._before = now
+        seconds = max(now[0] - then[0], 1e-6)
+        with self._lock:
+            dropped, failed = dict(self.dropped), dict(self.failed)
+        return {
+            "taken": self.taken,
+            "sent": self.sent,
+            "bytes_in": self.bytes_in,
+            "bytes_out": self.bytes_out,
+            "taken_per_s": (now[1] - then[1]) / seconds,
+            "sent_per_s": (now[2] - then[2]) / seconds,
+            "bytes_per_s": (now[3] - then[3]) / seconds,
+            "p50_us": _microseconds(self.latencies.quantile(0.5)),
+            "p99_us": _microseconds(self.latencies.quantile(0.99)),
+            "dropped": dropped,
+            "failed": failed,
+        }
+
+
+def _microseconds(nanoseconds: int | None) -> float | None:
+    return None if nanoseconds is None else nanoseconds / 1000

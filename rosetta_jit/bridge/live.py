@@ -1,0 +1,220 @@
+"""A route that runs: what comes from its source is translated and sent in the thread that brought it, as long as nothing waits.
+
+What the target does not take at once waits in the route's queue, which a thread of its own empties; that thread is made when it is first
+needed. Nothing is lost without being counted, and said.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from time import monotonic, perf_counter_ns
+from typing import TYPE_CHECKING
+
+from rosetta_jit.bridge.counting import RouteCounts
+from rosetta_jit.errors import MessageError, TransportError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.bridge.configuration import Route
+    from rosetta_jit.bridge.translating import Translate
+    from rosetta_jit.transports.base import Caller, Message, Sink
+
+    Say = Callable[[str], object]
+    Waiting = tuple[bytes, int | None, int]
+
+AGAIN_S = 0.002
+"""How long the queue's thread waits before it offers a message again; twice as long each time, up to `MOST_S`."""
+
+MOST_S = 0.05
+LINGER_S = 5.0
+"""How long a route that is closed waits for its target to take what waits."""
+
+
+class LiveRoute:
+    """One route while it runs.
+
+    Parameters
+    ----------
+    translate
+        What turns messages into those of the target; None leaves them as they are.
+    say
+        Takes lines for people.
+
+    Attributes
+    ----------
+    problem : str
+        Why it does not run; empty while it does.
+    """
+
+    def __init__(self, route: Route, translate: Translate | None, say: Say) -> None:
+        self.route = route
+        self.counts = RouteCounts()
+        self.problem = "not open yet"
+        self._translate = translate
+        self._say = say
+        self._sink: Sink | None = None
+        self._caller: Caller | None = None
+        self._interval_ns = 0 if route.rate is None else int(1e9 / route.rate)
+        self._due_ns = 0
+        self._waiting: deque[Waiting] = deque()
+        self._held = 0
+        self._changed = threading.Condition()
+        self._closed = False
+        self._thread: threading.Thread | None = None
+        self._sending = threading.Lock()
+        self._sender = 0
+        self._refusal = ""
+
+    def open(self, sink: Sink | None, caller: Caller | None) -> None:
+        """Begin: the target is there."""
+        self._sink, self._caller = sink, caller
+
+    @property
+    def is_open(self) -> bool:
+        """Whether its target is there."""
+        return self._sink is not None or self._caller is not None
+
+    @property
+    def waiting(self) -> int:
+        """Messages that wait for the target."""
+        return len(self._waiting) + self._held
+
+    def deliver(self, message: Message) -> None:
+        """Take a message from the source."""
+        begun, counts, data = perf_counter_ns(), self.counts, message.data
+        counts.taken += 1
+        counts.bytes_in += len(data)
+        if self._interval_ns:
+            if begun < self._due_ns:
+                self.lost("above its rate")
+                return
+            self._due_ns = max(self._due_ns + self._interval_ns, begun)
+        if self._translate is not None:
+            try:
+                data = self._translate(data)
+            except MessageError as error:
+                self._failed(error)
+                return
+        time = message.sent or message.time or None
+        if self._caller is None and not self._waiting and not self._held and self._send(data, time, begun):
+            return
+        self._wait((bytes(data), time, begun))
+
+    def lost(self, reason: str, count: int = 1) -> None:
+        """Count messages that do not go on; also what the transport of the target reports."""
+        if self._sender == threading.get_ident():
+            self._refusal = reason  # of the message that is being sent, which may be sent again
+            return
+        if count and self.counts.drop(reason, count):
+            self._say(f"{self.route.name}: {self.counts.dropped[reason]} dropped: {reason}")
+
+    def _failed(self, error: MessageError) -> None:
+        cause = f"{error.kind}: {error.detail} - at `{error.path}`" if error.path else f"{error.kind}: {error.detail}"
+        if self.counts.fail(cause):
+            self._say(f"{self.route.name}: {self.counts.failed[cause] or 'many'} failed: {cause}")
+
+    def _send(self, data: bytes | memoryview, time: int | None, begun: int) -> bool:
+        """Offer a message to the target; whether it took it."""
+        sink = self._sink
+        assert sink is not None
+        with self._sending:
+            self._sender = threading.get_ident()
+            try:
+                taken = sink.send(data, time=time)
+            except TransportError as error:
+                self._sender = 0
+                self.lost(f"{error.kind}: {error.detail}")
+                return True  # there is nothing to be tried again
+            finally:
+                self._sender = 0
+        if taken:
+            self._passed(data, begun)
+        return taken
+
+    def _passed(self, data: bytes | memoryview, begun: int) -> None:
+        counts = self.counts
+        counts.sent += 1
+        counts.bytes_out += len(data)
+        counts.latencies.add(perf_counter_ns() - begun)
+
+    # --- the queue -------------------------------------------------------------------------------------------------------
+
+    def _wait(self, item: Waiting) -> None:
+        """Let a message wait for the target, or drop one."""
+        reason = ""
+        with self._changed:
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._empty, name=f"queue of {self.route.name}", daemon=True)
+                self._thread.start()
+            if self.route.full == "block":
+                self._changed.wait_for(lambda: len(self._waiting) < self.route.queue or self._closed)
+            elif len(self._waiting) >= self.route.queue:
+                reason = f"queue full ({self._refusal})" if self._refusal else "queue full"
+                if self.route.full == "oldest":
+                    self._waiting.popleft()
+            if not reason or self.route.full == "oldest":
+                self._waiting.append(item)
+                self._changed.notify_all()
+        if reason:
+            self.lost(reason)
+
+    def _empty(self) -> None:
+        """The queue's thread."""
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._waiting or self._closed)
+                if not self._waiting:
+                    return
+                item, self._held = self._waiting.popleft(), 1
+                self._changed.notify_all()
+            self._offer(item)
+            with self._changed:
+                self._held = 0
+                self._changed.notify_all()
+
+    def _offer(self, item: Waiting) -> None:
+        """Send a message, again and again until it is taken."""
+        data, time, begun = item
+        if self._caller is not None:
+            self._ask(self._caller, data, begun)
+            return
+        pause = AGAIN_S
+        while not self._send(data, time, begun):
+            with self._changed:
+                if self._closed and monotonic() > self._until:
+                    break
+                self._changed.wait_for(lambda: self._closed, pause)
+            pause = min(2 * pause, MOST_S)
+        else:
+            return
+        self.lost(self._refusal or "not sent in time")
+
+    def _ask(self, caller: Caller, data: bytes, begun: int) -> None:
+        try:
+            caller(data, timeout=self.route.timeout_s)
+        except TransportError as error:
+            self.lost(f"{error.kind}: {error.detail}")
+        else:
+            self._passed(data, begun)
+
+    _until = 0.0
+
+    def close(self, linger_s: float = LINGER_S) -> None:
+        """Send what waits, for as long as that, and close the target. The source is closed already."""
+        with self._changed:
+            self._until = monotonic() + linger_s
+            self._closed = True
+            self._changed.notify_all()
+        if self._thread is not None:
+            self._thread.join(linger_s + 1)
+        left = self.waiting
+        if left:
+            self.lost("not sent before the end", left)
+        if self._sink is not None:
+            self._sink.flush(max(self._until - monotonic(), 0.1))
+            self._sink.close()
+        if self._caller is not None:
+            self._caller.close()
+        self.problem = "closed"

@@ -1,0 +1,119 @@
+"""Counts of a bridge in the text format of Prometheus, over HTTP."""
+
+from __future__ import annotations
+
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import TYPE_CHECKING, Any, cast
+
+from rosetta_jit.errors import TransportError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    Snapshot = Callable[[], list[dict[str, Any]]]
+
+PREFIX = "rosetta_jit_bridge"
+TOTALS = {
+    "taken": ("messages_taken_total", "Messages that came."),
+    "sent": ("messages_sent_total", "Messages that went."),
+    "bytes_in": ("bytes_taken_total", "Bytes that came."),
+    "bytes_out": ("bytes_sent_total", "Bytes that went."),
+}
+REASONS = {
+    "dropped": ("messages_dropped_total", "reason", "Messages that did not go on."),
+    "failed": ("messages_failed_total", "cause", "Messages that could not be translated."),
+}
+CONTENT = "text/plain; version=0.0.4; charset=utf-8"
+
+
+def text(snapshot: list[dict[str, Any]]) -> str:
+    """The exposition of all routes."""
+    return "\n".join(_lines(snapshot)) + "\n"
+
+
+def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
+    for key, (name, help_) in TOTALS.items():
+        yield from _head(name, help_, "counter")
+        yield from (f"{PREFIX}_{name}{{{_label('route', each['route'])}}} {each[key]}" for each in snapshot)
+    for key, (name, label, help_) in REASONS.items():
+        yield from _head(name, help_, "counter")
+        for each in snapshot:
+            for reason, count in each[key].items():
+                yield f"{PREFIX}_{name}{{{_label('route', each['route'])},{_label(label, reason)}}} {count}"
+    yield from _head("latency_seconds", "From arrival to what the target took.", "summary")
+    for each in snapshot:
+        for part, key in (("0.5", "p50_us"), ("0.99", "p99_us")):
+            if each[key] is not None:
+                yield f'{PREFIX}_latency_seconds{{{_label("route", each["route"])},quantile="{part}"}} {each[key] / 1e6:.9f}'
+    for name, help_, value in (("waiting", "Messages in the queue.", "waiting"), ("up", "Whether the route runs.", "")):
+        yield from _head(name, help_, "gauge")
+        yield from (
+            f"{PREFIX}_{name}{{{_label('route', each['route'])}}} {each[value] if value else int(not each['problem'])}" for each in snapshot
+        )
+
+
+def _head(name: str, help_: str, kind: str) -> Iterator[str]:
+    yield f"# HELP {PREFIX}_{name} {help_}"
+    yield f"# TYPE {PREFIX}_{name} {kind}"
+
+
+def _label(name: str, value: str) -> str:
+    """Names from the network may hold anything."""
+    shown = "".join(each if each.isprintable() else "?" for each in value[:300])
+    return '{}="{}"'.format(name, shown.replace("\\", r"\\").replace('"', r"\""))
+
+
+class MetricsServer:
+    """Answers `/metrics` until it is closed.
+
+    Parameters
+    ----------
+    place
+        ``host:port``, or a port, at which only this machine can ask.
+
+    Raises
+    ------
+    TransportError
+        The place is taken, or is none.
+    """
+
+    def __init__(self, place: str, snapshot: Snapshot) -> None:
+        host, _, port = place.rpartition(":")
+        try:
+            self._server = _Server((host or "127.0.0.1", int(port)), _Handler)
+        except (OSError, ValueError, OverflowError) as error:
+            raise TransportError("taken", place, f"metrics cannot be served there: {error}") from None
+        self._server.snapshot = snapshot
+        self.port: int = self._server.server_address[1]
+        self._thread = threading.Thread(target=self._server.serve_forever, name="metrics", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop answering."""
+        self._server.shutdown()
+        self._server.server_close()
+
+
+class _Server(ThreadingHTTPServer):
+    snapshot: Snapshot
+    daemon_threads = True
+
+
+class _Handler(BaseHTTPRequestHandler):
+    timeout = 5
+
+    def do_GET(self) -> None:
+        """Answer one question."""
+        if self.path.partition("?")[0] not in ("/", "/metrics"):
+            self.send_error(404)
+            return
+        body = text(cast("_Server", self.server).snapshot()).encode()
+        self.send_response(200)
+        self.send_header("Content-Type", CONTENT)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - http.server's name
+        """Say nothing: whoever watches asks every few seconds."""

@@ -1,0 +1,63 @@
+"""A service of one middleware that is answered by a service of another."""
+
+from __future__ import annotations
+
+from time import perf_counter_ns
+from typing import TYPE_CHECKING
+
+from rosetta_jit.bridge.counting import RouteCounts
+from rosetta_jit.errors import MessageError, TransportError
+
+if TYPE_CHECKING:
+    from rosetta_jit.bridge.configuration import Rpc
+    from rosetta_jit.bridge.live import Say
+    from rosetta_jit.bridge.translating import Translate
+    from rosetta_jit.transports.base import Caller, Message, Server
+
+
+class LiveService:
+    """One such service while it runs; attributes as of `rosetta_jit.bridge.live.LiveRoute`."""
+
+    waiting = 0
+
+    def __init__(self, rpc: Rpc, request: Translate | None, reply: Translate | None, say: Say) -> None:
+        self.route = rpc
+        self.counts = RouteCounts()
+        self.problem = "not open yet"
+        self.server: Server | None = None
+        self._request, self._reply = request, reply
+        self._caller: Caller | None = None
+        self._say = say
+
+    def open(self, caller: Caller) -> None:
+        """The service that answers is there."""
+        self._caller = caller
+        self.problem = ""
+
+    def answer(self, message: Message) -> bytes:
+        """Ask the other service. What fails is told to who asked."""
+        begun, counts = perf_counter_ns(), self.counts
+        counts.taken += 1
+        counts.bytes_in += len(message.data)
+        try:
+            data = message.data if self._request is None else self._request(message.data)
+            assert self._caller is not None
+            answered = self._caller(data, timeout=self.route.timeout_s).data
+            reply = bytes(answered) if self._reply is None else self._reply(answered)
+        except (MessageError, TransportError) as error:
+            if counts.fail(f"{error.kind}: {error.detail}"):
+                self._say(f"{self.route.name}: {error}")
+            raise
+        counts.sent += 1
+        counts.bytes_out += len(reply)
+        counts.latencies.add(perf_counter_ns() - begun)
+        return reply
+
+    def close(self, linger_s: float = 0.0) -> None:
+        """Stop answering."""
+        del linger_s
+        if self.server is not None:
+            self.server.close()
+        if self._caller is not None:
+            self._caller.close()
+        self.problem = "closed"

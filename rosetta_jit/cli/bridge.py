@@ -1,0 +1,146 @@
+"""`rosetta-jit bridge`: routes between channels of middlewares, as a file describes them."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.cli.arguments import Commands, add_command
+from rosetta_jit.diagnostics import to_json
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rosetta_jit.bridge.configuration import Configuration
+
+CLEAR = "\x1b[H\x1b[J"
+SLOW_S = 10.0
+"""How often the table is printed where it cannot be drawn over."""
+
+
+def add(commands: Commands) -> None:
+    """Declare the arguments."""
+    command = add_command(commands, "bridge", "Run routes between channels of middlewares: YARP, ROS, RSB, sockets and others.", run)
+    command.add_argument("file", metavar="FILE", help="the routes, in TOML: docs/bridges.md")
+    command.add_argument("--check", action="store_true", help="say what the file means, or what is wrong with it, and run nothing")
+    command.add_argument("--json", action="store_true", help="one JSON object a line: counts of all routes, or what --check finds")
+    command.add_argument("--quiet", action="store_true", help="no table; what is lost is still said on stderr")
+    command.add_argument("--seconds", type=float, metavar="N", help="stop after so many seconds")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code 1 if the file is wrong, 0 when the bridge has been stopped by SIGINT or SIGTERM."""
+    from rosetta_jit.bridge.checking import checked
+    from rosetta_jit.errors import BridgeError
+
+    try:
+        configuration = checked(arguments.file)
+    except BridgeError as error:
+        if not arguments.json:
+            raise
+        print(json.dumps({"file": arguments.file, "diagnostics": [to_json(each) for each in error.diagnostics]}))
+        return 1
+    return _explain(configuration, arguments) if arguments.check else _Session(configuration, arguments).run()
+
+
+def _explain(configuration: Configuration, arguments: argparse.Namespace) -> int:
+    from rosetta_jit.bridge.checking import explained, lines
+    from rosetta_jit.terminal import printable
+
+    if arguments.json:
+        print(json.dumps({"file": arguments.file, "diagnostics": [], "routes": explained(configuration)}))
+    else:
+        print("\n".join(map(printable, lines(configuration))))
+    return 0
+
+
+class _Session:
+    """A bridge that runs until it is told to stop."""
+
+    def __init__(self, configuration: Configuration, arguments: argparse.Namespace) -> None:
+        from rosetta_jit.bridge.running import Running
+
+        self._configuration, self._arguments = configuration, arguments
+        self._over, self._changed = threading.Event(), threading.Event()
+        self._bridge = Running(configuration, self._say)
+        self._draws = sys.stdout.isatty() and not arguments.json and not arguments.quiet
+        self._said: list[str] = []
+        self._line = threading.Lock()
+
+    def run(self) -> int:
+        from rosetta_jit.bridge.metrics import MetricsServer
+
+        self._listen_to_signals()
+        place = self._configuration.metrics
+        metrics = None if place is None else MetricsServer(place, self._bridge.snapshot)
+        try:
+            self._bridge.start()
+            self._watch()
+        finally:
+            self._bridge.stop()
+            if metrics is not None:
+                metrics.close()
+            self._show(self._bridge.snapshot())
+        return 0
+
+    def _listen_to_signals(self) -> None:
+        if threading.current_thread() is not threading.main_thread():
+            return
+        for each in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(each, self._stop)
+        if hasattr(signal, "SIGHUP"):
+            signal.signal(signal.SIGHUP, self._read_again)
+
+    def _stop(self, *_: object) -> None:
+        self._over.set()
+
+    def _read_again(self, *_: object) -> None:
+        self._changed.set()
+
+    def _watch(self) -> None:
+        from time import monotonic
+
+        interval = self._configuration.interval_s if self._draws or self._arguments.json else SLOW_S
+        end = None if self._arguments.seconds is None else monotonic() + self._arguments.seconds
+        shown = monotonic()
+        while not self._over.wait(0.1):
+            if self._changed.is_set():
+                self._changed.clear()
+                self._reload()
+            if end is not None and monotonic() >= end:
+                return
+            if monotonic() - shown >= interval:
+                shown = monotonic()
+                self._show(self._bridge.snapshot())
+
+    def _reload(self) -> None:
+        from rosetta_jit.bridge.checking import checked
+        from rosetta_jit.errors import RosettaError
+
+        try:
+            self._bridge.reload(checked(self._configuration.path))
+            self._say("the file was read again")
+        except (RosettaError, OSError) as error:
+            self._say(f"the file cannot be used, and all goes on as before:\n{error}")
+
+    def _show(self, snapshot: list[dict[str, Any]]) -> None:
+        if self._arguments.json:
+            print(json.dumps({"routes": snapshot}), flush=True)
+        elif not self._arguments.quiet:
+            from rosetta_jit.bridge.table import rows
+
+            with self._line:
+                above = [*self._said[-8:], ""] if self._draws and self._said else []
+                print((CLEAR if self._draws else "") + "\n".join([*rows(snapshot), *above]), flush=True)
+
+    def _say(self, text: str) -> None:
+        from rosetta_jit.terminal import printable
+
+        with self._line:
+            lines = [printable(each) for each in text.splitlines()]
+            self._said = [*self._said, *lines][-100:]
+            if not self._draws:
+                print("\n".join(lines), file=sys.stderr, flush=True)

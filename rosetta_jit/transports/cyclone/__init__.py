@@ -1,0 +1,1 @@
+"""ROS 2 over DDS, by `cyclonedds`: messages as CDR, never decoded on the way."""

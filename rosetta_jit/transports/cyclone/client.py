@@ -1,0 +1,152 @@
+"""Topics of DDS by Cyclone DDS. Samples pass as they are serialised, so that any type can be read and written by its name alone."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from time import time_ns
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.ros2_names import mangled, plain, topic_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.transports.address import Address
+    from rosetta_jit.transports.base import Lost
+
+AT_ONCE = 64
+"""Samples that are taken before the reader is asked again."""
+
+ENCAPSULATION_BYTES = 4
+
+
+def _names(address: Address, options: Mapping[str, Any]) -> tuple[str, str]:
+    """The topic and the type as DDS has them."""
+    if not options["type"]:
+        raise TransportError("type", str(address), "DDS matches types by name: say `type=`")
+    if address.scheme == "ros2-dds":
+        return f"rt{topic_of(address)}", mangled(options["type"], address)
+    if not address.rest or not address.rest.isprintable():
+        raise address.wrong("a topic of DDS", "dds:Square?type=ShapeType")
+    return address.rest, options["type"]
+
+
+class Endpoint:
+    """A participant with one topic whose type is known by its name alone."""
+
+    def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
+        core, domain, idl, types, topic = map(
+            import_module, ("cyclonedds.core", "cyclonedds.domain", "cyclonedds.idl", "cyclonedds.idl.types", "cyclonedds.topic")
+        )
+        name, self.type = _names(address, options)
+        raw: Any = options["struct"] or idl.make_idl_struct("Raw", self.type, {"data": types.sequence[types.uint8]})
+        policy, depth = core.Policy, options["keep"]
+        second = 10**9
+        self.qos: Any = core.Qos(
+            policy.Reliability.Reliable(max_blocking_time=second) if options["reliable"] else policy.Reliability.BestEffort,
+            policy.History.KeepLast(depth) if depth else policy.History.KeepAll,
+            policy.Durability.TransientLocal if options["transient"] else policy.Durability.Volatile,
+        )
+        try:
+            self.participant: Any = domain.DomainParticipant(options["domain"])
+            self.topic: Any = topic.Topic(self.participant, name, raw, qos=self.qos)
+        except core.DDSException as error:
+            raise TransportError("unreachable", str(address), f"Cyclone DDS cannot open the topic: {error}") from None
+
+
+def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
+    """Receive the samples of a topic; with `ros2-dds`, of a topic of ROS 2."""
+    core, sub, raw = map(import_module, ("cyclonedds.core", "cyclonedds.sub", "cyclonedds._clayer"))
+    endpoint = Endpoint(address, options)
+    type_ = plain(endpoint.type)
+    most, mask = options["max_message"], core.SampleState.Any | core.ViewState.Any | core.InstanceState.Any
+    seen = [0]
+
+    def take(reader: Any) -> None:
+        while samples := _taken(raw.ddspy_take(reader._ref, mask, AT_ONCE)):  # noqa: SLF001 - it has no public way to the bytes
+            for data, info in samples:
+                if not info.valid_data:
+                    continue
+                if len(data) > most:
+                    source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+                    continue
+                source.arrived(Message(data, address.rest, type_, time_ns(), info.source_timestamp, None))
+
+    def lost(_: Any, status: Any) -> None:
+        source.lose("lost on the way", max(status.total_count - seen[0], 0))
+        seen[0] = status.total_count
+
+    def matched(_: Any, status: Any) -> None:
+        source.connections = status.current_count
+
+    def refused(_: Any, status: Any) -> None:
+        del status
+        source.lose("a writer whose quality of service does not fit", 0)
+
+    calls = {
+        "on_data_available": take,
+        "on_sample_lost": lost,
+        "on_subscription_matched": matched,
+        "on_requested_incompatible_qos": refused,
+    }
+    listener = _listener(core, calls)
+    reader = sub.DataReader(endpoint.participant, endpoint.topic, qos=endpoint.qos, listener=listener)
+
+    def close() -> None:
+        reader.set_listener(None)
+        endpoint.participant = endpoint.topic = None
+
+    source.opened(close)
+
+
+def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
+    """Send samples to a topic; with `ros2-dds`, to a topic of ROS 2."""
+    return DdsSink(address, options, lost)
+
+
+class DdsSink(Sink):
+    """Writes samples, each with the four bytes in front that say how it is serialised."""
+
+    def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
+        super().__init__(str(address), lost)
+        core, pub, self._raw = map(import_module, ("cyclonedds.core", "cyclonedds.pub", "cyclonedds._clayer"))
+        self._most: int = options["max_message"]
+        self._endpoint: Endpoint | None = Endpoint(address, options)
+
+        def matched(_: Any, status: Any) -> None:
+            self.connections = status.current_count
+
+        listener = _listener(core, {"on_publication_matched": matched})
+        self._writer: Any = pub.DataWriter(self._endpoint.participant, self._endpoint.topic, qos=self._endpoint.qos, listener=listener)
+
+    def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
+        del attributes
+        if self._writer is None:
+            raise TransportError("closed", self.address, "this sink is closed")
+        if len(data) > self._most:
+            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        if len(data) < ENCAPSULATION_BYTES:
+            raise TransportError("protocol", self.address, "CDR begins with four bytes that say how it is written")
+        padded = bytes(data).ljust(-(-len(data) // 4) * 4, b"\0")
+        made = time_ns() if time is None else time
+        if self._raw.ddspy_write_ts(self._writer._ref, padded, made) < 0:  # noqa: SLF001 - it has no public way for bytes
+            self.lose("readers are too slow, or the sample is not CDR")
+            return False
+        self.messages += 1
+        self.bytes += len(data)
+        return True
+
+    def close(self) -> None:
+        self._writer = self._endpoint = None
+        self.connections = 0
+
+
+def _listener(core: Any, calls: Mapping[str, Callable[..., object]]) -> Any:
+    return core.Listener(**calls)
+
+
+def _taken(found: list[Any] | int) -> list[Any]:
+    """The samples; a number is an error's."""
+    return [] if isinstance(found, int) else found

@@ -1,0 +1,117 @@
+"""Services of iceoryx2: slices of bytes in shared memory, and an event of the same name by which a source is woken."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from importlib import import_module
+from time import time_ns
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.base import Message, Sink, Source
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.transports.address import Address
+    from rosetta_jit.transports.base import Lost
+
+MAX_NAME_BYTES = 255
+
+
+class Service:
+    """A node, and the two services of a name."""
+
+    def __init__(self, address: Address) -> None:
+        if not address.rest or not address.rest.isprintable() or len(address.rest.encode()) > MAX_NAME_BYTES:
+            raise address.wrong(f"a name of at most {MAX_NAME_BYTES} bytes", "iceoryx:camera/left")
+        self.iox: Any = import_module("iceoryx2")
+        self.iox.set_log_level(self.iox.LogLevel.Error)
+        try:
+            self.node: Any = (
+                self.iox.NodeBuilder.new().signal_handling_mode(self.iox.SignalHandlingMode.Disabled).create(self.iox.ServiceType.Ipc)
+            )
+            name = self.iox.ServiceName.new(address.rest)
+            self.messages: Any = self.node.service_builder(name).publish_subscribe(self.iox.Slice[ctypes.c_uint8]).open_or_create()
+            self.event: Any = self.node.service_builder(name).event().open_or_create()
+        except Exception as error:
+            if not type(error).__module__.startswith(("iceoryx2", "_iceoryx2", "builtins")):
+                raise
+            raise TransportError(
+                "unreachable", str(address), f"iceoryx2 cannot open the service: {error or type(error).__name__}"
+            ) from None
+
+
+def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
+    """Receive what is published to a service, in a thread of its own. The data of a message are in shared memory."""
+    service, ends = Service(address), threading.Event()
+    subscriber = service.messages.subscriber_builder().create()
+    listener = service.event.listener_builder().create()
+    pause = service.iox.Duration.from_secs_f64(max(options["poll"], 0.001))
+    channel, most = address.rest, options["max_message"]
+
+    def run() -> None:
+        while not ends.is_set():
+            while (sample := subscriber.receive()) is not None:
+                data = sample.payload().as_memory_view()
+                if len(data) > most:
+                    source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+                else:
+                    source.arrived(Message(data, channel, None, time_ns()))
+                sample.delete()
+            listener.timed_wait(pause)
+        for each in (subscriber, listener):
+            each.delete()
+        source.connections = 0
+
+    source.connections = 1
+    thread = threading.Thread(target=run, name=str(address), daemon=True)
+    thread.start()
+
+    def close() -> None:
+        ends.set()
+        if thread is not threading.current_thread():
+            thread.join()
+
+    source.opened(close)
+
+
+def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
+    """Publish to a service."""
+    return IceoryxSink(address, options, lost)
+
+
+class IceoryxSink(Sink):
+    """Copies each message into shared memory, once, and wakes who waits."""
+
+    def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
+        super().__init__(str(address), lost)
+        self._most: int = options["max_message"]
+        self._service: Service | None = Service(address)
+        iox = self._service.iox
+        builder = self._service.messages.publisher_builder().initial_max_slice_len(max(options["first"], 1))
+        self._publisher: Any = builder.allocation_strategy(iox.AllocationStrategy.PowerOfTwo).create()
+        self._notifier: Any = self._service.event.notifier_builder().create()
+
+    def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
+        del time, attributes
+        if self._service is None:
+            raise TransportError("closed", self.address, "this sink is closed")
+        size = len(data)
+        if size > self._most:
+            raise TransportError("too large", self.address, f"{size} bytes are more than max_message={self._most}")
+        sample = self._publisher.loan_slice_uninit(size)
+        if size:
+            ctypes.memmove(sample.payload().as_ptr(), bytes(data), size)
+        self.connections = sample.assume_init().send()
+        self._notifier.notify()
+        self.messages += 1
+        self.bytes += size
+        return True
+
+    def close(self) -> None:
+        if self._service is not None:
+            for each in (self._publisher, self._notifier):
+                each.delete()
+            self._service = None

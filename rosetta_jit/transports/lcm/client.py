@@ -1,0 +1,107 @@
+"""Channels of LCM; each source has a thread that waits for the next message."""
+
+from __future__ import annotations
+
+import os
+import threading
+from importlib import import_module
+from time import time_ns
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.base import Message, Sink, Source
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosetta_jit.transports.address import Address
+    from rosetta_jit.transports.base import Lost
+
+DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
+MAX_CHANNEL_BYTES = 63
+LOOK_MS = 100
+"""How often the thread looks whether its source was closed."""
+
+
+def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
+    """Receive the messages of a channel, or of all whose names match a regular expression."""
+    most, ends = options["max_message"], threading.Event()
+    client = _client(address, options)
+
+    def take(channel: str, data: bytes) -> None:
+        if len(data) > most:
+            source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+            return
+        told = {"fingerprint": int.from_bytes(data[:8], "big")} if len(data) >= 8 else None
+        source.arrived(Message(data, channel, None, time_ns(), None, told))
+
+    def run() -> None:
+        while not ends.is_set():
+            try:
+                client.handle_timeout(LOOK_MS)
+            except OSError as error:
+                source.lose(error.strerror or "LCM failed", 0)
+                break
+        source.connections = 0
+        source.ended()
+
+    client.subscribe(_channel(address, MAX_CHANNEL_BYTES * 4), take)
+    source.connections = 1
+    thread = threading.Thread(target=run, name=str(address), daemon=True)
+    thread.start()
+
+    def close() -> None:
+        ends.set()
+        if thread is not threading.current_thread():
+            thread.join()
+
+    source.opened(close)
+
+
+def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
+    """Send messages to a channel."""
+    return LcmSink(address, options, lost)
+
+
+class LcmSink(Sink):
+    """Sends to a channel; nobody says whether it arrived."""
+
+    def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
+        super().__init__(str(address), lost)
+        self._channel = _channel(address, MAX_CHANNEL_BYTES)
+        self._most: int = options["max_message"]
+        self._client: Any = _client(address, options)
+        self.connections = 1
+
+    def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
+        del time, attributes
+        if self._client is None:
+            raise TransportError("closed", self.address, "this sink is closed")
+        if len(data) > self._most:
+            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        try:
+            self._client.publish(self._channel, bytes(data))
+        except OSError as error:
+            self.lose(error.strerror or "LCM cannot send")
+            return False
+        self.messages += 1
+        self.bytes += len(data)
+        return True
+
+    def close(self) -> None:
+        self._client = None
+        self.connections = 0
+
+
+def _client(address: Address, options: Mapping[str, Any]) -> Any:
+    url = options["url"] or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+    try:
+        return import_module("lcm").LCM(url)  # it has no types
+    except (RuntimeError, ValueError, OSError) as error:
+        raise TransportError("unreachable", str(address), f"LCM cannot open {url}: {error}") from None
+
+
+def _channel(address: Address, most: int) -> str:
+    if not address.rest or not address.rest.isprintable() or len(address.rest.encode()) > most:
+        raise address.wrong(f"a channel of at most {MAX_CHANNEL_BYTES} bytes", "lcm:POSE")
+    return address.rest

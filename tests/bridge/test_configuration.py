@@ -1,0 +1,126 @@
+"""Files of bridges: what they mean, and what is wrong with them, with the place."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.bridge.checking import checked, lines
+from rosetta_jit.bridge.configuration import read
+from rosetta_jit.bridge.patterns import matching, place_to_list
+from rosetta_jit.cli import main
+
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "bridges.md"
+GOOD = """
+[bridge]
+metrics = "127.0.0.1:0"
+
+[[route]]
+name = "torso"
+source = "tcp:9001"
+target = "tcp:9002"            # where the others listen
+mapping = "yarp/icub/torso_state.mapping"
+decode = { encoding = "yarp4" }
+rate = 30
+full = "newest"
+
+[[route]]
+source = "yarp:/icub/*/state:o"
+target = "rsb:/icub/{1}?type=bottle"
+between = ["yarp3", "yarp4"]
+
+[[rpc]]
+serve = "tcp:9003"
+call = "tcp:9004"
+"""
+
+
+def write(tmp_path, text):
+    (tmp_path / "bridge.toml").write_text(text)
+    return str(tmp_path / "bridge.toml")
+
+
+def test_what_a_file_means(tmp_path, capsys):
+    path = write(tmp_path, GOOD)
+    first, second = read(path).routes
+    assert (first.name, first.rate, first.full, second.name) == (
+        "torso",
+        30.0,
+        "newest",
+        "yarp:/icub/*/state:o > rsb:/icub/{1}?type=bottle",
+    )
+    assert "  by   read yarp/icub/torso_state.mapping (yarp4), write the data-holder as it is" in lines(checked(path))
+    assert main(["bridge", path, "--check"]) == 0
+    assert "at most 30 a second, 100 wait for the target; when that many do, new ones are dropped" in capsys.readouterr().out
+    assert main(["bridge", path, "--check", "--json"]) == 0
+    assert [each["by"] for each in json.loads(capsys.readouterr().out)["routes"]][1:] == ["yarp3 to yarp4", "as they are"]
+
+
+def test_patterns_become_routes():
+    route = read_one('source = "yarp:/icub/*/state:o?carrier=fast_tcp"\ntarget = "rsb:/icub/{1}"')
+    assert place_to_list(route.source) == "yarp:/icub/?carrier=fast_tcp"
+    found = [*matching(route, ["/icub/head/state:o", "/icub/a/b/state:o", "/icub/x?y/state:o", "/other"])]
+    assert [(each.source, each.target) for each in found] == [
+        ("yarp:/icub/head/state:o?carrier=fast_tcp", "rsb:/icub/head"),
+        ("yarp:/icub/x%3fy/state:o?carrier=fast_tcp", "rsb:/icub/x_y"),
+    ]
+
+
+def read_one(text):
+    import tempfile
+    from pathlib import Path
+
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "a.toml").write_text(f"[[route]]\n{text}\n")
+        return read(f"{folder}/a.toml").routes[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "place"),
+    [
+        ("[[route]\n", "this is not TOML", ":1:8"),
+        ("", "there is nothing to do", ":1:1"),
+        ('[[route]]\nsuorce = "tcp:1"\n', "did you mean `source`?", ":2:10"),
+        ('[[route]]\nsource = "tcp:1"\n', "`target` and `call`", ":1:1"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "tcp:2"\nrate = -1 # no\n', "`rate` is a number", ":4:8"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "tcp:2"\nfull = "never"\n', '"oldest", "newest" or "block"', ":4:8"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "tcp:1"\n', "come back to it for ever", ":3:10"),
+        ('[[route]]\nsource = "tpc:1"\ntarget = "tcp:2"\n', "`tpc:1` is no address", ":2:10"),
+        ('[[route]]\nsource = "tcp:1?frames=u32"\ntarget = "tcp:2"\n', "no option", ":2:10"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "tcp:2"\nmapping = "none.mapping"\n', "none.mapping", ":4:11"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "tcp:2"\nbetween = ["yarp3", "cdr"]\n', "nothing turns any message", ":4:11"),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "tcp:2"\nfull = "block"\n', "only pipes can wait", ":4:8"),
+        ('[[route]]\nsource = "rsb:/a*"\ntarget = "tcp:2"\n', "a route for each channel", ":2:10"),
+        (
+            '[[route]]\nname="a"\nsource = "tcp:1"\ntarget = "tcp:2"\n[[route]]\nname="a"\nsource = "tcp:1"\ntarget = "tcp:3"\n',
+            "two routes `a`",
+            ":6:6",
+        ),
+        ('[[route]]\nsource = "tcp:1"\ntarget = "rsb:/a"\n', "add ?type=…, the wire schema", ":3:10"),
+        ('[[rpc]]\nserve = "tcp:1"\n', "lacks `serve` or `call`", ":1:1"),
+        ('[[rpc]]\nserve = "tcp:1"\ncall = "tcp:2"\nrequest = 5\n', "`request` is the mapping", ":4:11"),
+        ("route = 5\n", "written as [[route]]", ":1:9"),
+    ],
+)
+def test_mistakes_have_a_place(tmp_path, text, said, place):
+    path = write(tmp_path, text)
+    with pytest.raises(rj.BridgeError) as found:
+        checked(path)
+    assert said in str(found.value)
+    assert f"{path}{place}" in str(found.value)
+    assert "^" in str(found.value)
+
+
+def test_mistakes_as_json(tmp_path, capsys):
+    assert main(["bridge", write(tmp_path, "route = 5\n"), "--check", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["diagnostics"][0]["line"] == 1
+    assert main(["bridge", str(tmp_path / "none.toml")]) == 1
+
+
+@pytest.mark.parametrize("text", re.findall(r"```toml\n(.*?)```", DOCUMENT.read_text("utf-8"), re.DOTALL))
+def test_the_files_of_the_document_are_right(tmp_path, text):
+    assert lines(checked(write(tmp_path, text)))

@@ -1,0 +1,34 @@
+"""What a running bridge carries, and what it adds: long runs on a machine that does nothing else."""
+
+from __future__ import annotations
+
+import pytest
+
+from bench import bridge_load
+
+pytestmark = pytest.mark.campaign
+
+
+def test_latency():
+    """Over the same bytes from one socket to another in Python."""
+    assert bridge_load.latency(9000)["added_p99_us"] <= 50
+
+
+def test_a_hundred_topics_of_200_bytes_at_a_kilohertz_on_one_core():
+    found = bridge_load.topics()
+    assert found["bytes"] == 200
+    assert (found["lost"], found["not_taken"]) == (0, 0)
+    assert found["cpu_us_a_message"] <= 10
+
+
+def test_images_at_a_gigabyte_a_second():
+    """Of the bridge's processor time: who sends and who receives may share the machine with it."""
+    found = bridge_load.images()
+    assert found["lost"] == 0
+    assert found["cpu_us_an_image"] <= 1000
+
+
+def test_an_hour_without_growth():
+    found = bridge_load.soak(3600)
+    assert found["messages"] > 3_500_000
+    assert found["grown_kb"] <= 1024

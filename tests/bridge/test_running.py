@@ -1,0 +1,343 @@
+"""Routes that run, over sockets of this machine: what arrives, what is dropped, what is said, and what is left behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.bridge.checking import checked
+from rosetta_jit.bridge.counting import MAX_CAUSES, Latencies, RouteCounts
+from rosetta_jit.bridge.metrics import MetricsServer, text
+from rosetta_jit.bridge.running import Running
+from rosetta_jit.bridge.table import rows
+from tests.transports.free import free_port, until
+from tests.transports.name_server import NameServer
+
+TORSO = "yarp/icub/torso_state.mapping"
+
+
+@pytest.fixture(scope="module")
+def bottles():
+    encode = rj.Encoder(TORSO, encoding="yarp4")
+    return [encode({"angles": [float(number), 0.0, 1.0]}) for number in range(100)]
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Runs a file, given as text, until the test ends; gives the bridge and what it has said."""
+    bridges = []
+
+    def start(configuration):
+        (tmp_path / "bridge.toml").write_text(configuration)
+        said = []
+        bridges.append(Running(checked(str(tmp_path / "bridge.toml")), said.append))
+        bridges[-1].start()
+        return bridges[-1], said
+
+    yield start
+    for each in bridges:
+        each.stop(0.2)
+
+
+def route(source, target, *lines):
+    return "\n".join(["[[route]]", f'source = "tcp:{source}"', f'target = "tcp:{target}"', *lines, ""])
+
+
+MAPPED = f'mapping = "{TORSO}"\ndecode = {{ encoding = "yarp4" }}'
+
+
+def test_messages_are_translated(run, bottles):
+    source, target, raw = free_port(), free_port(), free_port()
+    with rj.subscribe(f"tcp:{target}") as mapped, rj.subscribe(f"tcp:{raw}") as as_they_are:
+        bridge, said = run(route(source, target, 'name = "a"', MAPPED) + route(source, raw, 'name = "b"'))
+        with rj.publish(f"tcp:{source}") as robot:
+            for each in bottles:
+                robot.send(each)
+            angles = rj.Decoder.of("rst.kinematics.JointAngles")
+            found = [angles(mapped.take(5).data).angles[0] for _ in bottles]
+            assert found == pytest.approx([float(number) for number in range(100)], rel=1e-6)
+            assert [as_they_are.take(5).data for _ in bottles] == bottles
+            robot.send(b"no bottle")
+            robot.send(b"no bottle")
+            until(lambda: bridge.snapshot()[0]["failed"])
+            until(lambda: bridge.snapshot()[1]["sent"] == 102)
+        one, two = bridge.snapshot()
+        assert (one["taken"], one["sent"], two["sent"], one["dropped"]) == (102, 100, 102, {})
+        assert (sum(one["failed"].values()), two["failed"]) == (2, {})
+        assert len([line for line in said if "failed: " in line]) == 1  # the second of a kind is counted, and not said
+        assert 0 < one["p50_us"] <= one["p99_us"]
+
+
+def test_a_rate(run):
+    source, target = free_port(), free_port()
+    with rj.subscribe(f"tcp:{target}"):
+        bridge, said = run(route(source, target, "rate = 20"))
+        with rj.publish(f"tcp:{source}") as robot:
+            begun = time.monotonic()
+            while time.monotonic() < begun + 0.5:
+                robot.send(b"x")
+                time.sleep(0.002)
+        until(lambda: bridge.snapshot()[0]["taken"] == robot.messages)
+        found = bridge.snapshot()[0]
+        assert 8 <= found["sent"] <= 13
+        assert found["dropped"] == {"above its rate": found["taken"] - found["sent"]}
+        assert any("dropped: above its rate" in line for line in said)
+
+
+class Refuses:
+    """A target that takes messages when it is told to."""
+
+    def __init__(self):
+        self.takes, self.got, self.lost = False, [], None
+
+    def send(self, data, **_):
+        if self.takes:
+            self.got.append(bytes(data))
+        else:
+            self.lost("nobody listens", 1)
+        return self.takes
+
+    def flush(self, _):
+        return True
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize(("full", "kept"), [("oldest", range(5, 9)), ("newest", range(5))])
+def test_what_is_dropped_when_the_queue_is_full(run, monkeypatch, full, kept):
+    target = Refuses()
+
+    def publish(address, *, lost):
+        target.lost = lost
+        return target
+
+    monkeypatch.setattr("rosetta_jit.bridge.running.publish", publish)
+    source = free_port()
+    bridge, said = run(route(source, 1, "queue = 4", f'full = "{full}"'))
+    live = next(iter(bridge.live.values()))
+    live.deliver(message(0))
+    until(lambda: live._held)  # the queue's thread has it
+    for number in range(1, 9):
+        live.deliver(message(number))
+    assert live.waiting == 5
+    assert live.counts.dropped == {"queue full (nobody listens)": 4}
+    assert any("1 dropped: queue full" in line for line in said)
+    target.takes = True
+    until(lambda: len(target.got) == 5)
+    assert target.got == [bytes([number]) for number in ([0, *kept] if full == "oldest" else kept)]
+    live.deliver(message(99))
+    assert target.got[-1] == bytes([99])  # at once: nothing waits
+
+
+def message(number):
+    from rosetta_jit.transports.base import Message
+
+    return Message(bytes([number]), "a", time=1)
+
+
+def test_what_was_taken_is_sent_before_it_stops(run):
+    """The target comes when the bridge has been told to stop."""
+    source, target = free_port(), free_port()
+    bridge, _ = run(route(source, target))
+    with rj.publish(f"tcp:{source}") as robot:
+        for number in range(50):
+            robot.send(bytes([number]))
+        until(lambda: bridge.snapshot()[0]["taken"] == 50)
+    with rj.subscribe(f"tcp:{target}") as late:
+        bridge.stop(5)
+        assert [late.take(5).data for _ in range(50)] == [bytes([number]) for number in range(50)]
+
+
+def test_what_was_not_sent_is_counted(run, monkeypatch):
+    target = Refuses()
+
+    def publish(address, *, lost):
+        target.lost = lost
+        return target
+
+    monkeypatch.setattr("rosetta_jit.bridge.running.publish", publish)
+    bridge, said = run(route(free_port(), 1))
+    live = next(iter(bridge.live.values()))
+    for number in range(3):
+        live.deliver(message(number))
+    bridge.stop(0.1)
+    assert sum(live.counts.dropped.values()) == 3
+    assert any("nobody listens" in line for line in said)
+
+
+def test_services(run, bottles):
+    """An answer that goes through, one that cannot be translated, and messages that ask."""
+    outer, inner, source = free_port(), free_port(), free_port()
+    asked = []
+
+    def answer(message):
+        asked.append(message.data)
+        return b"ok " + message.data
+
+    with rj.serve(f"tcp:{inner}", answer):
+        bridge, said = run(
+            f'[[rpc]]\nname = "as it is"\nserve = "tcp:{outer}"\ncall = "tcp:{inner}"\n'
+            f'[[rpc]]\nname = "mapped"\nserve = "tcp:{source}"\ncall = "tcp:{inner}"\nrequest = {{ between = ["yarp3", "yarp4"] }}\n'
+        )
+        with rj.call(f"tcp:{outer}") as ask:
+            assert ask(b"question").data == b"ok question"
+        with rj.call(f"tcp:{source}") as ask:
+            bottle = struct.pack("<iid", 266, 1, 1.5)
+            assert ask(bottle).data == b"ok " + struct.pack("<iid", 276, 1, 1.5)
+            with pytest.raises(rj.TransportError, match="closed"):
+                ask(bottle[:-1])
+        assert [each["sent"] for each in bridge.snapshot()] == [1, 1]
+        assert any("truncated" in line for line in said)
+        bridge.stop()
+        asks, _ = run(f'[[route]]\nsource = "tcp:{outer}"\ncall = "tcp:{inner}"\n')
+        with rj.publish(f"tcp:{outer}") as robot:
+            robot.send(b"command")
+            until(lambda: asks.snapshot()[0]["sent"] == 1)
+        assert asked[-1] == b"command"
+
+
+def test_another_file(run, tmp_path):
+    one, two, target, other = (free_port() for _ in range(4))
+    with rj.subscribe(f"tcp:{target}") as first, rj.subscribe(f"tcp:{other}") as second:
+        bridge, _ = run(route(one, target, 'name = "a"'))
+        with rj.publish(f"tcp:{one}") as robot:
+            robot.send(b"1")
+            assert first.take(5).data == b"1"
+            (tmp_path / "bridge.toml").write_text(route(one, target, 'name = "a"') + route(two, other, 'name = "b"'))
+            bridge.reload(checked(str(tmp_path / "bridge.toml")))
+            robot.send(b"2")
+            assert first.take(5).data == b"2"
+            with rj.publish(f"tcp:{two}") as more:
+                more.send(b"3")
+                assert second.take(5).data == b"3"
+            assert [each["taken"] for each in bridge.snapshot()] == [2, 1]  # the first one was left alone
+        (tmp_path / "bridge.toml").write_text(route(two, other, 'name = "b"'))
+        bridge.reload(checked(str(tmp_path / "bridge.toml")))
+        assert [each["route"] for each in bridge.snapshot()] == ["b"]
+
+
+def test_what_cannot_be_opened_is_tried_again(run):
+    source, target = free_port(), free_port()
+    with rj.subscribe(f"tcp:{source}") as in_the_way:
+        bridge, said = run(route(source, target))
+        assert "taken" in bridge.snapshot()[0]["problem"]
+        assert any("taken" in line for line in said)
+        in_the_way.close()
+        until(lambda: not bridge.snapshot()[0]["problem"])
+
+
+def test_channels_are_found(run):
+    """Ports that a pattern names, also one that comes later; each becomes a route with its own target."""
+    names, target = NameServer(), free_port()
+    server = f"?server=127.0.0.1:{names.port}"
+    try:
+        with rj.subscribe(f"tcp:{target}") as there, rj.publish(f"yarp:/icub/head/state:o{server}") as head:
+            bridge, _ = run(f'[[route]]\nname = "all"\nsource = "yarp:/icub/*/state:o{server}"\ntarget = "tcp:{target}"\n')
+            until(lambda: head.connections)
+            head.send(struct.pack("<iid", 266, 1, 1.5))
+            assert there.take(5).data == struct.pack("<iid", 266, 1, 1.5)
+            with rj.publish(f"yarp:/icub/torso/state:o{server}") as torso:
+                until(lambda: torso.connections)
+                torso.send(struct.pack("<iid", 266, 1, 2.5))
+                assert there.take(5).data == struct.pack("<iid", 266, 1, 2.5)
+            assert [each["route"] for each in bridge.snapshot()] == ["all /icub/head/state:o", "all /icub/torso/state:o"]
+            bridge.stop(0.5)
+    finally:
+        names.close()
+
+
+def test_a_target_that_comes_back(run):
+    """What it did not take while it was away is what it gets first."""
+    source, target = free_port(), free_port()
+    there = rj.subscribe(f"tcp:{target}")
+    bridge, _ = run(route(source, target))
+    with rj.publish(f"tcp:{source}") as robot:
+        robot.send(b"first")
+        assert there.take(5).data == b"first"
+        there.close()
+        until(lambda: not next(iter(bridge.live.values()))._sink.connections)
+        for number in range(20):
+            robot.send(bytes([number]))
+        until(lambda: bridge.snapshot()[0]["taken"] == 21)
+        with rj.subscribe(f"tcp:{target}") as again:
+            assert [again.take(10).data for _ in range(20)] == [bytes([number]) for number in range(20)]
+
+
+def test_causes_are_bounded():
+    counts = RouteCounts()
+    for number in range(10_000):
+        counts.fail(f"cause {number}")
+    assert len(counts.failed) == MAX_CAUSES + 1
+    assert sum(counts.failed.values()) == 10_000
+
+
+def test_latencies():
+    latencies = Latencies()
+    assert latencies.quantile(0.5) is None
+    for number in [*range(1, 1000), 10**15]:
+        latencies.add(number)
+    for part in (0.1, 0.5, 0.9):
+        assert latencies.quantile(part) == pytest.approx(1000 * part, rel=0.13)
+    assert latencies.quantile(1.0) == pytest.approx(10**15, rel=0.13)
+
+
+def test_the_table_and_the_metrics(run):
+    source, target = free_port(), free_port()
+    with rj.subscribe(f"tcp:{target}") as there:
+        bridge, _ = run(route(source, target, 'name = "a \\"b\\"\\u001b[2J"'))
+        with rj.publish(f"tcp:{source}") as robot:
+            robot.send(b"12345")
+            assert there.take(5)
+        next(iter(bridge.live.values())).lost("evil\x1b[2J reason\n")
+        table = "\n".join(rows(bridge.snapshot()))
+        assert "\x1b" not in table
+        assert "dropped 1: evil" in table
+        metrics = MetricsServer("0", bridge.snapshot)
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{metrics.port}/metrics") as answer:
+                found = answer.read().decode()
+        finally:
+            metrics.close()
+        assert found.split("\n")[0].startswith("# HELP")
+        assert 'rosetta_jit_bridge_bytes_sent_total{route="a \\"b\\"?[2J"} 5' in found
+        assert 'reason="evil?[2J reason?"} 1' in found
+        assert all(line.startswith("#") or line.count("{") == 1 for line in text(bridge.snapshot()).splitlines())
+
+
+def test_the_command(tmp_path):
+    """From start to stop, as people run it: a file, another one, an end."""
+    source, target = free_port(), free_port()
+    path = tmp_path / "bridge.toml"
+    path.write_text("[bridge]\ninterval = 0.2\n" + route(source, target, 'name = "a"'))
+    command = [sys.executable, "-m", "rosetta_jit", "bridge", str(path), "--json"]
+    with (
+        rj.subscribe(f"tcp:{target}") as there,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program,
+    ):
+        try:
+            with rj.publish(f"tcp:{source}") as robot:
+                robot.send(b"1")
+                assert there.take(20).data == b"1"
+            assert json.loads(program.stdout.readline())["routes"][0]["route"] == "a"
+            path.write_text(path.read_text().replace("source", "suorce"))
+            os.kill(program.pid, signal.SIGHUP)
+            said = program.stderr.readline()
+            while "all goes on as before" not in said:
+                said = program.stderr.readline()
+            threading.Timer(0.3, program.send_signal, (signal.SIGTERM,)).start()
+            out, _ = program.communicate(timeout=20)
+            assert json.loads(out.splitlines()[-1])["routes"][0]["sent"] == 1
+            assert program.returncode == 0
+        finally:
+            program.kill()

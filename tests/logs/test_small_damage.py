@@ -1,0 +1,184 @@
+"""Damage of the formats that are read message by message, of folders and of databases; and of bags, whose index has a form of its own."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import struct
+from pathlib import Path
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.errors import LogError
+from rosetta_jit.logs.bag.grammar import CHUNK, header_of
+from rosetta_jit.logs.bag.writer import record, u32
+
+from .made import time_of, write_bag
+from .test_damage import codes, damage, read
+from .test_folders import write_rosbag2
+from .test_small_formats import event, tide, varint
+
+COUNT = 12
+DUMPED = Path(__file__).parent / "yarpdatadumper"
+
+
+def texts():
+    return [f"message {number} ".encode() * (number % 3 + 1) for number in range(COUNT)]
+
+
+def tide_file():
+    entries = [(7, time_of(number), event(each, 1_700_000_000_000_000 + number)) for number, each in enumerate(texts())]
+    return tide([(7, b"/a/", b"rsb-event-0.9:.a.A")], entries)
+
+
+SMALL = {
+    "a.rec": b"".join(struct.pack("<dI", number, len(each)) + each for number, each in enumerate(texts())),
+    "a.delimited": b"".join(varint(len(each)) + each for each in texts()),
+    "a.tide": tide_file(),
+}
+
+
+@pytest.mark.parametrize("kind", SMALL)
+def test_cut_at_each_byte(kind, tmp_path):
+    whole, before = SMALL[kind], 0
+    everything, found = read(tmp_path / kind, whole)
+    assert (len(everything), found) == (COUNT, [])
+    for size in range(len(whole)):
+        try:
+            messages, _ = read(tmp_path / kind, whole[:size])
+        except LogError:
+            assert size < 22
+            continue
+        assert messages == everything[: len(messages)]
+        assert len(messages) >= before
+        before = len(messages)
+    assert before == COUNT - 1
+
+
+@pytest.mark.parametrize("kind", SMALL)
+def test_random_damage(kind, tmp_path):
+    mutated(kind, SMALL[kind], tmp_path, 150)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("kind", SMALL)
+def test_much_random_damage(kind, tmp_path):
+    mutated(kind, SMALL[kind], tmp_path, 100_000)
+
+
+def mutated(kind, whole, folder, count):
+    dice = random.Random(kind)
+    for _ in range(count):
+        data = bytearray(whole)
+        for _ in range(dice.randint(1, 3)):
+            damage(data, dice)
+        try:
+            messages, _ = read(folder / kind, bytes(data))
+        except LogError:
+            continue
+        assert sum(len(each.message) for each in messages) <= len(data)
+
+
+@pytest.fixture(scope="module")
+def database(tmp_path_factory):
+    (file,) = write_rosbag2(tmp_path_factory.mktemp("database") / "a").glob("*.db3")
+    return file.read_bytes()
+
+
+def damaged_databases(database, folder, count):
+    """Each is opened or refused; nothing is made up of bytes that are not there."""
+    dice, opened = random.Random(1), 0
+    for turn in range(count):
+        data = bytearray(database)
+        if turn % 3:
+            for _ in range(dice.randint(1, 8)):
+                damage(data, dice)
+        else:
+            del data[dice.randrange(len(data)) :]
+        try:
+            messages, _ = read(folder / "a.db3", bytes(data))
+        except LogError:
+            continue
+        opened += 1
+        assert sum(len(each.message) for each in messages) <= 2 * len(data)
+    assert opened
+
+
+def test_damaged_databases(database, tmp_path):
+    damaged_databases(database, tmp_path, 60)
+
+
+@pytest.mark.campaign
+def test_many_damaged_databases(database, tmp_path):
+    damaged_databases(database, tmp_path, 20_000)
+
+
+def test_a_cut_folder_of_yarpdatadumper(tmp_path):
+    folder = tmp_path / "bottle_cli"
+    shutil.copytree(DUMPED / "bottle_cli", folder)
+    whole, before = (folder / "data.log").read_bytes(), 0
+    everything = list(rj.open(folder).messages(raw=True))
+    for size in range(0, len(whole), 3):
+        (folder / "data.log").write_bytes(whole[:size])
+        found = []
+        messages = list(rj.open(folder, on_problem=found.append).messages(raw=True))
+        assert messages == everything[: len(messages)]
+        assert len(messages) >= before
+        assert set(codes(found)) <= {"log-cut"}
+        before = len(messages)
+    dice = random.Random(3)
+    for _ in range(100):
+        data = bytearray(whole)
+        damage(data, dice)
+        (folder / "data.log").write_bytes(data)
+        assert len(list(rj.open(folder, on_problem=list[object]().append).messages(raw=True))) <= 2 * len(everything)
+
+
+def chunk_of(data):
+    """Where the first chunk of a bag is, its header, and where its data begin."""
+    at = 13
+    while True:
+        header, begin = header_of(data[at:])
+        if header[b"op"] == bytes([CHUNK]):
+            return at, header, begin
+        at += begin + int.from_bytes(data[at + begin - 4 : at + begin], "little")
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        (b"compression", b"none", "promises"),
+        (b"compression", b"bz9", "'bz9', which is not known"),
+        (b"size", u32(0xFFFFFFFF), "more than the limit"),
+        (b"size", u32(1 << 30), "promises 1073741824 bytes"),
+    ],
+)
+def test_chunks_of_bags_that_lie(tmp_path, field, value, said):
+    data = write_bag(tmp_path / "a.bag", 40, "bz2").read_bytes()
+    everything, _ = read(tmp_path / "a.bag", data)
+    at, header, begin = chunk_of(data)
+    size = int.from_bytes(data[at + begin - 4 : at + begin], "little")
+    content = data[at + begin : at + begin + size]
+    fields = {name.decode(): text for name, text in {**header, field: value}.items()}
+    lying = data[:at] + record(content, **fields) + data[at + begin + size :]
+    messages, found = read(tmp_path / "b.bag", lying)
+    assert any(said in each.message for each in found)
+    assert {each.message for each in messages} <= {each.message for each in everything}
+    assert messages
+
+
+@pytest.mark.parametrize("off", [1, -7, 1 << 40])
+def test_an_index_of_a_bag_that_lies(tmp_path, off):
+    """A chunk is elsewhere than the index says: it is found, and no message is lost or there twice."""
+    data = write_bag(tmp_path / "a.bag", 200).read_bytes()
+    everything, _ = read(tmp_path / "a.bag", data)
+    at, _, begin = chunk_of(data)
+    at += begin + int.from_bytes(data[at + begin - 4 : at + begin], "little")  # of the second chunk, which indices are before
+    while header_of(data[at:])[0][b"op"] != bytes([CHUNK]):
+        _, begin = header_of(data[at:])
+        at += begin + int.from_bytes(data[at + begin - 4 : at + begin], "little")
+    place = data.rindex(b"chunk_pos=" + struct.pack("<Q", at)) + len(b"chunk_pos=")
+    messages, found = read(tmp_path / "b.bag", data[:place] + struct.pack("<Q", at + off) + data[place + 8 :])
+    assert sorted(messages) == sorted(everything)
+    assert "log-index" in codes(found)
