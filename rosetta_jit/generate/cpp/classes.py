@@ -90,7 +90,8 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: fr
     lines = [comment(struct.name), f"struct {identifier} {{"]
     for field, member in zip(struct.fields, member_names(struct), strict=True):
         kind = _type(field.type, names, recursive)
-        zero = "{}" if isinstance(field.type, Bool | Int | Float | Ref) and not kind.startswith("std::unique") else ""
+        is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
+        zero = "{}" if is_bare and not kind.startswith("std::unique") else ""
         said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
         lines.append(f"    {kind} {member}{zero};{f' {comment(said)}' if said else ''}")
     if struct.option("unknown"):
