@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.transports.feeding import SOME, Between, Feed, ProtocolError, Until
@@ -26,7 +26,8 @@ def fed(asked, pieces):
     return got, feed
 
 
-@given(st.binary(max_size=300), st.lists(st.integers(1, 50), min_size=1, max_size=4), st.lists(st.integers(1, 40), min_size=1))
+@settings(suppress_health_check=[HealthCheck.too_slow])
+@given(st.binary(max_size=150), st.lists(st.integers(1, 50), min_size=1, max_size=4), st.lists(st.integers(1, 40), min_size=1, max_size=5))
 def test_lengths(data, sizes, reads):
     pieces, rest = [], data
     while rest:
@@ -41,6 +42,7 @@ def test_lengths(data, sizes, reads):
     assert len(data) - at < sizes[len(got) % len(sizes)]
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.binary(max_size=60).map(lambda line: line.replace(b"\r\n", b"")), max_size=8), st.integers(1, 50))
 def test_delimiters_of_two_bytes(lines, size):
     data = b"".join(each + b"\r\n" for each in lines)
