@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     Machine = Generator["int | Until", memoryview, None]
 
+LOOK_BYTES = 1024
+"""That are looked through at a time for a delimiter: many short lines may have come at once."""
+
 FIRST_BYTES = 1 << 16
 """Of a buffer, which grows as more bytes of a message really come."""
 
@@ -130,10 +133,14 @@ class Feed:
 
     def _found(self, want: Until) -> int:
         """Where the delimiter ends; 0 where it did not come yet."""
-        base = max(self._start, self._searched - len(want.delimiter) + 1)
-        at = bytes(self._buffer[base : min(self._end, self._start + want.most)]).find(want.delimiter)
-        if at >= 0:
-            return base + at + len(want.delimiter)
+        size = len(want.delimiter)
+        base, end = max(self._start, self._searched - size + 1), min(self._end, self._start + want.most)
+        while end - base >= size:
+            piece = bytes(self._buffer[base : min(base + LOOK_BYTES, end)])
+            at = piece.find(want.delimiter)
+            if at >= 0:
+                return base + at + size
+            base += max(len(piece) - size + 1, 1)
         if self._end - self._start >= want.most:
             raise ProtocolError(f"no end of line within {want.most} bytes")
         self._searched = self._end

@@ -9,7 +9,7 @@ from itertools import chain
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.transports.feeding import Feed, ProtocolError
@@ -115,6 +115,7 @@ def test_scopes():
     assert above("/") == ["/"]
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.data())
 def test_no_bytes_break_a_reader(data):
     """An event of a captured stream, some of its bytes changed or cut off: an event, or one error, and nothing else."""
@@ -133,6 +134,7 @@ IDS = st.builds(EventId, st.binary(min_size=16, max_size=16), st.integers(0, 2**
 TIMES = st.integers(-(2**63), 2**63 - 1) | st.integers(1 << 48, 1 << 57)
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.builds(
         Event,

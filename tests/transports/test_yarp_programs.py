@@ -112,7 +112,8 @@ def test_questions_go_both_ways(at, server):
 
 def test_a_reader_that_is_killed_costs_nobody_else(at, server):
     with rj.publish(at("/out")) as sink, rj.subscribe(at("/out")) as source:
-        with running(YARP, "read", "/killed", "/out", env=server[1]):
+        with running(YARP, "read", "/killed", env=server[1]):
+            until(obeyed(server, "connect", "/out", "/killed"), 20)
             until(lambda: sink.connections == 2)
             sink.send(b"1")
             assert source.take(5).data == b"1"

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rosetta_jit.transports.feeding import Feed, ProtocolError
@@ -221,6 +221,7 @@ def test_what_no_port_says_ends_the_connection(stream, said):
         read("yarp3", stream)
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.data())
 def test_no_stream_breaks_a_reader(data):
     """Bytes of a captured stream, some of them changed: messages, or one ProtocolError, and nothing else."""
