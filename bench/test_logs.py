@@ -8,6 +8,7 @@ from __future__ import annotations
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
+import lcm
 import lz4.frame
 import zstandard
 from mcap.reader import make_reader
@@ -20,9 +21,10 @@ from rosbags.rosbag1 import Writer as BagWriter
 
 import rosetta_jit as rj
 from bench.contest import Contender
+from bench.peers.lcm_gen import peers as lcm_peers
 from bench.peers.mcap import definition
 from bench.peers.rosbags import store, type_name
-from bench.subjects import IMU, IMU_2
+from bench.subjects import IMU, IMU_2, LCM_DOUBLES
 from rosetta_jit.logs.records import Chunk
 
 if TYPE_CHECKING:
@@ -158,6 +160,27 @@ def test_bag(effort, compare, record, tmp_path):
     ]
     outcome = compare(CHAPTER, f"{count:,} messages of sensor_msgs/Imu in a bag, lz4", [*ours(effort, path, count), *contenders])
     told(record, outcome, "Imu, bag (lz4) to Arrow", None, list(peers))
+
+
+def test_lcm(effort, compare, record, tmp_path):
+    count, path = COUNT // 100 if effort.quick else COUNT // 10, tmp_path / "many.lcmlog"
+    log = lcm.EventLog(str(path), "w")
+    for number in range(count):
+        log.write_event(START // 1000 + number, "DOUBLES", LCM_DOUBLES.message)
+    log.close()
+    decode, channel = lcm_peers(LCM_DOUBLES)[0].decode, rj.open(path)["DOUBLES"]
+    assert channel.to_arrow().num_rows == sum(1 for each in lcm.EventLog(str(path)) if decode(each.data)) == count
+
+    def theirs():
+        return sum(1 for each in lcm.EventLog(str(path)) if decode(each.data))
+
+    contenders = [
+        Contender(TABLE, "ours", "a table of all fields and two times", effort.call(channel.to_arrow, messages=count, clock=process_time)),
+        Contender("lcm with lcm-gen", "peer", "one object a message", effort.call(theirs, messages=count, clock=process_time)),
+    ]
+    outcome = compare(CHAPTER, f"{count:,} messages of 1000 float64 in a log of LCM", contenders)
+    ratio = outcome.ratio(TABLE, "lcm with lcm-gen")
+    record("1000 float64, log of LCM to Arrow, against lcm", ratio, None, "of it", f"{outcome.took(TABLE).median:.0f} ns a message")
 
 
 def told(record, outcome, what, at_most, peers):

@@ -15,8 +15,23 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+LONG = ("scale.md",)
+"""Those that start a cluster."""
+
+
+@pytest.mark.parametrize("document", [each for each in DOCUMENTS if each.name not in LONG], ids=lambda path: path.name)
 def test_examples_run(document):
+    run_examples(document)
+
+
+@pytest.mark.campaign
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("document", LONG)
+def test_long_examples_run(document):
+    run_examples(ROOT / "docs" / document)
+
+
+def run_examples(document):
     names: dict[str, object] = {}
     for block in re.findall(r"```python\n(.*?)```", document.read_text(), re.DOTALL):
         exec(compile(block, str(document), "exec"), names)  # noqa: S102 - our own documents

@@ -72,6 +72,7 @@ def decompressed(name: str, compression: str, body: memoryview, size: int, scrat
 
 def _zstd(name: str, body: memoryview, size: int, scratch: Scratch) -> tuple[Bytes, str]:
     zstandard = _package("zstandard", name)
+    size = min(size, zstd_size(body) or size)  # the frame tells, too, how much it holds
     target = scratch.room(size)
 
     def read(step: int) -> tuple[Bytes, str]:

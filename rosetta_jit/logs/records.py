@@ -144,31 +144,33 @@ class Records:
             segment = segments[number]
             if not segment.piece.has(wanted):
                 continue
-            if isinstance(segment, Chunk) and not self._is_true(segment):
+            record, is_true = self._record(segment, scratch)
+            if not is_true:
                 self._tell(words.index_lies(self._storage.name, segment.at))
                 own = range(segment.at, segments[chosen.stop].at if chosen.stop < len(segments) else end)
                 blocks = self._region(self._true_place(segments[:number]), end, wanted, scratch, own)
                 yield from (replace(each, piece=number) for each in blocks)
                 return
-            yield from (replace(each, piece=number) for each in self._segment(segment, wanted, scratch, end))
+            yield from (replace(each, piece=number) for each in self._segment(segment, record, wanted, scratch, end))
 
-    def _segment(self, segment: Chunk | Region, wanted: Wanted, scratch: Scratch, end: int) -> Iterator[Block]:
+    def _record(self, segment: Chunk | Region, scratch: Scratch) -> tuple[memoryview, bool]:
+        """The bytes of a chunk, and whether there is one, and no larger one than the index says; of a region nothing, which is true."""
+        if isinstance(segment, Region):
+            return memoryview(b""), True
+        record = self._storage.read_into(segment.at, scratch.record(segment.size))
+        head = self._grammar.head(bytes(record[:PEEK])) if len(record) > 9 else Head("damaged")
+        return record, head.kind == "chunk" and head.size <= segment.size
+
+    def _segment(self, segment: Chunk | Region, record: memoryview, wanted: Wanted, scratch: Scratch, end: int) -> Iterator[Block]:
         """The messages of a segment that is where the index says; its last record may end in the next one, if that is not."""
         if isinstance(segment, Region):
             yield from self._region(segment.at, end, wanted, scratch, range(segment.at, segment.end))
             return
-        record = self._storage.read_into(segment.at, scratch.record(segment.size))
         size = self._grammar.head(bytes(record[:PEEK])).size
         yield from self._content(record, segment.at, scratch)
         if size < segment.size:
             behind = range(segment.at + size, segment.at + segment.size)
             yield from self._region(behind.start, end, wanted, scratch, behind)
-
-    def _is_true(self, chunk: Chunk) -> bool:
-        """Whether there is a chunk, and no larger one than the index says."""
-        peek = self._storage.read(chunk.at, min(PEEK, chunk.size))
-        head = self._grammar.head(peek) if len(peek) > 9 else Head("damaged")
-        return head.kind == "chunk" and head.size <= chunk.size
 
     def _true_place(self, before: Sequence[Chunk | Region]) -> int:
         """Where the last chunk begins that is where the index says; the log's first record, if there is none."""
@@ -194,9 +196,10 @@ class Records:
         """
         own = own or range(at, end)
         while at < min(end, own.stop):
-            peek = self._storage.read(at, min(PEEK, end - at))
-            head = self._grammar.head(peek) if len(peek) >= 9 else Head("damaged")
             left = end - at
+            peek, head = self._head(at, min(left, own.stop - at))
+            if head.kind == "damaged" and own.stop < end:  # it may end behind what the index says
+                peek, head = self._head(at, left)
             is_cut = len(peek) < 9 or head.size > left
             if head.kind == "damaged" or (is_cut and head.kind != "chunk"):
                 self._tell((words.log_cut if is_cut else words.damaged)(self._storage.name, at))
@@ -217,6 +220,11 @@ class Records:
                     return
                 case _:
                     at += head.size
+
+    def _head(self, at: int, left: int) -> tuple[bytes, Head]:
+        """What the record is that begins somewhere, by so many bytes at most."""
+        peek = self._storage.read(at, min(PEEK, left))
+        return peek, self._grammar.head(peek) if len(peek) >= 9 else Head("damaged")
 
     def _described(self, chunk: Chunk, end: int) -> tuple[Chunk, int]:
         """A chunk with what the index records behind it tell, and where those end."""
