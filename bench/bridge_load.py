@@ -49,14 +49,14 @@ def free_ports(count: int) -> list[int]:
 
 
 @contextmanager
-def running(routes: str) -> Generator[subprocess.Popen[str]]:
-    """A bridge in a process of its own, on one core."""
+def running(routes: str, *, pinned: bool = True) -> Generator[subprocess.Popen[str]]:
+    """A bridge in a process of its own; pinned, it has one core."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bridge.toml"
         path.write_text(f"[bridge]\ninterval = 1\n{routes}")
         command = [sys.executable, "-m", "rosetta_jit", "bridge", str(path), "--json"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
-            if hasattr(os, "sched_setaffinity"):
+            if pinned and hasattr(os, "sched_setaffinity"):
                 os.sched_setaffinity(program.pid, {max(os.sched_getaffinity(0))})
             try:
                 yield program
@@ -111,7 +111,7 @@ def latency(count: int = 3000) -> dict[str, Any]:
             with socket.create_server(("127.0.0.1", target)) as listener:
                 route = f'[[route]]\nsource = "tcp:{source}"\ntarget = "tcp:{target}"\n{MAPPED}'
                 command = [sys.executable, "-c", COPY, str(source), str(target)]
-                with running(route) if kind == "bridge" else subprocess.Popen(command) as program:
+                with running(route, pinned=False) if kind == "bridge" else subprocess.Popen(command) as program:
                     accepted, _ = listener.accept()
                     found[kind].append(latencies(source, accepted, framed(bottle), size, count // 3)[50:])
                     accepted.close()

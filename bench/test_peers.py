@@ -7,7 +7,7 @@ import pytest
 
 from bench.contest import Contender
 from bench.messages import anew
-from bench.peers import python_peers
+from bench.peers import generated_python, python_peers
 from bench.peers.native import native_peers, rounds_of
 from bench.peers.yarp_native import Peers
 from bench.report import words
@@ -46,6 +46,7 @@ def test_decode(name, effort, compare, record):
         *borrowed(effort, name, subject),
         *limits(effort, message),
         *(Contender(peer.who, "peer", peer.makes, effort.call(peer.decode, message)) for peer in python_peers(subject)),
+        *(Contender(peer.who, "ours", peer.makes, effort.call(peer.decode, message)) for peer in generated_python.peers(subject)),
         *(Contender(peer.who, "peer", peer.makes, rounds_of(peer.decode, effort.round_s)) for peer in native_peers(subject)),
     ]
     outcome = compare("Decoding", name, contenders)
@@ -62,7 +63,8 @@ def test_encode(name, effort, compare, record):
     encode(holder, buffer, 0)
     assert buffer == message
     peers = [(peer, peer.decode(message)) for peer in python_peers(subject) if peer.encode is not None]
-    for peer, value in peers:
+    generated = [(peer, peer.decode(message)) for peer in generated_python.peers(subject)]
+    for peer, value in (*peers, *generated):
         assert bytes(peer.encode(value)) == message, peer.who
     contenders = [
         Contender(INTO, "ours", "a buffer that is given", effort.placed(lambda: into_a_buffer(effort, subject))),
@@ -70,6 +72,7 @@ def test_encode(name, effort, compare, record):
         Contender("its decode", "limit", "a holder, used again", effort.placed(lambda: effort.call(subject.decoder(), anew(message)))),
         *limits(effort, message),
         *(Contender(peer.who, "peer", "bytes, anew", effort.call(peer.encode, value)) for peer, value in peers),
+        *(Contender(peer.who, "ours", "bytes, anew", effort.call(peer.encode, value)) for peer, value in generated),
         *(Contender(peer.who, "peer", "a buffer that is given", rounds_of(peer.encode, effort.round_s)) for peer in native_peers(subject)),
     ]
     outcome = compare("Encoding", name, contenders)

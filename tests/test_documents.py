@@ -27,11 +27,20 @@ def test_the_example_in_c_runs(tmp_path, monkeypatch):
     from rosetta_jit.cli import main
 
     text = (ROOT / "docs" / "c.md").read_text()
-    (generate, build, _), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "c", "text"))
+    (generate, build, _, bare, firmware), (source, program), (said,) = (
+        re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "c", "text")
+    )
     monkeypatch.chdir(tmp_path)
     assert main(generate.split()[1:]) == 0
     Path("main.c").write_text(source)
     assert subprocess.run(["sh", "-ec", build], capture_output=True, text=True, check=True).stdout == said
+    assert main(bare.split()[1:]) == 0
+    Path("firmware.c").write_text(program)
+    monkeypatch.setenv("CC", "gcc")  # a compiler for the machine is seldom there; what it has to understand is the same
+    monkeypatch.setenv("FLAGS", "-Wall -Wextra -Werror -fno-stack-protector")
+    subprocess.run(["sh", "-ec", firmware], check=True)
+    needed = subprocess.run(["nm", "-u", "torso_state.o"], capture_output=True, text=True, check=True).stdout.split()
+    assert set(needed) <= {"U", "memcpy", "memset"}
 
 
 @pytest.mark.skipif(shutil.which("cmake") is None or shutil.which("g++") is None, reason="CMake and g++ build the example in C++")
@@ -48,6 +57,18 @@ def test_the_example_in_cpp_runs(tmp_path, monkeypatch):
     done = subprocess.run(["sh", "-ec", build], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.endswith(said)
+
+
+def test_the_example_in_python_runs(tmp_path, monkeypatch):
+    """In a process that does not know this library."""
+    from rosetta_jit.cli import main
+
+    text = (ROOT / "docs" / "python.md").read_text()
+    (generate, _), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "py", "text"))
+    monkeypatch.chdir(tmp_path)
+    assert main(generate.split()[1:]) == 0
+    Path("main.py").write_text(source)
+    assert subprocess.run([sys.executable, "-S", "main.py"], capture_output=True, text=True, check=True).stdout == said
 
 
 def test_the_documented_mapping_is_the_shipped_one():

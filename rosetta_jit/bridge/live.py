@@ -180,8 +180,11 @@ class LiveRoute:
         if self._caller is not None:
             self._ask(self._caller, data, begun)
             return
-        pause = AGAIN_S
+        pause, since = AGAIN_S, monotonic()
         while not self._send(data, time, begun):
+            sink = self._sink
+            if sink is not None and sink.connections and monotonic() > since + self.route.timeout_s:
+                break  # somebody is there, and does not want this one: others are to have their turn
             with self._changed:
                 if self._closed and monotonic() > self._until:
                     break

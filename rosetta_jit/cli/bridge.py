@@ -64,7 +64,8 @@ class _Session:
         from rosetta_jit.bridge.running import Running
 
         self._configuration, self._arguments = configuration, arguments
-        self._over, self._changed = threading.Event(), threading.Event()
+        self._over = self._changed = False
+        self._told = threading.Event()
         self._bridge = Running(configuration, self._say)
         self._draws = sys.stdout.isatty() and not arguments.json and not arguments.quiet
         self._said: list[str] = []
@@ -95,25 +96,27 @@ class _Session:
             signal.signal(signal.SIGHUP, self._read_again)
 
     def _stop(self, *_: object) -> None:
-        self._over.set()
+        self._over = True
+        self._told.set()
 
     def _read_again(self, *_: object) -> None:
-        self._changed.set()
+        self._changed = True
+        self._told.set()
 
     def _watch(self) -> None:
         from time import monotonic
 
         interval = self._configuration.interval_s if self._draws or self._arguments.json else SLOW_S
-        end = None if self._arguments.seconds is None else monotonic() + self._arguments.seconds
-        shown = monotonic()
-        while not self._over.wait(0.1):
-            if self._changed.is_set():
-                self._changed.clear()
+        end = float("inf") if self._arguments.seconds is None else monotonic() + self._arguments.seconds
+        due = monotonic() + interval
+        while not self._over and monotonic() < end:
+            self._told.wait(max(0.0, min(due, end) - monotonic()))  # seldom: this thread holds up those that carry messages
+            self._told.clear()
+            if self._changed:
+                self._changed = False
                 self._reload()
-            if end is not None and monotonic() >= end:
-                return
-            if monotonic() - shown >= interval:
-                shown = monotonic()
+            if monotonic() >= due:
+                due = monotonic() + interval
                 self._show(self._bridge.snapshot())
 
     def _reload(self) -> None:

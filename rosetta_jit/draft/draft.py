@@ -102,11 +102,11 @@ def _quoted(name: str) -> str:
 
 
 def _message(schema: Schema, name: str, where: tuple[SearchPath, Readers]) -> Message:
-    found = [each for known, each in schema.types.items() if isinstance(each, Struct) and same_name(known, name)]
-    if not found:
+    alike = {known: each for known, each in schema.types.items() if isinstance(each, Struct) and same_name(known, name)}
+    if not alike:
         search, readers = where
         raise MappingError((words.unknown_type(name, similar_types(name, readers, search) or tuple(schema.types)),))
-    return Message(found[0], schema)
+    return Message(alike.get(name) or next(iter(alike.values())), schema)
 
 
 def _units(search: SearchPath) -> list[UnitFile]:

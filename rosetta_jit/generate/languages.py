@@ -60,6 +60,7 @@ class Language:
 
 
 LANGUAGES = (
+    Language("python", "one module of dataclasses", "rosetta_jit.generate.python.language:files", borrows=True, low_byte_first=True),
     Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),
     Language(
         "cpp",

@@ -36,6 +36,7 @@ def similar_types(asked: str, front_ends: FrontEnds, search: SearchPath) -> list
 
 
 def _stems(path: Path) -> Iterator[str]:
+    """The files beside a path, of its suffix."""
     with suppress(OSError, ValueError):  # a name that no folder can have, or one that cannot be read
         yield from [each.stem for each in islice(path.parent.glob(f"*{path.suffix}"), MAX_FILES)]
 

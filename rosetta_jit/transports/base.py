@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
+from rosetta_jit.terminal import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -78,6 +79,9 @@ class Message:
         )
 
 
+MAX_REASONS, MAX_REASON = 50, 400
+"""Different reasons that are counted apart, and the characters of one: peers must not fill memory with them."""
+
 NOTHING: Mapping[str, Any] = {}
 """The attributes of messages without any."""
 
@@ -108,8 +112,11 @@ class Counts:
         self._lock = threading.Lock()
 
     def lose(self, reason: str, count: int = 1) -> None:
-        """Count messages that are lost, and say why; for transports."""
+        """Count messages that are lost, and say why; for transports. A reason may hold what a peer said."""
+        reason = printable(reason[:MAX_REASON])
         with self._lock:
+            if reason not in self.lost and len(self.lost) >= MAX_REASONS:
+                reason = "other reasons"
             self.lost[reason] += count
         if self._tell is not None:
             self._tell(reason, count)
@@ -118,7 +125,7 @@ class Counts:
 class Source(Counts):
     """Messages that arrive at an address; a context manager, and an iterable where no callback gets them.
 
-    Iterating ends when the source is closed, or where the channel has an end (a pipe, a connection of its own). Messages that nobody takes
+    Iterating ends when the source is closed, or where the channel has an end (a pipe, a file). Messages that nobody takes
     wait, at most ``queue`` of them; then the oldest is dropped, and counted as `queue full`.
     """
 

@@ -105,9 +105,10 @@ class Feed:
             rest = rest[count:]
             self.filled(count)
 
-    def rest(self) -> memoryview:
-        """What came and was not asked for."""
-        return self._buffer[self._start : self._end]
+    @property
+    def size(self) -> int:
+        """Bytes of memory that it holds."""
+        return len(self._buffer)
 
     @property
     def is_between(self) -> bool:

@@ -44,6 +44,8 @@ class Loop:
         self._number = count()
         self._wake_read, self._wake_write = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         self._awake = False
+        self.held_bytes = 0
+        """Of memory, for messages that come; changed in the loop's thread."""
         self._epoll.register(self._wake_read, READ)
         self._watched[self._wake_read] = self._drain
         self.thread = threading.Thread(target=self._run, name="rosetta_jit transports", daemon=True)

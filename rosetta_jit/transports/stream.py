@@ -8,7 +8,7 @@ from collections import deque
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from rosetta_jit.transports.feeding import Feed, ProtocolError
+from rosetta_jit.transports.feeding import FIRST_BYTES, Feed, ProtocolError
 from rosetta_jit.transports.loop import READ, WRITE, loop
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 MAX_WAITING_BYTES = 16 << 20
 """Bytes that wait for a slow peer; one message of any size may always begin to wait."""
+
+MAX_HELD_BYTES = 1 << 30
+"""Of memory for incoming messages of all connections together. Who would need more is cut off: many peers may send large ones at once."""
 
 
 class Stream:
@@ -68,6 +71,7 @@ class Stream:
         self._paused = False
         self._deadline: Timer | None = None
         self._events = 0
+        self._held = 0
 
     def start(self) -> Stream:
         """Begin to read; in the loop's thread."""
@@ -146,6 +150,7 @@ class Stream:
             self.cut = not self._feed.is_between
             self._feed.close()
         self.socket.close()
+        loop().held_bytes -= self._held
         self._ended(self, why)
 
     def _finish(self, linger: float) -> None:
@@ -182,7 +187,10 @@ class Stream:
         feed = self._feed
         assert feed is not None
         try:
-            count = self.socket.recv_into(feed.room())
+            room = feed.room()
+            if feed.size != self._held:
+                self._hold(feed.size)
+            count = self.socket.recv_into(room)
             if not count:
                 self.end()
                 return
@@ -200,6 +208,13 @@ class Stream:
             raise
         if feed.done and not self.closed and not self._finishing:
             self._finish(1.0)
+
+    def _hold(self, size: int) -> None:
+        """Count what the buffer takes, which has grown."""
+        loop().held_bytes += size - self._held
+        self._held = size
+        if loop().held_bytes > MAX_HELD_BYTES and size > FIRST_BYTES:
+            raise ProtocolError("large messages of all peers together take too much memory")
 
     def _write(self) -> None:
         try:

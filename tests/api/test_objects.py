@@ -7,6 +7,7 @@ import sys
 import threading
 from dataclasses import dataclass, field
 from enum import IntEnum
+from itertools import pairwise
 from types import ModuleType, SimpleNamespace
 
 import numpy as np
@@ -374,7 +375,7 @@ def test_lists_of_messages_are_encoded_in_one_call(encode):
     part.label = "a"
     messages = [part, {"number": 2, "label": "bc", "when": {"secs": 3, "nsecs": 4}}, Part(3, "", Moment(5, 6))]
     buffer, offsets = alone.many(messages)
-    assert [buffer[begin:end].tobytes() for begin, end in zip(offsets, offsets[1:], strict=False)] == [alone(each) for each in messages]
+    assert [buffer[begin:end].tobytes() for begin, end in pairwise(offsets)] == [alone(each) for each in messages]
     buffer[0] = 1
     assert [each.tolist() for each in alone.many(())] == [[], [0]]
     with pytest.raises(ValuesError, match=r"at `\[1\]\.number`"):

@@ -98,7 +98,7 @@ class Refuses:
     """A target that takes messages when it is told to."""
 
     def __init__(self):
-        self.takes, self.got, self.lost = False, [], None
+        self.takes, self.got, self.lost, self.connections = False, [], None, 0
 
     def send(self, data, **_):
         if self.takes:
@@ -144,6 +144,23 @@ def message(number):
     from rosetta_jit.transports.base import Message
 
     return Message(bytes([number]), "a", time=1)
+
+
+def test_a_message_that_is_refused_for_ever_holds_up_no_others(run, monkeypatch):
+    target = Refuses()
+    target.connections, target.send = 1, lambda data, **_: bytes(data) != b"\x05" and not target.got.append(bytes(data))
+
+    def publish(address, *, lost):
+        return target
+
+    monkeypatch.setattr("rosetta_jit.bridge.running.publish", publish)
+    bridge, _ = run(route(free_port(), 1, "timeout = 0.1"))
+    live = next(iter(bridge.live.values()))
+    for number in range(4, 8):
+        live.deliver(message(number))
+    until(lambda: len(target.got) == 3)
+    assert target.got == [b"\x04", b"\x06", b"\x07"]
+    assert sum(live.counts.dropped.values()) == 1
 
 
 def test_what_was_taken_is_sent_before_it_stops(run):

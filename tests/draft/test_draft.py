@@ -101,3 +101,15 @@ def test_words():
     assert alike("time_stamp", "timestamp") > 0.7
     assert alike("temperature", "width") == 0
     assert shared(["pose", "orientation"], ["Rotation"]) > shared(["pose", "position"], ["Rotation"])
+
+
+def test_types_of_one_name_are_told_apart(capsys):
+    assert main(["draft", "std_msgs/Header", "std_msgs/msg/Header"]) == 0
+    rules = capsys.readouterr().out.partition("rules:\n")[2].splitlines()
+    assert [line.strip() for line in rules if line.strip()] == [
+        ".stamp.secs <-> uint32(.stamp.sec)",
+        ".stamp.nsecs <-> .stamp.nanosec",
+        ".frame_id <-> .frame_id",
+        "# not decided: nothing of the wire is like these",
+        "default .seq",
+    ]

@@ -171,8 +171,12 @@ def test_ros2_over_dds():
             "std_msgs/msg/String",
             1_700_000_000_000_000_001,
         )
-        with pytest.raises(TransportError, match="four bytes"):
-            sink.send(b"x")
+        for data in (b"\0\1\0\0hello world!", b"\0\7\0\0" + b"\xff" * 40, b"\0\1\0\0" + bytes(range(200)) * 100):
+            sink.send(data)
+            assert source.take(5).data == data
+        for wrong, said in ((b"x", "four bytes"), (b"\0\0\0\0" + bytes(8), "big-endian")):
+            with pytest.raises(TransportError, match=said):
+                sink.send(wrong)
     assert plain("std_msgs::msg::dds_::String_") == "std_msgs/msg/String"
     with pytest.raises(TransportError, match="say `type=`"):
         rj.subscribe("ros2-dds:/chatter")
@@ -204,5 +208,9 @@ def test_shared_memory():
             assert sink.send(data)
             assert source.take(5).data == data
         assert sink.connections == 1
+    first = []
+    with rj.subscribe(name, lambda message: first.append(message.data[0])), rj.publish(name) as sink:  # as it lies in shared memory
+        sink.send(b"abc")
+        until(lambda: first == [ord("a")])
     with pytest.raises(TransportError, match="closed"):
         sink.send(b"x")

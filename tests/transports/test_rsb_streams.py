@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from rosetta_jit.transports.feeding import Feed, ProtocolError
 from rosetta_jit.transports.rsb.bus import HANDSHAKE, frames
-from rosetta_jit.transports.rsb.notification import NoEventError, decode, encode, scope_in
+from rosetta_jit.transports.rsb.notification import Event, EventId, NoEventError, decode, encode, scope_in
 from rosetta_jit.transports.rsb.scopes import above, normal
 
 LIVE = json.loads((Path(__file__).resolve().parent.parent / "vectors" / "rsb" / "live.json").read_text())
@@ -126,6 +126,30 @@ def test_no_bytes_break_a_reader(data):
     for read in (decode, scope_in):
         with suppress(NoEventError):
             read(cut)
+
+
+WORDS = st.text(st.characters(codec="ascii", exclude_characters="\0"), max_size=20)
+IDS = st.builds(EventId, st.binary(min_size=16, max_size=16), st.integers(0, 2**32 - 1))
+TIMES = st.integers(-(2**63), 2**63 - 1) | st.integers(1 << 48, 1 << 57)
+
+
+@given(
+    st.builds(
+        Event,
+        IDS,
+        st.just("/a/b/"),
+        WORDS,
+        st.binary(max_size=300),
+        TIMES,
+        TIMES,
+        WORDS,
+        st.lists(IDS, max_size=3),
+        st.dictionaries(WORDS, WORDS, max_size=3),
+        st.dictionaries(WORDS, st.integers(0, 2**63 - 1), max_size=3),
+    )
+)
+def test_what_is_written_is_read_again(event):
+    assert decode(memoryview(b"".join(map(bytes, encode(event)))))._replace(data=event.data) == event
 
 
 def test_lengths_are_bounded():

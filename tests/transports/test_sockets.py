@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import struct
@@ -12,6 +13,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError, TransportError
+from rosetta_jit.transports.base import Source
+from rosetta_jit.transports.installed import installed
+from rosetta_jit.transports.stream import Stream
 from tests.transports.free import free_port, until
 
 MESSAGES = [b"", b"a", bytes(range(256)), b"x" * 300_000, b"end"]
@@ -113,6 +117,47 @@ def test_a_length_above_the_limit_ends_the_connection_and_takes_no_memory():
         assert bad.recv(1) == b""
         until(lambda: source.lost)
         assert source.lost == {"a message of 4294967295 bytes, more than max_message=1024": 1}
+
+
+def test_all_peers_together_take_bounded_memory(monkeypatch):
+    monkeypatch.setattr("rosetta_jit.transports.stream.MAX_HELD_BYTES", 8 << 20)
+    port = free_port()
+    with rj.subscribe(f"tcp:{port}") as source:
+        peers = [socket.create_connection(("127.0.0.1", port)) for _ in range(4)]
+        for each in peers:
+            each.settimeout(0.5)
+            with contextlib.suppress(OSError):
+                each.sendall(struct.pack("<I", 32 << 20) + bytes(3 << 20))
+        until(lambda: source.lost)
+        assert set(source.lost) == {"large messages of all peers together take too much memory"}
+        for each in peers:
+            each.close()
+        until(lambda: not source.connections)
+        with rj.publish(f"tcp:{port}") as sink:
+            sink.send(bytes(1 << 20))
+            assert len(source.take(5).data) == 1 << 20
+
+
+def test_reasons_are_few_short_and_printable():
+    source = Source("here", None, None)
+    for number in range(100):
+        source.lose(f"\x1b[31m{number}" + "x" * 1000)
+    assert len(source.lost) == 51
+    assert source.lost["other reasons"] == 50
+    assert all(each.isprintable() and len(each) <= 403 for each in source.lost)
+
+
+def test_peers_that_vanish_are_noticed():
+    """Half-open connections: the kernel asks after a silence, and gives up on what is not acknowledged, within half a minute."""
+    one, two = socket.create_server(("127.0.0.1", 0)), socket.socket()
+    two.connect(one.getsockname())
+    stream = Stream(two, lambda _: iter(()), lambda *_: None)
+    option = stream.socket.getsockopt
+    assert option(socket.SOL_SOCKET, socket.SO_KEEPALIVE) == 1
+    assert option(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE) + 3 * option(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL) <= 30
+    assert option(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 30_000
+    one.close()
+    two.close()
 
 
 def test_a_slow_reader_makes_the_sender_wait_or_drop():
@@ -234,6 +279,29 @@ def test_what_is_wrong_with_an_address_is_said(address, said):
     with pytest.raises(AddressError, match=r"(?s)error\[") as caught:
         rj.subscribe(address)
     assert said in str(caught.value)
+
+
+def test_an_installed_package_may_offer_a_transport(tmp_path, monkeypatch):
+    (tmp_path / "toy_transport.py").write_text(
+        "from rosetta_jit.transports.base import Message, Transport\n"
+        "def subscribe(address, source, options):\n"
+        "    source.arrived(Message(address.rest.encode(), address.rest))\n"
+        "    source.ended()\n"
+        "TOY = Transport('toy', ('toy',), 'toy:a', subscribe='toy_transport:subscribe')\n"
+    )
+    described = tmp_path / "toy-1.dist-info"
+    described.mkdir()
+    (described / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
+    (described / "entry_points.txt").write_text("[rosetta_jit.transports]\ntoy = toy_transport:TOY\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    installed.cache_clear()
+    try:
+        with rj.subscribe("toy:hello") as source:
+            assert [each.data for each in source] == [b"hello"]
+        with pytest.raises(AddressError, match="cannot publish"):
+            rj.publish("toy:hello")
+    finally:
+        installed.cache_clear()
 
 
 def test_options_of_a_call_go_before_those_of_the_address():

@@ -188,6 +188,14 @@ def test_bad_peers_cost_themselves_alone(at, names):
         }
 
 
+def test_a_connection_that_says_nothing_is_closed(at, names, monkeypatch):
+    monkeypatch.setattr("rosetta_jit.transports.yarp.incoming.HELLO_S", 0.05)
+    with rj.subscribe(at("/in", "&open=yes")) as source, socket.create_connection(("127.0.0.1", int(names.ports["/in"][1]))) as silent:
+        silent.settimeout(5)
+        assert silent.recv(1) == b""
+        until(lambda: source.lost == {"a connection that said nothing": 1})
+
+
 def test_a_hundred_writers_at_once(at, names):
     with rj.subscribe(at("/in", "&open=yes")) as source:
         where = ("127.0.0.1", int(names.ports["/in"][1]))
@@ -222,7 +230,7 @@ def test_a_reader_that_dies_with_messages_on_the_way_is_counted(at, names):
         for _ in range(3):
             sink.send(BOTTLE)
         peer.close()
-        until(lambda: not sink.connections)
+        until(lambda: sink.lost)
         assert sink.lost["the reader went away"] == 3
 
 

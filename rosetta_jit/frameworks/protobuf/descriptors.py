@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.descriptor_reading import read_files
 from rosetta_jit.frameworks.protobuf.proto.file_set import file_set
 from rosetta_jit.frameworks.protobuf.proto.judge import schema_of
@@ -42,7 +42,7 @@ def from_file_descriptor_set(data: bytes | FileDescriptorSet) -> Schema:
     try:
         files = FileDescriptorSet.FromString(data) if isinstance(data, bytes) else data
     except DecodeError:
-        raise SchemaError((say.bad_descriptor("its bytes are damaged"),)) from None
+        raise SchemaError((of_file.bad_descriptor("its bytes are damaged"),)) from None
     return _schema(list(files.file))
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection
 
     from rosetta_jit.source import Span
 
@@ -30,141 +30,9 @@ class Range(Protocol):
     def last(self) -> int: ...
 
 
-TOKENS = {
-    "SEMICOLON": "`;`",
-    "LBRACE": "`{`",
-    "RBRACE": "`}`",
-    "LPAR": "`(`",
-    "RPAR": "`)`",
-    "LSQB": "`[`",
-    "RSQB": "`]`",
-    "LESSTHAN": "`<`",
-    "MORETHAN": "`>`",
-    "EQUAL": "`=`",
-    "COMMA": "`,`",
-    "COLON": "`:`",
-    "DOT": "`.`",
-    "NUMBER": "a number",
-    "STRING": "a string",
-    "TO": "`to`",
-    "MAX": "`max`",
-    "STREAM": "`stream`",
-    "RPC": "`rpc`",
-    "RETURNS": "`returns`",
-}
-"""Token kind → how a person calls it, in the order in which alternatives are listed."""
-
-
-def _error(code: str, message: str, span: Span | None, label: str, help_: str = "") -> Diagnostic:
+def problem(code: str, message: str, span: Span | None, label: str, help_: str = "") -> Diagnostic:
+    """A mistake at a place."""
     return Diagnostic("error", code, message, span, label=label, help=help_)
-
-
-def unexpected(span: Span, text: str, expected: Collection[str]) -> Diagnostic:
-    """A token where the grammar has none like it."""
-    label = f"expected {_alternatives(expected)}"
-    return _error("syntax", f"`{text[:40]}` cannot stand here", span, label)
-
-
-def unfinished(span: Span, expected: Collection[str]) -> Diagnostic:
-    """The end of the file within a statement."""
-    return _error("syntax", "the file ends in the middle of a statement", span, f"expected {_alternatives(expected)}")
-
-
-def _alternatives(expected: Collection[str]) -> str:
-    words = [word for token, word in TOKENS.items() if token in expected]
-    if {"OPTION", "SEMICOLON"} <= set(expected):
-        words = ["a statement", *(word for word in words if word != TOKENS["DOT"])]
-    elif "IDENT" in expected:
-        words.insert(0, "a name")
-    return " or ".join(words) if words else "something else"
-
-
-def nesting(span: Span, limit: int) -> Diagnostic:
-    """More brackets open at once than may be."""
-    return _error("nesting", f"more than {limit} brackets are open at once", span, "one too many", "Declare the inner types outside.")
-
-
-def unclosed_string(span: Span) -> Diagnostic:
-    """A quotation mark without its partner."""
-    return _error("syntax", "a string does not end on its line", span, "starts here", "Close it; `\\n` stands for a new line.")
-
-
-def unclosed_comment(span: Span) -> Diagnostic:
-    """`/*` without `*/`."""
-    return _error("syntax", "a comment does not end", span, "starts here", "Close it with `*/`.")
-
-
-def wrong_number(span: Span, wanted: str) -> Diagnostic:
-    """A number that is misspelt, or of the wrong kind for its place."""
-    return _error("number", "this is no such number", span, f"expected {wanted}", "Write 10, 0x0a, 012 or, where it may be one, 1.5e3.")
-
-
-def wrong_escape(span: Span) -> Diagnostic:
-    """A backslash with something behind it that means nothing."""
-    return _error("escape", "nothing is written like this in a string", span, "not an escape", "A backslash itself is `\\\\`.")
-
-
-def not_utf8(span: Span) -> Diagnostic:
-    """The name of a file, or a reserved name, that is not text."""
-    return _error("text", "this is not text in UTF-8", span, "bytes that are no characters")
-
-
-def name_too_long(span: Span | None, limit: int) -> Diagnostic:
-    """A name longer than the limit."""
-    return _error("name-length", f"a name has more than {limit} characters", span, "too long")
-
-
-def unknown_syntax(span: Span, value: str) -> Diagnostic:
-    """A version of the language that does not exist."""
-    return _error("syntax-version", f"there is no syntax {value!r}", span, "unknown", 'Use "proto2" or "proto3".')
-
-
-def second_package(span: Span | None) -> Diagnostic:
-    """Another `package` in the same file."""
-    return _error("package", "a file has one package", span, "a second one")
-
-
-def missing_file(span: Span | None, path: str) -> Diagnostic:
-    """An import that leads nowhere."""
-    return _error(
-        "missing-file",
-        f"there is no file `{path}`",
-        span,
-        "not found on the search path",
-        "Add the folder that the path starts in to the search path.",
-    )
-
-
-def import_cycle(span: Span | None, names: Sequence[str]) -> Diagnostic:
-    """An import that leads back to its own file."""
-    note = " imports ".join(f"`{name}`" for name in names)
-    return Diagnostic("error", "import-cycle", "a file imports itself", span, label="leads back", notes=(note,))
-
-
-def repeated_import(span: Span | None, path: str) -> Diagnostic:
-    """The same import again."""
-    return _error("repeated-import", f"`{path}` is imported twice", span, "again")
-
-
-def repeated_file(name: str) -> Diagnostic:
-    """Two files of a descriptor set with one name."""
-    return _error("repeated-file", f"the file `{name}` comes twice", None, "")
-
-
-def too_many_files(limit: int) -> Diagnostic:
-    """More files than may be imported."""
-    return _error("too-many-files", f"more than {limit} files are imported", None, "")
-
-
-def bad_descriptor(reason: str) -> Diagnostic:
-    """A descriptor that protoc would not have written."""
-    return _error("descriptor", f"this is no usable file descriptor set: {reason}", None, "")
-
-
-def unsupported_descriptor(file: str, syntax: str) -> Diagnostic:
-    """A descriptor of a file in a version of the language that is not known."""
-    known = "proto2, proto3 and the editions 2023 and 2024 are known"
-    return _error("edition", f"the file `{file[:100]}` is written in `{syntax[:40]}`; {known}", None, "")
 
 
 def repeated_name(name: Name, full: str, kind: str, first: Span | None) -> Diagnostic:
@@ -177,12 +45,12 @@ def repeated_name(name: Name, full: str, kind: str, first: Span | None) -> Diagn
 def unknown_name(name: Name, kinds: Collection[str], other: str | None) -> Diagnostic:
     """A name that is declared nowhere."""
     help_ = f"Is `{other}` meant?" if other else "Declare it, or import the file that does."
-    return _error("unknown-name", f"there is no {_kinds(kinds)} `{name.text}`", name.span, "unknown", help_)
+    return problem("unknown-name", f"there is no {_kinds(kinds)} `{name.text}`", name.span, "unknown", help_)
 
 
 def hidden_name(name: Name, full: str) -> Diagnostic:
     """A name whose first part means something else in an inner scope."""
-    return _error(
+    return problem(
         "hidden-name",
         f"`{name.text}` is looked up as `{full}`, and that does not exist",
         name.span,
@@ -193,14 +61,14 @@ def hidden_name(name: Name, full: str) -> Diagnostic:
 
 def not_imported(name: Name, full: str, file: str) -> Diagnostic:
     """A name that exists, in a file that is not visible."""
-    return _error(
+    return problem(
         "not-imported", f"`{full}` is declared in a file that is not imported", name.span, "not visible", f'Write `import "{file}";`.'
     )
 
 
 def wrong_kind(name: Name, full: str, kind: str, kinds: Collection[str]) -> Diagnostic:
     """A name of something else than what is wanted."""
-    return _error("wrong-kind", f"`{full}` is no {_kinds(kinds)}", name.span, f"this is a {kind}")
+    return problem("wrong-kind", f"`{full}` is no {_kinds(kinds)}", name.span, f"this is a {kind}")
 
 
 def _kinds(kinds: Collection[str]) -> str:
@@ -209,58 +77,58 @@ def _kinds(kinds: Collection[str]) -> str:
 
 def number_out_of_range(span: Span | None, number: int, limit: int) -> Diagnostic:
     """The number of a field that the wire cannot carry."""
-    return _error("number-range", f"no field has the number {number}", span, f"expected 1 to {limit}")
+    return problem("number-range", f"no field has the number {number}", span, f"expected 1 to {limit}")
 
 
 def number_of_protobuf(span: Span | None, number: int) -> Diagnostic:
     """A number from 19000 to 19999."""
-    return _error("number-range", f"{number} belongs to protobuf itself", span, "numbers from 19000 to 19999 are taken")
+    return problem("number-range", f"{number} belongs to protobuf itself", span, "numbers from 19000 to 19999 are taken")
 
 
 def repeated_number(span: Span | None, number: int, first: Name, full: str) -> Diagnostic:
     """Two fields of a message with one number."""
-    return _error("repeated-number", f"`{full}` has two fields with the number {number}", span, f"taken by `{first.text}`")
+    return problem("repeated-number", f"`{full}` has two fields with the number {number}", span, f"taken by `{first.text}`")
 
 
 def reserved_number(span: Span | None, number: int, full: str) -> Diagnostic:
     """A number that the message or enum reserves."""
-    return _error("reserved", f"`{full}` reserves the number {number}", span, "reserved")
+    return problem("reserved", f"`{full}` reserves the number {number}", span, "reserved")
 
 
 def reserved_name(name: Name, full: str) -> Diagnostic:
     """A name that the message or enum reserves."""
-    return _error("reserved", f"`{full}` reserves the name `{name.text}`", name.span, "reserved")
+    return problem("reserved", f"`{full}` reserves the name `{name.text}`", name.span, "reserved")
 
 
 def reserved_twice(name: Name) -> Diagnostic:
     """A reserved name that stands twice."""
-    return _error("reserved", f"the name `{name.text}` is reserved twice", name.span, "again")
+    return problem("reserved", f"the name `{name.text}` is reserved twice", name.span, "again")
 
 
 def extension_number(span: Span | None, number: int, full: str) -> Diagnostic:
     """A field in an extension range of its own message."""
-    return _error("extension-number", f"`{full}` leaves the number {number} to extensions", span, "in an extension range")
+    return problem("extension-number", f"`{full}` leaves the number {number} to extensions", span, "in an extension range")
 
 
 def empty_range(span: Span | None, first: int, last: int) -> Diagnostic:
     """A range whose end lies before its start."""
-    return _error("range", f"a range from {first} to {last} holds nothing", span, "ends before it starts")
+    return problem("range", f"a range from {first} to {last} holds nothing", span, "ends before it starts")
 
 
 def range_out_of_range(span: Span | None, low: int, high: int) -> Diagnostic:
     """A range with numbers that no field or value can have."""
-    return _error("range", "a range has impossible numbers", span, f"expected {low} to {high}")
+    return problem("range", "a range has impossible numbers", span, f"expected {low} to {high}")
 
 
 def overlap(span: Span | None, range_: Range, other: Range) -> Diagnostic:
     """Two ranges that share numbers."""
     message = f"{range_.first} to {range_.last} overlaps with {other.first} to {other.last}"
-    return _error("range", message, span, "partly taken by another range")
+    return problem("range", message, span, "partly taken by another range")
 
 
 def missing_label(name: Name) -> Diagnostic:
     """A proto2 field without a label."""
-    return _error(
+    return problem(
         "label",
         f"the field `{name.text}` has no label",
         name.span,
@@ -271,58 +139,58 @@ def missing_label(name: Name) -> Diagnostic:
 
 def required_in_proto3(span: Span | None) -> Diagnostic:
     """`required` in proto3."""
-    return _error("label", "proto3 has no required fields", span, "not in proto3", "Leave the label out, or write `optional`.")
+    return problem("label", "proto3 has no required fields", span, "not in proto3", "Leave the label out, or write `optional`.")
 
 
 def label_in_oneof(span: Span | None, label: str) -> Diagnostic:
     """A label on a field of a oneof."""
-    return _error("label", f"a field in a oneof cannot be {label}", span, "no label here")
+    return problem("label", f"a field in a oneof cannot be {label}", span, "no label here")
 
 
 def label_on_map(span: Span | None) -> Diagnostic:
     """A label on a map."""
-    return _error("label", "a map has no label", span, "no label here")
+    return problem("label", "a map has no label", span, "no label here")
 
 
 def map_in_oneof(span: Span | None) -> Diagnostic:
     """A map in a oneof."""
-    return _error("map", "a oneof cannot hold a map", span, "not here", "Put the map in a message of its own.")
+    return problem("map", "a oneof cannot hold a map", span, "not here", "Put the map in a message of its own.")
 
 
 def map_extension(span: Span | None) -> Diagnostic:
     """An extension that is a map."""
-    return _error("map", "an extension cannot be a map", span, "not here", "Put the map in a message of its own.")
+    return problem("map", "an extension cannot be a map", span, "not here", "Put the map in a message of its own.")
 
 
 def map_key(key: Name) -> Diagnostic:
     """Keys of a map that cannot be compared by value."""
     text = key.text.removeprefix(".")
-    return _error("map", f"a map cannot have `{text}` as keys", key.span, "expected an integer type, `bool` or `string`")
+    return problem("map", f"a map cannot have `{text}` as keys", key.span, "expected an integer type, `bool` or `string`")
 
 
 def map_enum(value: Name, enum: str) -> Diagnostic:
     """An enum as the value of a map that has no 0 to start from."""
-    return _error("map", f"the first value of the enum `{enum}` is not 0", value.span, "a map needs 0 as a default")
+    return problem("map", f"the first value of the enum `{enum}` is not 0", value.span, "a map needs 0 as a default")
 
 
 def empty_oneof(name: Name) -> Diagnostic:
     """A oneof without fields."""
-    return _error("oneof", f"the oneof `{name.text}` has no fields", name.span, "needs one at least")
+    return problem("oneof", f"the oneof `{name.text}` has no fields", name.span, "needs one at least")
 
 
 def group_in_proto3(name: Name) -> Diagnostic:
     """A group in proto3."""
-    return _error("group", "proto3 has no groups", name.span, "not in proto3", "Declare a message and a field of its type.")
+    return problem("group", "proto3 has no groups", name.span, "not in proto3", "Declare a message and a field of its type.")
 
 
 def lower_case_group(name: Name) -> Diagnostic:
     """A group whose name does not start with a capital letter."""
-    return _error("group", "the name of a group starts with a capital letter", name.span, "it names a message too")
+    return problem("group", "the name of a group starts with a capital letter", name.span, "it names a message too")
 
 
 def closed_enum(name: Name, enum: str) -> Diagnostic:
     """A closed enum in a message of proto3."""
-    return _error(
+    return problem(
         "closed-enum",
         f"a proto3 message cannot hold the closed enum `{enum}`",
         name.span,
@@ -334,57 +202,57 @@ def closed_enum(name: Name, enum: str) -> Diagnostic:
 def same_json_name(name: Name, first: Name, json: str) -> Diagnostic:
     """Two fields of a message with one name in JSON."""
     message = f"`{name.text}` and `{first.text}` are both `{json[:60]}` in JSON"
-    return _error("json-name", message, name.span, "JSON cannot tell them apart", "Choose another name with `json_name`.")
+    return problem("json-name", message, name.span, "JSON cannot tell them apart", "Choose another name with `json_name`.")
 
 
 def json_name_of_extension(span: Span | None) -> Diagnostic:
     """An extension that chooses a name in JSON."""
-    return _error("json-name", "an extension has no other name in JSON", span, "not here")
+    return problem("json-name", "an extension has no other name in JSON", span, "not here")
 
 
 def cannot_pack(name: Name) -> Diagnostic:
     """`packed` on a field that is not repeated numbers."""
-    return _error("packed", f"`{name.text}` cannot be packed", name.span, "only repeated numbers, bools and enums can")
+    return problem("packed", f"`{name.text}` cannot be packed", name.span, "only repeated numbers, bools and enums can")
 
 
 def default_in_proto3(span: Span | None) -> Diagnostic:
     """A default in proto3."""
-    return _error("default", "proto3 has no defaults", span, "not in proto3")
+    return problem("default", "proto3 has no defaults", span, "not in proto3")
 
 
 def default_of_many(span: Span | None) -> Diagnostic:
     """A default of a repeated field or a map."""
-    return _error("default", "a repeated field has no default", span, "it is empty where it is not set")
+    return problem("default", "a repeated field has no default", span, "it is empty where it is not set")
 
 
 def default_of_message(span: Span | None) -> Diagnostic:
     """A default of a message."""
-    return _error("default", "a message has no default", span, "its fields have theirs")
+    return problem("default", "a message has no default", span, "its fields have theirs")
 
 
 def wrong_default(span: Span | None, wanted: str, value: str) -> Diagnostic:
     """A default that its type cannot hold."""
-    return _error("default", f"{value[:60]} is no default of this type", span, f"expected {wanted}")
+    return problem("default", f"{value[:60]} is no default of this type", span, f"expected {wanted}")
 
 
 def empty_enum(name: Name) -> Diagnostic:
     """An enum without values."""
-    return _error("enum", f"the enum `{name.text}` has no values", name.span, "needs one at least")
+    return problem("enum", f"the enum `{name.text}` has no values", name.span, "needs one at least")
 
 
 def first_not_zero(span: Span | None, number: int) -> Diagnostic:
     """An open enum that does not start with 0."""
-    return _error("enum", f"the first value of an open enum is 0, not {number}", span, "must be 0")
+    return problem("enum", f"the first value of an open enum is 0, not {number}", span, "must be 0")
 
 
 def value_out_of_range(span: Span | None, number: int) -> Diagnostic:
     """A value that needs more than 32 bits."""
-    return _error("enum", f"{number} does not fit into 32 bits", span, "expected -2147483648 to 2147483647")
+    return problem("enum", f"{number} does not fit into 32 bits", span, "expected -2147483648 to 2147483647")
 
 
 def alias(span: Span | None, number: int, first: Name) -> Diagnostic:
     """Two values of an enum with one number."""
-    return _error(
+    return problem(
         "enum",
         f"two values have the number {number}",
         span,
@@ -395,67 +263,67 @@ def alias(span: Span | None, number: int, first: Name) -> Diagnostic:
 
 def idle_alias_option(name: Name) -> Diagnostic:
     """`allow_alias` where nothing is an alias."""
-    return _error("enum", f"`allow_alias` has no effect in `{name.text}`", name.span, "has no aliases", "Remove the option.")
+    return problem("enum", f"`allow_alias` has no effect in `{name.text}`", name.span, "has no aliases", "Remove the option.")
 
 
 def same_stripped_name(name: Name, first: Name) -> Diagnostic:
     """Two values that differ in the enum's prefix or in case alone."""
     message = f"`{name.text}` and `{first.text}` are one name where the enum's own and case are left out"
-    return _error("enum", message, name.span, "languages that leave them out cannot tell them apart")
+    return problem("enum", message, name.span, "languages that leave them out cannot tell them apart")
 
 
 def empty_extend(span: Span) -> Diagnostic:
     """An extend block without fields."""
-    return _error("extend", "an extend block has no fields", span, "needs one at least")
+    return problem("extend", "an extend block has no fields", span, "needs one at least")
 
 
 def no_extension_number(span: Span | None, number: int, full: str) -> Diagnostic:
     """An extension whose number the message does not leave to extensions."""
-    return _error("extension-number", f"`{full}` does not leave the number {number} to extensions", span, "in none of its ranges")
+    return problem("extension-number", f"`{full}` does not leave the number {number} to extensions", span, "in none of its ranges")
 
 
 def repeated_extension(span: Span | None, number: int, full: str, first: str) -> Diagnostic:
     """Two extensions of a message with one number."""
-    return _error("repeated-number", f"`{full}` has two extensions with the number {number}", span, f"taken by `{first}`")
+    return problem("repeated-number", f"`{full}` has two extensions with the number {number}", span, f"taken by `{first}`")
 
 
 def required_extension(span: Span | None) -> Diagnostic:
     """An extension that is required."""
-    return _error("label", "an extension cannot be required", span, "write `optional`")
+    return problem("label", "an extension cannot be required", span, "write `optional`")
 
 
 def extensions_in_proto3(span: Span | None) -> Diagnostic:
     """An extension range in proto3."""
-    return _error("extension-range", "proto3 has no extension ranges", span, "not in proto3")
+    return problem("extension-range", "proto3 has no extension ranges", span, "not in proto3")
 
 
 def extension_in_proto3(extendee: Name) -> Diagnostic:
     """A proto3 extension of something else than options."""
-    return _error("extension-range", "proto3 extends options and nothing else", extendee.span, "not an options message")
+    return problem("extension-range", "proto3 extends options and nothing else", extendee.span, "not an options message")
 
 
 def message_set_field(name: Name) -> Diagnostic:
     """A field in a MessageSet."""
-    return _error("message-set", f"`{name.text}` is a message set and has fields", name.span, "takes extensions alone")
+    return problem("message-set", f"`{name.text}` is a message set and has fields", name.span, "takes extensions alone")
 
 
 def message_set_item(name: Name) -> Diagnostic:
     """An extension of a MessageSet that is no optional message."""
-    return _error("message-set", f"`{name.text}` cannot extend a message set", name.span, "expected an optional message")
+    return problem("message-set", f"`{name.text}` cannot extend a message set", name.span, "expected an optional message")
 
 
 def unknown_option(span: Span | None, name: str, holder: str) -> Diagnostic:
     """An option that does not exist where it stands."""
     shown = name.replace("(.", "(")
     help_ = "Import the file that declares it." if "(" in name else "An option of your own is written in parentheses."
-    return _error("option", f"`{shown}` is no option here", span, f"unknown to {holder}", help_)
+    return problem("option", f"`{shown}` is no option here", span, f"unknown to {holder}", help_)
 
 
 def repeated_option(span: Span | None, name: str) -> Diagnostic:
     """An option that is set twice."""
-    return _error("option", f"the option `{name}` is set twice", span, "again")
+    return problem("option", f"the option `{name}` is set twice", span, "again")
 
 
 def wrong_option(span: Span | None, name: str, wanted: str, value: str) -> Diagnostic:
     """The value of an option that its type cannot hold."""
-    return _error("option", f"`{name.replace('(.', '(')}` cannot be {value[:60]}", span, f"expected {wanted}")
+    return problem("option", f"`{name.replace('(.', '(')}` cannot be {value[:60]}", span, f"expected {wanted}")

@@ -17,7 +17,7 @@ from rosetta_jit.model.layout import UNKNOWN
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from rosetta_jit.generate.c.functions import Printed
     from rosetta_jit.generate.c.lanes import Dialect
@@ -26,6 +26,19 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
 
     Print = Callable[[Kernel, Lanes, Role], Printed]
+
+
+def _own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
+    structs = Structs(unit.name, Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS}), {})
+    named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in unit.layout.lanes])
+    elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
+    return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]
+
+
+def named_parts(unit: Unit, reserved: frozenset[str]) -> Callable[[Sequence[int]], Lanes]:
+    """The lanes of a unit, for kernels with such strides, named otherwise than what is reserved."""
+    own = [replace(each, identifier=f"{each.identifier}_lane") if each.identifier in reserved else each for each in _own_lanes(unit)[1]]
+    return lambda strides: Lanes(unit.name, (*own, *hidden_lanes(strides[len(own) :])), len(own))
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +67,7 @@ def as_c(unit: Unit, print_function: Print) -> dict[str, str]:
 
 def parts_of(unit: Unit, print_function: Print, dialect: Dialect = "c") -> Parts:
     """The structs, the lanes and the printed kernels of a unit."""
-    layout = unit.layout
-    structs = Structs(unit.name, Namespace(RESERVED | {f"{unit.name}_{word}" for word in WORDS}), {})
-    named = named_lanes([lane.name.replace(UNKNOWN, "unknown") for lane in layout.lanes])
-    elements = elements_of(layout, structs, tuple(name for name, _ in named))
-    own = [Lane(*names, lane.stride, element) for names, lane, element in zip(named, layout.lanes, elements, strict=True)]
+    structs, own = _own_lanes(unit)
     lanes = Lanes(unit.name, tuple(own), len(own), dialect)
     printed: dict[Role, Printed] = {
         role: print_function(kernel, replace(lanes, all=(*own, *hidden_lanes(kernel.strides[len(own) :]))), role)

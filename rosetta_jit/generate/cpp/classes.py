@@ -24,14 +24,14 @@ def names_of(unit: Unit) -> dict[str, str]:
     """The classes and enums of a unit by their names in the schema."""
     scope = Namespace(RESERVED | NOT_CLASSES | {unit.name})
     found: dict[str, str] = {}
-    for name in _reached(unit):
+    for name in reached_types(unit):
         simple = re.split(r"[./:]+", name)[-1]
         whole = "_".join(re.split(r"[./:]+", name))
         found[name] = scope.identifier(simple if simple not in scope.identifiers else whole)
     return found
 
 
-def _reached(unit: Unit) -> dict[str, None]:
+def reached_types(unit: Unit) -> dict[str, None]:
     """The declared types that the message contains, each behind those that it contains itself."""
     found: dict[str, None] = {}
     pending: list[tuple[str, bool]] = [(unit.type, False)]
@@ -90,7 +90,8 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: fr
     lines = [comment(struct.name), f"struct {identifier} {{"]
     for field, member in zip(struct.fields, member_names(struct), strict=True):
         kind = _type(field.type, names, recursive)
-        zero = "{}" if isinstance(field.type, Bool | Int | Float | Ref) and not kind.startswith("std::unique") else ""
+        is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
+        zero = "{}" if is_bare and not kind.startswith("std::unique") else ""
         said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
         lines.append(f"    {kind} {member}{zero};{f' {comment(said)}' if said else ''}")
     if struct.option("unknown"):

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import threading
+from functools import cache
 from importlib import import_module
 from time import time_ns
 from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
@@ -21,6 +25,16 @@ AT_ONCE = 64
 
 ENCAPSULATION_BYTES = 4
 
+ON_ONE_INTERFACE = """<CycloneDDS><Domain>
+<General><Interfaces><NetworkInterface name={name} multicast="default"/></Interfaces></General>
+<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>
+<Peers><Peer address="localhost"/></Peers></Discovery>
+</Domain></CycloneDDS>"""
+"""Participants of one machine find each other without multicast, which loopback often lacks."""
+
+LOOK_NS = 100_000_000
+"""How often the thread looks whether its source was closed."""
+
 
 def _names(address: Address, options: Mapping[str, Any]) -> tuple[str, str]:
     """The topic and the type as DDS has them."""
@@ -33,15 +47,41 @@ def _names(address: Address, options: Mapping[str, Any]) -> tuple[str, str]:
     return address.rest, options["type"]
 
 
+class Domains:
+    """Cyclone's settings of the domains of a process: one object a domain, as long as the process lives."""
+
+    def __init__(self) -> None:
+        self._open: dict[int, Any] = {}
+        self._lock = threading.Lock()
+
+    def enter(self, make: Callable[[int, str], Any], options: Mapping[str, Any]) -> Any:
+        """Settings for the interface that options say; who opens a domain first says it. None where Cyclone's own are meant."""
+        name, number = options["interface"] or "lo", options["domain"]
+        if name == "auto" or (not options["interface"] and os.environ.get("CYCLONEDDS_URI")):
+            return None
+        with self._lock:
+            if number not in self._open:
+                self._open[number] = make(number, ON_ONE_INTERFACE.format(name=quoteattr(name)))
+            return self._open[number]
+
+
+def domains() -> Domains:
+    """Those of this process."""
+    return _domains_of(os.getpid())
+
+
+@cache
+def _domains_of(_: int) -> Domains:
+    return Domains()
+
+
 class Endpoint:
     """A participant with one topic whose type is known by its name alone."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        core, domain, idl, types, topic = map(
-            import_module, ("cyclonedds.core", "cyclonedds.domain", "cyclonedds.idl", "cyclonedds.idl.types", "cyclonedds.topic")
-        )
+        core, domain, idl, topic = map(import_module, ("cyclonedds.core", "cyclonedds.domain", "cyclonedds.idl", "cyclonedds.topic"))
         name, self.type = _names(address, options)
-        raw: Any = options["struct"] or idl.make_idl_struct("Raw", self.type, {"data": types.sequence[types.uint8]})
+        raw: Any = options["struct"] or idl.make_idl_struct("Raw", self.type, {})  # Cyclone checks samples against it: any is one
         policy, depth = core.Policy, options["keep"]
         second = 10**9
         self.qos: Any = core.Qos(
@@ -50,6 +90,7 @@ class Endpoint:
             policy.Durability.TransientLocal if options["transient"] else policy.Durability.Volatile,
         )
         try:
+            self._domain = domains().enter(domain.Domain, options)
             self.participant: Any = domain.DomainParticipant(options["domain"])
             self.topic: Any = topic.Topic(self.participant, name, raw, qos=self.qos)
         except core.DDSException as error:
@@ -57,22 +98,10 @@ class Endpoint:
 
 
 def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
-    """Receive the samples of a topic; with `ros2-dds`, of a topic of ROS 2."""
-    core, sub, raw = map(import_module, ("cyclonedds.core", "cyclonedds.sub", "cyclonedds._clayer"))
+    """Receive the samples of a topic, in a thread of its own; with `ros2-dds`, of a topic of ROS 2."""
+    core, sub = map(import_module, ("cyclonedds.core", "cyclonedds.sub"))
     endpoint = Endpoint(address, options)
-    type_ = plain(endpoint.type)
-    most, mask = options["max_message"], core.SampleState.Any | core.ViewState.Any | core.InstanceState.Any
     seen = [0]
-
-    def take(reader: Any) -> None:
-        while samples := _taken(raw.ddspy_take(reader._ref, mask, AT_ONCE)):  # noqa: SLF001 - it has no public way to the bytes
-            for data, info in samples:
-                if not info.valid_data:
-                    continue
-                if len(data) > most:
-                    source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
-                    continue
-                source.arrived(Message(data, address.rest, type_, time_ns(), info.source_timestamp, None))
 
     def lost(_: Any, status: Any) -> None:
         source.lose("lost on the way", max(status.total_count - seen[0], 0))
@@ -85,20 +114,40 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
         del status
         source.lose("a writer whose quality of service does not fit", 0)
 
-    calls = {
-        "on_data_available": take,
-        "on_sample_lost": lost,
-        "on_subscription_matched": matched,
-        "on_requested_incompatible_qos": refused,
-    }
-    listener = _listener(core, calls)
-    reader = sub.DataReader(endpoint.participant, endpoint.topic, qos=endpoint.qos, listener=listener)
+    calls = {"on_sample_lost": lost, "on_subscription_matched": matched, "on_requested_incompatible_qos": refused}
+    reader = sub.DataReader(endpoint.participant, endpoint.topic, qos=endpoint.qos, listener=core.Listener(**calls))
+    ends = threading.Event()
+    thread = threading.Thread(target=_read, args=(reader, endpoint, address.rest, source, options, ends), name=str(address), daemon=True)
+    thread.start()
 
     def close() -> None:
-        reader.set_listener(None)
-        endpoint.participant = endpoint.topic = None
+        ends.set()
+        if thread is not threading.current_thread():
+            thread.join()
 
     source.opened(close)
+
+
+def _read(reader: Any, endpoint: Endpoint, channel: str, source: Source, options: Mapping[str, Any], ends: threading.Event) -> None:
+    """Take samples; not in Cyclone's own thread, which must not wait for what a callback does."""
+    core, raw = map(import_module, ("cyclonedds.core", "cyclonedds._clayer"))
+    most, type_ = options["max_message"], plain(endpoint.type)
+    mask = core.SampleState.Any | core.ViewState.Any | core.InstanceState.Any
+    waiting = core.WaitSet(endpoint.participant)
+    waiting.attach(core.ReadCondition(reader, mask))
+    while not ends.is_set():
+        waiting.wait(LOOK_NS)
+        while not ends.is_set() and (samples := _taken(raw.ddspy_take(reader._ref, mask, AT_ONCE))):  # noqa: SLF001 - no public way to bytes
+            for data, info in samples:
+                if not info.valid_data:
+                    continue
+                if len(data) > most:
+                    source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+                else:
+                    source.arrived(Message(data, channel, type_, time_ns(), info.source_timestamp, None))
+    reader.set_listener(None)
+    source.connections = 0
+    endpoint.participant = endpoint.topic = None
 
 
 def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
@@ -113,12 +162,13 @@ class DdsSink(Sink):
         super().__init__(str(address), lost)
         core, pub, self._raw = map(import_module, ("cyclonedds.core", "cyclonedds.pub", "cyclonedds._clayer"))
         self._most: int = options["max_message"]
+        self._has_struct = options["struct"] is not None
         self._endpoint: Endpoint | None = Endpoint(address, options)
 
         def matched(_: Any, status: Any) -> None:
             self.connections = status.current_count
 
-        listener = _listener(core, {"on_publication_matched": matched})
+        listener = core.Listener(on_publication_matched=matched)
         self._writer: Any = pub.DataWriter(self._endpoint.participant, self._endpoint.topic, qos=self._endpoint.qos, listener=listener)
 
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
@@ -129,6 +179,10 @@ class DdsSink(Sink):
             raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
         if len(data) < ENCAPSULATION_BYTES:
             raise TransportError("protocol", self.address, "CDR begins with four bytes that say how it is written")
+        if not data[1] & 1 and not self._has_struct:
+            raise TransportError(
+                "protocol", self.address, "big-endian CDR takes `struct=`: Cyclone DDS swaps it, and has to know the fields"
+            )
         padded = bytes(data).ljust(-(-len(data) // 4) * 4, b"\0")
         made = time_ns() if time is None else time
         if self._raw.ddspy_write_ts(self._writer._ref, padded, made) < 0:  # noqa: SLF001 - it has no public way for bytes
@@ -141,10 +195,6 @@ class DdsSink(Sink):
     def close(self) -> None:
         self._writer = self._endpoint = None
         self.connections = 0
-
-
-def _listener(core: Any, calls: Mapping[str, Callable[..., object]]) -> Any:
-    return core.Listener(**calls)
 
 
 def _taken(found: list[Any] | int) -> list[Any]:

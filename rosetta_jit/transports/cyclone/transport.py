@@ -21,6 +21,9 @@ TRANSPORTS = (
                 "object", None, "cyclonedds' class of the type, for peers that compare the structure of types, not only the name"
             ),
             "domain": Option("number", 0, "of DDS; ROS_DOMAIN_ID"),
+            "interface": Option(
+                "text", "", "of the network, by name; by default what CYCLONEDDS_URI says, else lo; `auto`: Cyclone's choice"
+            ),
             "reliable": Option(
                 "flag", True, "what is lost on the way is sent again; a reliable reader takes nothing of a writer that is not"
             ),

@@ -23,7 +23,7 @@ MAX_NAME_BYTES = 255
 class Service:
     """A node, and the two services of a name."""
 
-    def __init__(self, address: Address) -> None:
+    def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
         if not address.rest or not address.rest.isprintable() or len(address.rest.encode()) > MAX_NAME_BYTES:
             raise address.wrong(f"a name of at most {MAX_NAME_BYTES} bytes", "iceoryx:camera/left")
         self.iox: Any = import_module("iceoryx2")
@@ -33,7 +33,10 @@ class Service:
                 self.iox.NodeBuilder.new().signal_handling_mode(self.iox.SignalHandlingMode.Disabled).create(self.iox.ServiceType.Ipc)
             )
             name = self.iox.ServiceName.new(address.rest)
-            self.messages: Any = self.node.service_builder(name).publish_subscribe(self.iox.Slice[ctypes.c_uint8]).open_or_create()
+            builder = self.node.service_builder(name).publish_subscribe(self.iox.Slice[ctypes.c_uint8])
+            if options["buffer"]:
+                builder = builder.subscriber_max_buffer_size(options["buffer"])
+            self.messages: Any = builder.open_or_create()
             self.event: Any = self.node.service_builder(name).event().open_or_create()
         except Exception as error:
             if not type(error).__module__.startswith(("iceoryx2", "_iceoryx2", "builtins")):
@@ -45,16 +48,17 @@ class Service:
 
 def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
     """Receive what is published to a service, in a thread of its own. The data of a message are in shared memory."""
-    service, ends = Service(address), threading.Event()
+    service, ends = Service(address, options), threading.Event()
     subscriber = service.messages.subscriber_builder().create()
     listener = service.event.listener_builder().create()
     pause = service.iox.Duration.from_secs_f64(max(options["poll"], 0.001))
     channel, most = address.rest, options["max_message"]
+    frombuffer = import_module("numpy").frombuffer
 
     def run() -> None:
         while not ends.is_set():
             while (sample := subscriber.receive()) is not None:
-                data = sample.payload().as_memory_view()
+                data = frombuffer(sample.payload().as_memory_view(), "u1").data  # else its elements have no values in Python
                 if len(data) > most:
                     source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
                 else:
@@ -88,7 +92,7 @@ class IceoryxSink(Sink):
     def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
         super().__init__(str(address), lost)
         self._most: int = options["max_message"]
-        self._service: Service | None = Service(address)
+        self._service: Service | None = Service(address, options)
         iox = self._service.iox
         builder = self._service.messages.publisher_builder().initial_max_slice_len(max(options["first"], 1))
         self._publisher: Any = builder.allocation_strategy(iox.AllocationStrategy.PowerOfTwo).create()

@@ -29,6 +29,9 @@ HEARTBEAT_S = 3.0
 """How often a node looks whether the master still knows it."""
 
 SOON_S = 0.5
+MAX_TASKS = 10_000
+"""Connections to be made; others say to whom."""
+
 HEADER_S = 10.0
 NAME = re.compile(r"/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*")
 _NUMBERS = count(1)
@@ -105,7 +108,8 @@ class Node:
 
     def soon(self, task: Callable[[], object]) -> None:
         """Do something that asks others, in the node's own thread."""
-        self._tasks.append(task)
+        if len(self._tasks) < MAX_TASKS:
+            self._tasks.append(task)
         self._nudge.set()
 
     def close(self) -> None:

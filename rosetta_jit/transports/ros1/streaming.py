@@ -9,6 +9,7 @@ from urllib.parse import urlsplit
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.connecting import MAX_CONNECTIONS
 from rosetta_jit.transports.feeding import Between
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse
@@ -147,7 +148,8 @@ class Subscription:
         }
         publisher = fields.get("callerid", "")
         source.reconnects += publisher in self._seen
-        self._seen.add(publisher)
+        if len(self._seen) < MAX_CONNECTIONS:
+            self._seen.add(publisher)
         source.connections = len(self._streams)
         yield from messages(lambda data: source.arrived(Message(data, topic, type_, time_ns(), None, told)), self._most)
 

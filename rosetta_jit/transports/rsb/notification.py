@@ -11,6 +11,7 @@ The number of event_id is 100 + 8, the version of the format, which is that of R
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -65,16 +66,23 @@ class NoEventError(ValueError):
 
 def encode(event: Event) -> tuple[bytes, bytes | bytearray | memoryview, bytes]:
     """The parts of a notification, with the payload as it is. Fields stand in the order of their numbers, as other peers write them."""
-    meta = b"\x10" + _varint(event.create_time) + b"\x18" + _varint(event.send_time)
-    for name, number in event.user_times.items():
+    event_id, scope, schema, data, create, send, method, causes, infos, times = event
+    meta = b"\x10" + _varint(create) + b"\x18" + _varint(send)
+    for name, number in times.items():
         meta += _chunk(b"\x32", _chunk(b"\x0a", name.encode()) + b"\x10" + _varint(number))
-    for name, text in event.user_infos.items():
+    for name, text in infos.items():
         meta += _chunk(b"\x3a", _chunk(b"\x0a", name.encode()) + _chunk(b"\x12", text.encode()))
-    behind = b"".join(_chunk(b"\x6a", _id(each)) for each in event.causes)
-    behind += _chunk(b"\x72", event.method.encode()) if event.method else b""
-    behind += _chunk(b"\x7a", meta) + _chunk(b"\xe2\x06", _id(event.id))
-    before = _chunk(b"\x32", event.scope.encode()) + _chunk(b"\x3a", event.schema.encode()) + b"\x4a" + _varint(len(event.data))
-    return before, event.data, behind
+    behind = b"".join([_chunk(b"\x6a", _id(each)) for each in causes]) if causes else b""
+    if method:
+        behind += _chunk(b"\x72", method.encode())
+    behind += _chunk(b"\x7a", meta) + _chunk(b"\xe2\x06", _id(event_id))
+    return _before(scope, schema) + _varint(len(data)), data, behind
+
+
+@lru_cache(maxsize=1024)
+def _before(scope: str, schema: str) -> bytes:
+    """What stands before the length of the payload."""
+    return _chunk(b"\x32", scope.encode()) + _chunk(b"\x3a", schema.encode()) + b"\x4a"
 
 
 def scope_in(message: memoryview) -> str:
@@ -103,22 +111,33 @@ def decode(message: memoryview) -> Event:
     event_id: EventId | None = None
     causes: list[EventId] = []
     meta: _Meta = _NO_META
-    for number, found in _fields(message):
-        match number:
+    at, end = 0, len(message)
+    while at < end:
+        tag, at = _read_varint(message, at)
+        if tag & 7 != 2:
+            at = _skipped(message, at, tag & 7)
+            continue
+        size, at = _read_varint(message, at)
+        stop = at + size
+        if stop > end:
+            raise NoEventError("a field beyond the end of the event")
+        found = message[at:stop]
+        at = stop
+        match tag >> 3:
             case 6:
-                scope = _text(found)
+                scope = str(found, "utf-8", "replace")
             case 7:
-                schema = _text(found)
+                schema = str(found, "utf-8", "replace")
             case 9:
-                data = _bytes(found)
+                data = found
             case 13:
-                causes.append(_id_of(_bytes(found)))
+                causes.append(_id_of(found))
             case 14:
-                method = _text(found)
+                method = str(found, "utf-8", "replace")
             case 15:
-                meta = _meta(_bytes(found))
+                meta = _meta(found)
             case 108:
-                event_id = _id_of(_bytes(found))
+                event_id = _id_of(found)
             case _:
                 pass
     if event_id is None or len(causes) > MAX_ENTRIES:
@@ -126,11 +145,28 @@ def decode(message: memoryview) -> Event:
     return Event(event_id, scope, schema, data, meta[0], meta[1], method, causes, meta[3], meta[2])
 
 
+def _skipped(message: memoryview, at: int, kind: int) -> int:
+    """The place behind a field that is not bytes."""
+    if kind == 0:
+        return _read_varint(message, at)[1]
+    if kind not in _WIDTH:
+        raise NoEventError(f"wire type {kind}")
+    if at + _WIDTH[kind] > len(message):
+        raise NoEventError("a field beyond the end of the event")
+    return at + _WIDTH[kind]
+
+
 _Meta = tuple[int, int, dict[str, int], dict[str, str]]
 _NO_META: _Meta = (0, 0, {}, {})
 
 
 def _meta(message: memoryview) -> _Meta:
+    if len(message) == 18 and message[0] == 0x10 and message[9] == 0x18:  # both times alone, as nearly always
+        create, at = _read_varint(message, 1)
+        if at == 9:
+            send, at = _read_varint(message, 10)
+            if at == 18:
+                return create, send, {}, {}
     create = send = 0
     times: dict[str, int] = {}
     infos: dict[str, str] = {}
@@ -152,6 +188,10 @@ def _meta(message: memoryview) -> _Meta:
 
 
 def _id_of(message: memoryview) -> EventId:
+    if len(message) > 19 and message[0] == 0x0A and message[1] == ID_BYTES and message[18] == 0x10:
+        number, at = _read_varint(message, 19)
+        if at == len(message):
+            return EventId(bytes(message[2:18]), number & 0xFFFFFFFF)
     entry: dict[int, Any] = dict(_fields(message))
     sender = bytes(_bytes(entry.get(1, message[:0])))
     if len(sender) != ID_BYTES:
@@ -182,20 +222,38 @@ def _fields(message: memoryview) -> Iterator[tuple[int, memoryview | int]]:
 
 
 def _read_varint(message: memoryview, at: int) -> tuple[int, int]:
-    number = shift = 0
-    while shift < 70:
-        if at >= len(message):
-            raise NoEventError("the event ends within a number")
-        byte = message[at]
-        at += 1
+    """A number, and where it ends."""
+    if at >= len(message):
+        raise NoEventError("the event ends within a number")
+    number = message[at]
+    if number < 128:
+        return number, at + 1
+    raw = int.from_bytes(message[at : at + 8], "little")
+    if raw & _TOPS == _TOPS_OF_8:  # eight bytes, as times have
+        raw = raw & 0x007F007F007F007F | (raw & 0x7F007F007F007F00) >> 1
+        raw = raw & 0x00003FFF00003FFF | (raw & 0x3FFF00003FFF0000) >> 2
+        return raw & 0x0FFFFFFF | (raw & 0x0FFFFFFF00000000) >> 4, at + 8
+    number, shift = number & 127, 7
+    for place in range(at + 1, min(at + 10, len(message))):
+        byte = message[place]
         number |= (byte & 127) << shift
         if byte < 128:
-            return number, at
+            return number, place + 1
         shift += 7
-    raise NoEventError("a number of more than ten bytes")
+    raise NoEventError("the event ends within a number" if len(message) < at + 10 else "a number of more than ten bytes")
+
+
+_TOPS, _TOPS_OF_8 = 0x8080808080808080, 0x0080808080808080
 
 
 def _varint(number: int) -> bytes:
+    if 0 <= number < 128:
+        return _BYTES[number]
+    if 1 << 49 <= number < 1 << 56:  # eight bytes, as times have
+        number = number & 0x0FFFFFFF | (number & 0x00FFFFFFF0000000) << 4
+        number = number & 0x00003FFF00003FFF | (number & 0x0FFFC0000FFFC000) << 2
+        number = number & 0x007F007F007F007F | (number & 0x3F803F803F803F80) << 1
+        return (number | _TOPS_OF_8).to_bytes(8, "little")
     number &= 0xFFFFFFFFFFFFFFFF  # negative ones are those of 64 bits
     out = bytearray()
     while number > 127:
@@ -203,6 +261,9 @@ def _varint(number: int) -> bytes:
         number >>= 7
     out.append(number)
     return bytes(out)
+
+
+_BYTES = [bytes([each]) for each in range(128)]
 
 
 def _chunk(tag: bytes, data: bytes) -> bytes:

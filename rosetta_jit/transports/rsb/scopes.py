@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -12,6 +13,7 @@ SCOPE = re.compile(r"/(?:[-_a-zA-Z0-9]+/)*(?:[-_a-zA-Z0-9]+)?")
 MAX_CHARS = 1000
 
 
+@lru_cache(maxsize=1024)
 def normal(scope: str) -> str | None:
     """A scope with its last slash; None where it is none."""
     if len(scope) > MAX_CHARS or not SCOPE.fullmatch(scope):
@@ -19,6 +21,7 @@ def normal(scope: str) -> str | None:
     return scope if scope.endswith("/") else f"{scope}/"
 
 
+@lru_cache(maxsize=1024)
 def above(scope: str) -> list[str]:
     """A scope in its normal form and all that it lies in, the root last."""
     found = [scope]

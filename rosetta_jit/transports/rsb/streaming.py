@@ -72,6 +72,10 @@ class Informer:
         TransportError
             It would be one that ends other peers: without a wire schema, outside the scope, or with user infos beyond ASCII.
         """
+        now, event_id = time_ns() // 1000, EventId(self._participant, next(self._number) & 0xFFFFFFFF)
+        made = now if time is None else time // 1000
+        if attributes is None and self._schema:
+            return Event(event_id, self.scope, self._schema, data, made, now)
         said = attributes or {}
         schema = str(said.get("type") or self._schema)
         if not schema or not schema.isascii():
@@ -85,9 +89,7 @@ class Informer:
         if not all(each.isascii() for each in (*infos, *infos.values(), *times, method)):
             raise TransportError("refused", address, "methods, user infos and keys are ASCII: rsb-python closes the connection for others")
         causes: Sequence[EventId] = [EventId(bytes(one), int(two)) for one, two in said.get("causes", ())]
-        now = time_ns() // 1000
-        event_id = EventId(self._participant, next(self._number) & 0xFFFFFFFF)
-        return Event(event_id, scope, schema, data, now if time is None else time // 1000, now, method, causes, infos, times)
+        return Event(event_id, scope, schema, data, made, now, method, causes, infos, times)
 
 
 class RsbSink(Sink):

@@ -83,7 +83,7 @@ class Output:
 
             def is_done() -> bool:
                 gone = self.stream is None or self.stream.closed
-                return gone or (self._bytes <= most and (not empty or (self._is_free and not self._waiting)))
+                return gone or (self._bytes <= most and not (empty and (self._waiting or self._unanswered)))
 
             done = self._changed.wait_for(is_done, seconds)
         return done and (stream is None or stream.wait(seconds, empty=empty))

@@ -33,6 +33,9 @@ HEARTBEAT_S = 3.0
 """How often a port looks whether the name server still knows it."""
 
 MAX_OUTPUTS = 256
+MAX_TASKS = 100
+"""Connections that others ask for and that are not made yet."""
+
 CONNECT_S = 2.0
 
 _NUMBERS = count(1)
@@ -156,7 +159,10 @@ class Port:
                 output = self.outputs.get(other)
                 answer(f"(from {quoted(self.name)}) (to {quoted(other)}) (carrier {output.carrier})" if output else "")
             case ["[add]", other, *carrier]:
-                self._soon(lambda: answer(self._add(other, *carrier[:1])))
+                if len(self._tasks) < MAX_TASKS:
+                    self._soon(lambda: answer(self._add(other, *carrier[:1])))
+                else:
+                    answer(f"-1 {quoted('This port is busy')}")
             case ["[del]", other]:
                 answer(f"0 {quoted(self.disconnect(other))}" if self._knows(other) else f"-1 {quoted(self.disconnect(other))}")
             case _:

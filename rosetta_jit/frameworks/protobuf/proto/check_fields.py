@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.constants import WrongValueError, constant, enum_number, spelled
 from rosetta_jit.frameworks.protobuf.proto.declarations import fields_in
 from rosetta_jit.frameworks.protobuf.proto.options import flag
@@ -81,7 +82,7 @@ def _label(field: Field, version: Version) -> Iterator[Diagnostic]:
 
 def _group(field: Field, version: Version, declared: Declarations) -> Iterator[Diagnostic]:
     if isinstance(field.type, Name) and field.type.text and field.type.text[1:] not in declared.messages:
-        yield say.bad_descriptor(f"the group `{field.name.text}` has no message")
+        yield of_file.bad_descriptor(f"the group `{field.name.text}` has no message")
     if version == "proto3":
         yield say.group_in_proto3(field.name)
     if version in EDITIONS:

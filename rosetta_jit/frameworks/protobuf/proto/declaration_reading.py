@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
@@ -179,7 +180,7 @@ class DeclarationReader(ValueReader):
             return Range(start, start, span)
         word, last = rest
         if str(word) != "to":
-            self.problems.append(say.unexpected(self.at(cast("Token", word)), str(word), {"COMMA", "SEMICOLON", "TO"}))
+            self.problems.append(of_file.unexpected(self.at(cast("Token", word)), str(word), {"COMMA", "SEMICOLON", "TO"}))
         return Range(start, self.end(last, limit), span)
 
     def end(self, node: Node | Token, limit: int) -> int:
@@ -187,7 +188,7 @@ class DeclarationReader(ValueReader):
         if isinstance(node, Tree):
             return self.signed(node)
         if str(node) != "max":
-            self.problems.append(say.unexpected(self.at(node), str(node), {"NUMBER", "MAX"}))
+            self.problems.append(of_file.unexpected(self.at(node), str(node), {"NUMBER", "MAX"}))
         return limit
 
     # Enums

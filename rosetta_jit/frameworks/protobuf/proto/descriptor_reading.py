@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.json_names import camel_case
 from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
     features,
@@ -104,7 +104,7 @@ def _version(file: FileDescriptorProto, problems: list[Diagnostic]) -> Version:
             return syntax
     # An edition that is newer than protobuf's Python package is an unknown field to it, and reads as 0.
     written = f"edition {number}" if number else "an unknown edition" if file.syntax == "editions" else file.syntax
-    problems.append(say.unsupported_descriptor(file.name, written))
+    problems.append(of_file.unsupported_descriptor(file.name, written))
     return EDITIONS[-1]
 
 
@@ -136,7 +136,7 @@ class _Reader:
 
     def options(self, holder: str, options: Holder) -> tuple[Option, ...]:
         if has_unknown_features(options):
-            self.problems.append(say.bad_descriptor("a feature has a value that is not known"))
+            self.problems.append(of_file.bad_descriptor("a feature has a value that is not known"))
         return (*own_options(holder, options), *features(options))
 
     def message(self, message: DescriptorProto) -> Message:
@@ -214,7 +214,7 @@ class _Reader:
                 try:
                     return unescape(text)
                 except EscapeError:
-                    self.problems.append(say.bad_descriptor(f"`{field.name}` has a default with a wrong escape"))
+                    self.problems.append(of_file.bad_descriptor(f"`{field.name}` has a default with a wrong escape"))
                     return b""
             case None | "bool":
                 return Word(text)
@@ -245,14 +245,14 @@ class _Reader:
         """A name or a path; whoever made the descriptor may have put anything there."""
         if isinstance(text, str) and len(text) <= MAX_NAME and PATH.fullmatch(text):
             return Name(text)
-        self.problems.append(say.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no name"))
+        self.problems.append(of_file.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no name"))
         return Name("wrong")
 
     def text(self, text: str | bytes) -> str:
         """A string; where it is not UTF-8, protobuf gives bytes in spite of its annotations."""
         if isinstance(text, str):
             return text
-        self.problems.append(say.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no text"))
+        self.problems.append(of_file.bad_descriptor(f"{text[:MAX_SHOWN]!r} is no text"))
         return ""
 
 

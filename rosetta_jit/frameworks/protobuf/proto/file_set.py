@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -44,11 +44,11 @@ def file_set(files: Iterable[File], problems: list[Diagnostic]) -> FileSet:
     kept: list[File] = []
     for file in files:
         if file.name in imports:
-            problems.append(say.repeated_file(file.name))
+            problems.append(of_file.repeated_file(file.name))
             continue
         # Files that are imported for options alone need not come along: the options are known to whoever made the descriptor.
         needed = (import_ for import_ in file.imports if import_.kind != "option")
-        problems += [say.missing_file(None, import_.path) for import_ in needed if import_.path not in names]
+        problems += [of_file.missing_file(None, import_.path) for import_ in needed if import_.path not in names]
         imports[file.name] = tuple((import_.path, import_.kind) for import_ in file.imports)
         kept.append(file)
     return FileSet(tuple(kept), imports)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
 from rosetta_jit.frameworks.protobuf.proto.reading import read
 from rosetta_jit.frameworks.protobuf.proto.wellknown import well_known
@@ -54,7 +54,7 @@ def gather(source: Source, load: Load, problems: list[Diagnostic]) -> FileSet:
             if file.name not in done and len(found) <= MAX_FILES:
                 stack.append(_open(file))
     if len(found) > MAX_FILES:
-        problems.append(say.too_many_files(MAX_FILES))
+        problems.append(of_file.too_many_files(MAX_FILES))
     return FileSet(tuple(done.values()), imports)
 
 
@@ -68,7 +68,7 @@ def _find(import_: Import, load: Load, problems: list[Diagnostic]) -> File | Non
         return read(source, problems)
     file = well_known(import_.path)
     if file is None:
-        problems.append(say.missing_file(import_.span, import_.path))
+        problems.append(of_file.missing_file(import_.span, import_.path))
     return file
 
 
@@ -76,9 +76,9 @@ def _is_new(import_: Import, file: File, stack: list[_Open], problems: list[Diag
     """Whether an import neither repeats another one of its file nor leads back to a file that is being read."""
     names = [entry.file.name for entry in stack]
     if file.name in names:
-        problems.append(say.import_cycle(import_.span, [*names[names.index(file.name) :], file.name]))
+        problems.append(of_file.import_cycle(import_.span, [*names[names.index(file.name) :], file.name]))
         return False
     if any(name == file.name for name, _ in stack[-1].edges):
-        problems.append(say.repeated_import(import_.span, import_.path))
+        problems.append(of_file.repeated_import(import_.span, import_.path))
         return False
     return True

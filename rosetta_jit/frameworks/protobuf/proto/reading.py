@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto import syntax
 from rosetta_jit.frameworks.protobuf.proto.declaration_reading import DeclarationReader
 from rosetta_jit.frameworks.protobuf.proto.tree import (
@@ -42,7 +42,7 @@ def _version(root: Node, reader: ValueReader) -> Version:
         for version in EDITIONS if word == "edition" else SYNTAXES:
             if version == value:
                 return version
-        unknown = say_edition.unknown_edition if word == "edition" else say.unknown_syntax
+        unknown = say_edition.unknown_edition if word == "edition" else of_file.unknown_syntax
         reader.problems.append(unknown(reader.span(string), value))
     return "proto2"
 
@@ -53,7 +53,7 @@ class _Reader(DeclarationReader):
     def file(self, root: Node) -> File:
         packages = [self.path(one(node, "path")) for node in all_of(root, "package")]
         for extra in packages[1:]:
-            self.problems.append(say.second_package(extra.span))
+            self.problems.append(of_file.second_package(extra.span))
         extends, groups = self.extends(root)
         return File(
             name=self.source.name,
@@ -92,7 +92,7 @@ class _Reader(DeclarationReader):
                         self.problems.append(say_edition.option_import(self.at(word)))
                     return "option"
                 case other:
-                    self.problems.append(say.unexpected(self.at(word), other, {"STRING"}))
+                    self.problems.append(of_file.unexpected(self.at(word), other, {"STRING"}))
         return "plain"
 
     def service(self, node: Node) -> Service:
@@ -103,7 +103,7 @@ class _Reader(DeclarationReader):
         rpc, name, returns = tokens_of(node)
         for word, wanted in ((rpc, "rpc"), (returns, "returns")):
             if word != wanted:
-                self.problems.append(say.unexpected(self.at(word), word, {wanted.upper()}))
+                self.problems.append(of_file.unexpected(self.at(word), word, {wanted.upper()}))
         return Method(self.name(name), tuple(self.method_type(child) for child in all_of(node, "rpc_type")), self.options(node))
 
     def method_type(self, node: Node) -> Name:
@@ -113,8 +113,8 @@ class _Reader(DeclarationReader):
             if word != "stream" and path.text.startswith("."):
                 return self.checked(Name(f"{word}{path.text}", self.span(node)))
             if word != "stream":
-                self.problems.append(say.unexpected(self.at(word), word, {"RPAR", "DOT", "STREAM"}))
+                self.problems.append(of_file.unexpected(self.at(word), word, {"RPAR", "DOT", "STREAM"}))
             return path
         if path.text == "stream":
-            self.problems.append(say.unexpected(self.span(node), path.text, {"IDENT"}))
+            self.problems.append(of_file.unexpected(self.span(node), path.text, {"IDENT"}))
         return path

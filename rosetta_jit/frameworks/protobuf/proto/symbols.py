@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, choose
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME, MAX_REPORTED, refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
@@ -85,7 +86,7 @@ def declare(files: FileSet, problems: list[Diagnostic]) -> Symbols:
     for file in files.files:
         for full, symbol in _symbols(file):
             if len(full) > MAX_NAME:
-                refuse([*problems, say.name_too_long(symbol.name.span, MAX_NAME)])
+                refuse([*problems, of_file.name_too_long(symbol.name.span, MAX_NAME)])
             old = table.get(full)
             if old is None:
                 table[full] = symbol

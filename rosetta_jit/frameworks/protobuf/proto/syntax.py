@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.parsing.lalr import END, UnexpectedTokenError
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.source import Source, Span
@@ -52,7 +52,7 @@ def parse(source: Source, problems: list[Diagnostic]) -> Tree | None:
     tokens = _with_visibility(list(_tokens(source)))
     deep = _too_deep(tokens)
     if deep is not None:
-        problems.append(say.nesting(span_of(source, deep), MAX_NESTING))
+        problems.append(of_file.nesting(span_of(source, deep), MAX_NESTING))
         return None
     return _feed(source, tokens, problems)
 
@@ -164,10 +164,10 @@ def _unexpected(source: Source, token: Token, expected: frozenset[str]) -> Diagn
     match token.type:
         case "$END":
             end = len(source.text)
-            return say.unfinished(Span(source, end, end), expected)
+            return of_file.unfinished(Span(source, end, end), expected)
         case "UNCLOSED_STRING":
-            return say.unclosed_string(span_of(source, token))
+            return of_file.unclosed_string(span_of(source, token))
         case "UNCLOSED_COMMENT":
-            return say.unclosed_comment(Span(source, start, start + 2))
+            return of_file.unclosed_comment(Span(source, start, start + 2))
         case _:
-            return say.unexpected(span_of(source, token), str(token), expected)
+            return of_file.unexpected(span_of(source, token), str(token), expected)

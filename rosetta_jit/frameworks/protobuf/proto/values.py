@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, cast
 
-from rosetta_jit.frameworks.protobuf import diagnostics as say
+from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
 from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
@@ -79,7 +79,7 @@ class ValueReader:
 
     def checked(self, name: Name) -> Name:
         if len(name.text) > MAX_NAME:
-            self.problems.append(say.name_too_long(name.span, MAX_NAME))
+            self.problems.append(of_file.name_too_long(name.span, MAX_NAME))
         return Name(name.text[:MAX_NAME], name.span)
 
     def integer(self, token: Token) -> int:
@@ -101,14 +101,14 @@ class ValueReader:
         return self.wrong(self.at(token), "a number") if value is None else value
 
     def wrong(self, span: Span, wanted: Literal["an integer", "a number"]) -> int:
-        self.problems.append(say.wrong_number(span, wanted))
+        self.problems.append(of_file.wrong_number(span, wanted))
         return 1
 
     def text(self, node: Node) -> str:
         try:
             return self.string(node).decode()
         except UnicodeDecodeError:
-            self.problems.append(say.not_utf8(self.span(node)))
+            self.problems.append(of_file.not_utf8(self.span(node)))
             return ""
 
     def string(self, node: Node) -> bytes:
@@ -120,7 +120,7 @@ class ValueReader:
             return literals.string(str(token))
         except literals.EscapeError as error:
             start = self.at(token).start + 1 + cast("int", error.args[0])
-            self.problems.append(say.wrong_escape(Span(self.source, start, start + 2)))
+            self.problems.append(of_file.wrong_escape(Span(self.source, start, start + 2)))
             return b""
 
     # Places

@@ -1,0 +1,147 @@
+"""Dataclasses for the types of a schema."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+import re
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.backends.base import Namespace
+from rosetta_jit.generate.cpp.classes import reached_types
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.model.types import Type
+
+OWN = """array dataclass field Struct Any Callable math c_float now functions decode encode size
+Refused MessageError DecodeError EncodeError"""
+TAKEN = frozenset((*keyword.kwlist, *dir(builtins), *OWN.split()))
+MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field"))
+MAX_DOC = 200
+
+
+def names_of(unit: Unit) -> dict[str, str]:
+    """The classes by the types' names in the schema."""
+    scope, found = Namespace(TAKEN), dict[str, str]()
+    for name in reached_types(unit):
+        simple = re.split(r"[./:]+", name)[-1]
+        found[name] = scope.identifier(simple if simple not in scope.identifiers else "_".join(re.split(r"[./:]+", name)))
+    return found
+
+
+def member_names(struct: Struct) -> tuple[str, ...]:
+    """The attributes of a struct's fields, in order."""
+    scope = Namespace(MEMBERS)
+    return tuple(scope.identifier(each.name) for each in struct.fields)
+
+
+def classes(unit: Unit) -> str:
+    """Their definitions, each before those that contain it."""
+    names = names_of(unit)
+    texts: list[str] = []
+    for name, identifier in names.items():
+        declared = unit.schema.types[name]
+        texts.append(_enum(identifier, declared) if isinstance(declared, Enum) else _class(identifier, declared, names, unit))
+    return "\n\n".join(texts)
+
+
+def _enum(identifier: str, enum: Enum) -> str:
+    scope = Namespace(frozenset(keyword.kwlist))
+    values = [f"    {scope.identifier(name)} = {value}" for name, value in enum.values] or ["    pass"]
+    return "\n".join([f"class {identifier}:", f"    {_doc(f'Values of {enum.name}.')}", "", *values, ""])
+
+
+def _doc(text: str) -> str:
+    """A docstring of one line, whatever a schema says."""
+    plain = ascii(" ".join(text.split())[:MAX_DOC])[1:-1].replace("\\'", "'").replace("\\", "/").replace('"', "'")
+    return f'"""{plain}"""'
+
+
+def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit) -> str:
+    lines = ["@dataclass(slots=True)", f"class {identifier}:", f"    {_doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')}", ""]
+    for each, member in zip(struct.fields, member_names(struct), strict=True):
+        lines.append(f"    {member}: {_type(each.type, names, unit)} = {_default(each.type, names, unit)}")
+        said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
+        lines += [f"    {_doc(said)}"] if said else []
+    if struct.option("unknown"):
+        lines += ['    unknown_fields: bytes = b""', '    """Fields that the schema does not know, as they came."""']
+    return "\n".join([*lines, ""])
+
+
+def _type(type_: Type, names: dict[str, str], unit: Unit, *, inside: bool = False) -> str:
+    match type_:
+        case Bool():
+            return "bool"
+        case Int():
+            return "int"
+        case Float():
+            return "float"
+        case String():
+            return "str"
+        case Bytes():
+            return "bytes"
+        case Array(element):
+            return f"list[{_type(element, names, unit, inside=True)}]"
+        case Map(key, value):
+            return f"dict[{_type(key, names, unit)}, {_type(value, names, unit, inside=True)}]"
+        case Optional(value):
+            return f"{_type(value, names, unit, inside=True)} | None"
+        case Ref(name):
+            if isinstance(unit.schema.types[name], Enum):
+                return "int"
+            return f"{names[name]} | None" if name in {struct for _, struct in unit.layout.recursive} and not inside else names[name]
+        case Union():
+            return "tuple[str, Any] | None"
+        case Enum() | Struct():
+            raise AssertionError(type_)
+        case _:
+            assert_never(type_)
+
+
+def _default(type_: Type, names: dict[str, str], unit: Unit) -> str:
+    match type_:
+        case Bool():
+            return "False"
+        case Int():
+            return "0"
+        case Float():
+            return "0.0"
+        case String():
+            return '""'
+        case Bytes(_, int(length)):
+            return f"bytes({length})"
+        case Bytes():
+            return 'b""'
+        case Array(_, int(length)):
+            return f"field(default_factory=lambda: {_elements(type_, names, unit)})" if length else "field(default_factory=list)"
+        case Array():
+            return "field(default_factory=list)"
+        case Map():
+            return "field(default_factory=dict)"
+        case Optional() | Union():
+            return "None"
+        case Ref(name):
+            if isinstance(unit.schema.types[name], Enum):
+                return "0"
+            return "None" if name in {struct for _, struct in unit.layout.recursive} else f"field(default_factory=lambda: {names[name]}())"
+        case Enum() | Struct():
+            raise AssertionError(type_)
+        case _:
+            assert_never(type_)
+
+
+def _elements(type_: Type, names: dict[str, str], unit: Unit) -> str:
+    """An expression for the first value of an array of a fixed length, and of what is in it."""
+    match type_:
+        case Array(element, int(length)):
+            return f"[{_elements(element, names, unit)} for _ in range({length})]"
+        case Array():
+            return "[]"
+        case Map():
+            return "{}"
+        case Ref(name) if not isinstance(unit.schema.types[name], Enum):
+            return f"{names[name]}()"
+        case _:
+            return _default(type_, names, unit)

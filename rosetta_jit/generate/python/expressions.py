@@ -1,0 +1,325 @@
+"""Kernel expressions as Python expressions: integers are ints, bools are bools, floats are floats, rounded where they have 32 bits.
+
+header_seq              a field of the message's row            position_d[start + i]     one of another lane, through a view of its bytes
+position_used           how many rows are in use                position_room             for how many there is room
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.kernel.arithmetic import FLOATS
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Address,
+    Binary,
+    Bits,
+    Capacity,
+    Compare,
+    Const,
+    Convert,
+    Digits,
+    Expr,
+    Fits,
+    Get,
+    IsText,
+    Load,
+    Local,
+    Nearest,
+    Place,
+    Scalar,
+    Scale,
+    Select,
+    Told,
+    Unary,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.terms import END, type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.backends.base import Namespace
+    from rosetta_jit.generate.c.lanes import Lanes
+
+CODES = {
+    "bool": "B",
+    "i8": "b",
+    "u8": "B",
+    "i16": "h",
+    "u16": "H",
+    "i32": "i",
+    "u32": "I",
+    "i64": "q",
+    "u64": "Q",
+    "f32": "f",
+    "f64": "d",
+}
+"""Of the struct module, and of views."""
+OPERATORS = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
+LOGICAL = {"and": "and", "or": "or", "xor": "!="}
+COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+ROUNDINGS = {"floor": "math.floor", "ceil": "math.ceil", "trunc": "math.trunc", "rint": "round"}
+
+
+@dataclass(slots=True)
+class Scope:
+    """What the printers of a function share.
+
+    ``flat``: the fields of the message's row are locals, ``rows``, of which ``floats`` are floats. ``views`` are the lanes that it reaches,
+    with the code of the view, empty for the bytes themselves; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs.
+    """
+
+    locals: Namespace
+    lanes: Lanes
+    flat: bool
+    loads: set[str]
+    name: str
+    views: set[tuple[int, str]] = field(default_factory=set[tuple[int, str]])
+    rows: set[str] = field(default_factory=set[str])
+    floats: set[str] = field(default_factory=set[str])
+    counted: set[int] = field(default_factory=set[int])
+    rooms: set[int] = field(default_factory=set[int])
+    told: set[str] = field(default_factory=set[str])
+
+    def view(self, lane: int, code: str) -> str:
+        """The view of a lane's rows as numbers of one type."""
+        self.views.add((lane, code))
+        return view_name(self.lanes, lane, code)
+
+    def used(self, lane: int) -> str:
+        self.counted.add(lane)
+        return "1" if lane == 0 else f"{self.lanes.rows(lane)}_used"
+
+    def room(self, lane: int) -> str:
+        self.rooms.add(lane)
+        return "1" if lane == 0 else f"{self.lanes.rows(lane)}_room"
+
+    def struct(self, order: str, code: str, verb: str) -> str:
+        """A function of the struct module: ``load_I`` with the low byte first, ``load_I_be`` with the high one."""
+        name = f"_{verb}_{code}{'' if order == '<' else '_be'}"
+        self.loads.add(name)
+        return name
+
+    def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
+        """A scalar of a row."""
+        if lane == 0 and self.flat:
+            name = flat_name(self.lanes, offset, scalar)
+            self.rows.add(name)
+            if scalar in FLOATS:
+                self.floats.add(name)
+            return name
+        width, stride = WIDTH[scalar], self.lanes.stride(lane)
+        return f"{self.view(lane, CODES[scalar])}[{_scaled(row, stride // width, offset // width)}]"
+
+
+def view_name(lanes: Lanes, lane: int, code: str) -> str:
+    """What views of lanes are called."""
+    name = lanes.rows(lane)
+    return f"{name}_{code}" if code else name
+
+
+def flat_name(lanes: Lanes, offset: int, scalar: str) -> str:
+    """The local for a field of the message's row."""
+    path = lanes.field(0, "0", offset, scalar)
+    return f"m_{offset}" if path is None else "m_" + re.sub(r"\W+", "_", path.partition("->")[2]).strip("_")
+
+
+def _scaled(row: str, times: int, offset: int) -> str:
+    text = row if times == 1 else "0" if row == "0" else f"{row} * {times}"
+    if text == "0":
+        return str(offset)
+    return f"{text} + {offset}" if offset else text
+
+
+def expression(scope: Scope, expr: Expr) -> str:
+    """The text of an expression; one with an operator stands in parentheses."""
+    match expr:
+        case Const(type_, value):
+            return _constant(type_, value)
+        case Local(_, name):
+            return "end" if name == END.name else scope.locals.identifier(name)
+        case Load(type_, at, order):
+            return _loaded(scope, type_, bare(expression(scope, at)), order)
+        case Get(type_, place):
+            text = scope.field(place.lane, expression(scope, place.row), place.offset, type_)
+            return f"({text} != 0)" if type_ == "bool" else text
+        case Used() | Capacity() | Told():
+            return _known(scope, expr)
+        case Unary(function, operand):
+            return _unary(function, type_of(operand), expression(scope, operand))
+        case Binary(op, left, right):
+            return _binary(op, type_of(left), expression(scope, left), expression(scope, right))
+        case Compare(op, left, right):
+            return f"({expression(scope, left)} {COMPARISONS[op]} {expression(scope, right)})"
+        case Fits(op, left, right):
+            return f"({-(2**63)} <= {expression(scope, left)} {OPERATORS[op]} {expression(scope, right)} <= {2**63 - 1})"
+        case Convert(type_, operand):
+            return _convert(type_, type_of(operand), expression(scope, operand))
+        case Bits(type_, operand):
+            return _bits(type_, type_of(operand), expression(scope, operand))
+        case Select(condition, then, otherwise):
+            return f"({expression(scope, then)} if {expression(scope, condition)} else {expression(scope, otherwise)})"
+        case IsText(address, size):
+            return _is_text(scope, address, expression(scope, size))
+        case Nearest() | Digits() | Scale():
+            raise SchemaError((words.not_in_language(scope.name, "decimal numbers in texts", "python"),))
+        case _:
+            assert_never(expr)
+
+
+def _known(scope: Scope, expr: Used | Capacity | Told) -> str:
+    match expr:
+        case Used(lane):
+            return scope.used(lane)
+        case Capacity(lane):
+            return scope.room(lane)
+        case Told(what):
+            scope.told.add(what)
+            return f"told_{what}"
+
+
+def _is_text(scope: Scope, address: Address, size: str) -> str:
+    memory, start = location(scope, address)
+    if memory == "data":  # bytes know whether they are ASCII
+        return f"(data[{start} : {start} + {size}].isascii() or _is_text(data, {start}, {bare(size)}))"
+    return f"_is_text({memory}, {start}, {bare(size)})"
+
+
+def _constant(type_: Scalar, value: float) -> str:
+    if type_ == "bool":
+        return "True" if value else "False"
+    if type_ not in FLOATS:
+        return str(int(value)) if value >= 0 else f"({int(value)})"
+    with np.errstate(over="ignore"):
+        number = float(np.float32(value)) if type_ == "f32" else float(value)
+    if math.isnan(number):
+        return "math.nan"
+    if math.isinf(number):
+        return "math.inf" if number > 0 else "(-math.inf)"
+    return repr(number) if not repr(number).startswith("-") else f"({number!r})"
+
+
+def _loaded(scope: Scope, type_: Scalar, at: str, order: str) -> str:
+    if type_ == "u8":
+        return f"data[{at}]"
+    if type_ == "bool":
+        return f"(data[{at}] != 0)"
+    return f"{scope.struct('<' if WIDTH[type_] == 1 else order, CODES[type_], 'load')}(data, {at})[0]"
+
+
+def _unary(function: str, type_: Scalar, value: str) -> str:
+    match function:
+        case "not" if type_ == "bool":
+            return f"(not {value})"
+        case "not":
+            return f"(~{value})" if type_[0] == "i" else f"({value} ^ {2 ** (8 * WIDTH[type_]) - 1})"
+        case "neg":
+            return f"(-{value})"
+        case "abs":
+            return f"abs({bare(value)})"
+        case _ if type_ not in FLOATS:
+            return value
+        case "floor" | "ceil" | "trunc" | "rint":
+            return f"_rounded({ROUNDINGS[function]}, {bare(value)})"
+        case _:
+            return _rounded(type_, f"_of_math(math.{function}, {bare(value)})")
+
+
+def _rounded(type_: Scalar, value: str) -> str:
+    return f"_single({bare(value)})" if type_ == "f32" else value
+
+
+def _binary(op: str, type_: Scalar, left: str, right: str) -> str:
+    match op:
+        case "and" | "or" | "xor" if type_ == "bool":
+            return f"({left} {LOGICAL[op]} {right})"
+        case "min" | "max" if type_ in FLOATS:
+            return f"_{'least' if op == 'min' else 'most'}({bare(left)}, {bare(right)})"
+        case "min" | "max":
+            return f"{op}({bare(left)}, {bare(right)})"
+        case "div":
+            return (
+                _rounded(type_, f"_divided({bare(left)}, {bare(right)})") if type_ in FLOATS else f"_quotient({bare(left)}, {bare(right)})"
+            )
+        case "rem":
+            return f"_of_math(math.fmod, {left}, {right})" if type_ in FLOATS else f"_remainder({bare(left)}, {bare(right)})"
+        case "atan2":
+            return f"_of_math(math.atan2, {left}, {right})"
+        case "shl":
+            return _wrapped(type_, f"({left} << {right})")
+        case _:
+            return _rounded(type_, f"({left} {OPERATORS[op]} {right})") if type_ in FLOATS else f"({left} {OPERATORS[op]} {right})"
+
+
+def _wrapped(type_: Scalar, value: str) -> str:
+    """The low bits of an integer."""
+    bits = 8 * WIDTH[type_]
+    if type_[0] == "u":
+        return f"({value} & {2**bits - 1})"
+    return f"(({value} + {2 ** (bits - 1)} & {2**bits - 1}) - {2 ** (bits - 1)})"
+
+
+def _convert(target: Scalar, source: Scalar, value: str) -> str:
+    if target == source:
+        return value
+    if target == "bool":
+        return f"({value} != 0)"
+    if source in FLOATS and target in FLOATS:
+        return value if target == "f64" else f"_single({bare(value)})"
+    if target in FLOATS:
+        return f"float({bare(value)})" if target == "f64" else f"_single_of_int({bare(value)})"
+    if source in FLOATS:
+        bits, signed = 8 * WIDTH[target], target[0] == "i"
+        least, most = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+        return f"_saturated({bare(value)}, {least}, {most})"
+    if source == "bool":
+        return f"int({bare(value)})"
+    return value if _holds(target, source) else _wrapped(target, value)
+
+
+def _holds(target: Scalar, source: Scalar) -> bool:
+    if target[0] == source[0]:
+        return WIDTH[target] >= WIDTH[source]
+    return target[0] == "i" and WIDTH[target] > WIDTH[source]
+
+
+def _bits(target: Scalar, source: Scalar, value: str) -> str:
+    if target == source:
+        return value
+    width = 8 * WIDTH[source]
+    if source in FLOATS:
+        return _convert(target, "u64" if width == 64 else "u32", f"_bits{width}({bare(value)})")
+    if target in FLOATS:
+        return f"_float{width}({bare(_convert('u64' if width == 64 else 'u32', source, value))})"
+    return _convert(target, source, value)
+
+
+def location(scope: Scope, address: Address) -> tuple[str, str]:
+    """Memory, and the number of a byte in there."""
+    match address:
+        case Wire(at):
+            return "data", bare(expression(scope, at))
+        case Place(lane, row, offset):
+            return scope.view(lane, ""), _scaled(expression(scope, row), scope.lanes.stride(lane), offset)
+        case _:
+            assert_never(address)
+
+
+def bare(text: str) -> str:
+    """A text without the parentheses around all of it."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return text
+    depth = 0
+    for number, char in enumerate(text):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and number < len(text) - 1:
+            return text
+    return text[1:-1]

@@ -1,0 +1,206 @@
+"""A kernel as Python functions: one for each routine, and one for each attempt. What a message cannot be ends them with `_Failed`."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Namespace, Writer
+from rosetta_jit.generate.c.statements import reached, read_names
+from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, view_name
+from rosetta_jit.generate.python.groups import not_negative, undamaged
+from rosetta_jit.generate.python.statements import Attempt, Function, print_block
+from rosetta_jit.kernel.ir import (
+    Const,
+    Copy,
+    Fill,
+    Get,
+    IsText,
+    Kernel,
+    Place,
+    Reserve,
+    SetField,
+    Stmt,
+)
+from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
+from rosetta_jit.kernel.terms import type_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.origins import Origin
+    from rosetta_jit.generate.unit import Role
+    from rosetta_jit.kernel.ir import Routine, Scalar
+
+WORDS = frozenset(
+    (*keyword.kwlist, *dir(builtins), "data", "end", "most", "sites", "indices", "math", "array", "self", "target", "functions", "now")
+)
+
+
+def is_flat(kernel: Kernel, lanes: Lanes) -> bool:
+    """Whether all that is done to the message's row is to set and to read its fields."""
+    fields = (each for body in kernel.bodies for stmt, _ in statements(body) for each in _fields(stmt) if each[0].lane == 0)
+    if any(lanes.field(0, "0", place.offset, scalar) is None for place, scalar in fields):
+        return False
+    for body in kernel.bodies:
+        for stmt, _ in statements(body):
+            whole = (
+                isinstance(stmt, Fill)
+                and stmt == Fill(stmt.target, Const("i64", kernel.strides[0]))
+                and stmt.target == Place(0, Const("i64", 0))
+            )
+            if not whole and any(place.lane == 0 for place in _memory(stmt)):
+                return False
+    places = (place for routine in kernel.routines for stmt, _ in statements(routine.body) for place in (*_memory(stmt), *_set(stmt)))
+    return all(place.lane for place in places)
+
+
+def _memory(stmt: Stmt) -> list[Place]:
+    """Places whose bytes a statement takes for what they are."""
+    found = (stmt.target, stmt.source) if isinstance(stmt, Copy) else (stmt.target,) if isinstance(stmt, Fill) else ()
+    texts = [part.address for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, IsText)]
+    return [each for each in (*found, *texts) if isinstance(each, Place)]
+
+
+def _fields(stmt: Stmt) -> list[tuple[Place, Scalar]]:
+    """The scalars of rows that a statement sets or reads."""
+    found: list[tuple[Place, Scalar]] = [(stmt.place, type_of(stmt.value))] if isinstance(stmt, SetField) else []
+    gets = (part for expr in expressions_of(stmt) for part in subexpressions(expr) if isinstance(part, Get))
+    return [*found, *((each.place, each.type) for each in gets)]
+
+
+def _set(stmt: Stmt) -> list[Place]:
+    return [stmt.place] if isinstance(stmt, SetField) else []
+
+
+def print_kernel(
+    kernel: Kernel,
+    lanes: Lanes,
+    role: Role,
+    loads: set[str],
+    origins: Sequence[Origin],
+    result: Callable[[Scope, str], str],
+    inner: Callable[[Scope], list[str]],
+    *,
+    flat: bool,
+) -> tuple[str, tuple[Attempt, ...]]:
+    """The functions of a kernel as text, and how they are called."""
+    writer, routines = Writer(), dict[str, Attempt]()
+    codes = ("", *sorted(set(CODES.values())))
+    words = WORDS | {view_name(lanes, lane, code) for lane in range(len(lanes.all)) for code in codes}
+    words |= {f"{lanes.rows(lane)}_{what}" for lane in range(len(lanes.all)) for what in ("used", "room")}
+
+    def scope() -> Scope:
+        return Scope(Namespace(words), lanes, flat, loads, kernel.name)
+
+    for routine in kernel.routines:
+        function = Function(scope(), kernel, routine.sites, routines, (), result, is_routine=True)
+        routines[routine.name] = _routine(writer, role, routine, function)
+    attempts = [
+        _attempt(writer, role, number, Function(scope(), kernel, kernel.sites, routines, origins, result), inner)
+        for number in range(len(kernel.bodies))
+    ]
+    return writer.text(), tuple(attempts)
+
+
+def _attempt(writer: Writer, role: Role, number: int, function: Function, inner: Callable[[Scope], list[str]]) -> Attempt:
+    kernel, scope = function.kernel, function.scope
+    body = reached(kernel.bodies[number])
+    body = undamaged(body, kernel.sites) if kernel.direction != "decode" else body
+    function.read, function.positive = read_names(body), not_negative(body)
+    function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Reserve))
+    function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)}
+    print_block(function, body)
+    made = inner(scope)
+    name = f"_{role}_{number + 1}"
+    given = _given(function, own_only=kernel.direction != "decode", hidden=role == "encode")
+    _blank(writer)
+    writer.line(f"def {name}({', '.join(['data', 'end', 'most', *given])}):")
+    for line in (*_begin(function, role), *made):
+        writer.line(f"    {line}" if line else "")
+    writer.lines += [each for line in function.writer.lines for each in _completed(line, function)]
+    return Attempt(name, tuple(given))
+
+
+def _completed(line: str, function: Function) -> list[str]:
+    """A line, or what it stands for: all fields of the row, all views of a lane that has grown."""
+    scope, text = function.scope, line.strip()
+    before = line[: len(line) - len(line.lstrip())]
+    if text == "<row>":
+        groups = ((scope.rows - scope.floats, "0"), (scope.rows & scope.floats, "0.0"))
+        return [f"{before}{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
+    if text.startswith("<views "):
+        lane = int(text[7:-1])
+        name = scope.lanes.rows(lane)
+        codes = sorted(code for number, code in scope.views if number == lane and code)
+        return [f'{before}{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
+    return [line]
+
+
+def _given(function: Function, *, own_only: bool, hidden: bool) -> list[str]:
+    """What a function gets: for encoders what the object became, for routines all that their caller has."""
+    scope, own = function.scope, function.scope.lanes.own
+    if not own_only and not function.is_routine:
+        return sorted(f"told_{what}" for what in scope.told)
+    names = {*scope.rows, *(f"told_{what}" for what in scope.told)}
+    names |= {view_name(scope.lanes, lane, code) for lane, code in scope.views if lane < own or function.is_routine}
+    names |= {
+        f"{scope.lanes.rows(lane)}_{what}"
+        for what, some in (("used", scope.counted), ("room", scope.rooms))
+        for lane in some
+        if 0 < lane < own
+    }
+    if function.is_routine:
+        names |= {f"{scope.lanes.rows(lane)}_room" for lane in scope.rooms if lane >= own}
+    if hidden:
+        names |= {f"{scope.lanes.rows(lane)}{end}" for lane in _lanes(function) if lane >= own for end in ("", "_room")}
+    return sorted(names)
+
+
+def _lanes(function: Function) -> set[int]:
+    """The lanes that a function has to do with."""
+    scope = function.scope
+    return {lane for lane, _ in scope.views} | scope.rooms | scope.counted | function.moved
+
+
+def _begin(function: Function, role: Role) -> list[str]:
+    """Lanes that start empty, and views of those that are given."""
+    scope, own, lines = function.scope, function.scope.lanes.own, list[str]()
+    for lane in sorted(_lanes(function) - {0}):
+        name = scope.lanes.rows(lane)
+        codes = sorted(code for number, code in scope.views if number == lane and code)
+        if lane < own and role in ("encode", "size"):
+            continue
+        if role != "encode":
+            lines.append(f"{name} = bytearray()")
+            lines += [f"{name}_room = 0"] if lane in scope.rooms else []
+            lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
+            scope.loads.update(f"_EMPTY_{code}" for code in codes)
+        else:
+            lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
+        lines += [f"{name}_used = 0"] if lane in scope.counted else []
+    if not scope.flat and role in ("decode", "borrow"):
+        lines.append(f"message = bytearray({scope.lanes.stride(0)})")
+        lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]
+    return lines
+
+
+def _blank(writer: Writer) -> None:
+    writer.lines += ["", ""] if writer.lines else []
+
+
+def _routine(writer: Writer, role: Role, routine: Routine, function: Function) -> Attempt:
+    scope = function.scope
+    own = [scope.locals.identifier(each.name) for each in routine.parameters]
+    function.read = read_names(routine.body, (each.name for each in routine.results))
+    print_block(function, routine.body)
+    results = [bare(expression(scope, each)) for each in routine.results]
+    function.line(f"return {', '.join(results)}{',' if len(results) == 1 else ''}" if results else "return ()")
+    given, name = _given(function, own_only=True, hidden=False), f"_{role}_{routine.name}"
+    _blank(writer)
+    writer.line(f"def {name}({', '.join(['data', 'end', 'sites', 'indices', *given, *own])}):")
+    writer.lines += function.writer.lines
+    return Attempt(name, tuple(given))

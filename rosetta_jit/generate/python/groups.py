@@ -1,0 +1,171 @@
+"""What makes generated Python quick: numbers that lie together are read and written by one call, and no check asks what is known."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Assign,
+    Binary,
+    Call,
+    Const,
+    Convert,
+    Expect,
+    For,
+    Get,
+    HostCall,
+    Let,
+    Load,
+    Local,
+    Place,
+    SetField,
+    Store,
+    Var,
+)
+from rosetta_jit.kernel.rewrite import locals_in, with_blocks
+from rosetta_jit.kernel.shape import bound_names, statements
+from rosetta_jit.kernel.terms import END, index, type_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rosetta_jit.kernel.ir import Block, Expr, Site, Stmt
+
+DAMAGED = "the holder is damaged"
+
+
+def undamaged(block: Block, sites: Sequence[Site]) -> Block:
+    """A block without the checks of spans: those of an object that was just taken apart are right."""
+    kept = (stmt for stmt in block if not (isinstance(stmt, Expect) and sites[stmt.failure.site].detail == DAMAGED))
+    return tuple(with_blocks(stmt, lambda inner: undamaged(inner, sites)) for stmt in kept)
+
+
+def grouped(block: Block) -> Iterator[list[Stmt]]:
+    """The statements of a block: those that read, or write, scalars one behind the other in the message together."""
+    group: list[Stmt] = []
+    for stmt in block:
+        if group and not _continues(group, stmt):
+            yield group
+            group = []
+        group.append(stmt)
+    if group:
+        yield group
+
+
+def scalar_of(stmt: Stmt) -> tuple[str, Expr, str] | None:
+    """Type, place and byte order of the one scalar that a statement takes from the message, or puts there."""
+    match stmt:
+        case Let(_, Load(type_, at, order)) | SetField(_, Load(type_, at, order)):
+            return (type_, at, order) if type_ != "bool" else None
+        case Store(at, value, order):
+            return (type_of(value), at, order) if type_of(value) != "bool" else None
+        case _:
+            return None
+
+
+def _continues(group: list[Stmt], stmt: Stmt) -> bool:
+    before = group[-1]
+    one, other = scalar_of(before), scalar_of(stmt)
+    if one is None or other is None or isinstance(before, Store) != isinstance(stmt, Store):
+        return False
+    orders = {order for type_, _, order in (*filter(None, map(scalar_of, group)), other) if WIDTH[type_] > 1}
+    (base, offset), (base_2, offset_2) = _based(one[1]), _based(other[1])
+    follows = base == base_2 and offset_2 == offset + WIDTH[one[0]]
+    return len(orders) < 2 and follows and not any(isinstance(each, Let) and _reads(stmt, each.name) for each in group)
+
+
+def _based(at: Expr) -> tuple[Expr | None, int]:
+    """A place as something and a constant."""
+    match at:
+        case Const(_, value):
+            return None, int(value)
+        case Binary("add", left, Const(_, value)):
+            base, offset = _based(left)
+            return base, offset + int(value)
+        case _:
+            return at, 0
+
+
+def _reads(stmt: Stmt, name: str) -> bool:
+    found = scalar_of(stmt)
+    base = _based(found[1])[0] if found is not None else None
+    return isinstance(base, Local) and base.name == name
+
+
+def not_negative(block: Block) -> frozenset[str]:
+    """The integers of a body that are never negative, whatever the message: Python's have no end."""
+    values: dict[str, list[Expr]] = {}
+    unknown: set[str] = set()
+    for stmt, _ in statements(block):
+        match stmt:
+            case Let(name, value) | Var(name, value) | Assign(name, value):
+                values.setdefault(name, []).append(value)
+            case For(variable, _, _):
+                values.setdefault(variable, [])
+            case Call() | HostCall():
+                unknown.update(bound_names(stmt))
+            case _:
+                pass
+    known = {name for name in values if name not in unknown} | {END.name}
+    while True:
+        kept = {name for name in known if all(is_not_negative(value, known) for value in values.get(name, ()))}
+        if kept == known:
+            return frozenset(known)
+        known = kept
+
+
+def is_not_negative(expr: Expr, known: frozenset[str] | set[str]) -> bool:
+    """Whether an integer is 0 or more, if those of the names are."""
+    match expr:
+        case Const(_, value):
+            return value >= 0
+        case Local(_, name):
+            return name in known
+        case Load(type_, _, _):
+            return type_[0] == "u"
+        case Binary("add" | "mul", left, right):
+            return is_not_negative(left, known) and is_not_negative(right, known)
+        case Convert(type_, operand):
+            inner = type_of(operand)
+            return type_[0] in "iu" and inner[0] in "iu" and WIDTH[type_] >= WIDTH[inner] and is_not_negative(operand, known)
+        case _:
+            return False
+
+
+def turned(loop: For) -> tuple[Place, Expr, str] | None:
+    """The array that a loop copies between a lane and the message, byte by byte turned around: its first row, its place, its type."""
+    names = {each.name: each.value for each in loop.body if isinstance(each, Let)}
+    *lets, last = loop.body or (None,)
+    if not all(isinstance(each, Let) for each in lets):
+        return None
+    match last:
+        case SetField(place, Load(type_, at, ">")) | Store(at, Get(type_, place), ">") if WIDTH[type_] > 1:
+            row, base = _without(place.row, loop.variable, 1), _without(_resolved(at, names), loop.variable, WIDTH[type_])
+            used = set(names) & (locals_in(row) | locals_in(base)) if row is not None and base is not None else {""}
+            if row is None or base is None or used or place.offset or len(names) > 1:
+                return None
+            return Place(place.lane, row), base, type_
+        case _:
+            return None
+
+
+def _resolved(expr: Expr, names: dict[str, Expr]) -> Expr:
+    return names.get(expr.name, expr) if isinstance(expr, Local) else expr
+
+
+def _without(expr: Expr, variable: str, times: int) -> Expr | None:
+    """An expression that is ``variable * times`` more than another: that other one."""
+    match expr:
+        case Local(_, name) if name == variable and times == 1:
+            return index(0)
+        case Binary("mul", Local(_, name), Const(_, factor)) if name == variable and factor == times:
+            return index(0)
+        case Binary("add", left, right):
+            for one, other in ((left, right), (right, left)):
+                found = _without(one, variable, times)
+                if found is not None and variable not in locals_in(other):
+                    return other if found == index(0) else Binary("add", other, found)
+            return None
+        case _:
+            return None

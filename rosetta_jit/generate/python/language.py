@@ -1,0 +1,210 @@
+"""A unit as Python: one module, `NAME.py`."""
+
+from __future__ import annotations
+
+import re
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Writer
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.python.classes import classes, names_of
+from rosetta_jit.generate.python.expressions import CODES, view_name
+from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
+from rosetta_jit.generate.python.objects import Collect, Make
+from rosetta_jit.kernel.ir import Advance, Const, Return
+from rosetta_jit.kernel.shape import statements
+from rosetta_jit.model.types import Ref
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.python.expressions import Scope
+    from rosetta_jit.generate.python.functions import Attempt
+    from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.kernel.ir import Kernel
+
+RUNTIME = Path(__file__).with_name("runtime.py")
+NO_MEMORY = "the message asks for more memory than its size allows"
+
+
+def files(unit: Unit) -> dict[str, str]:
+    """The text of the module by its name."""
+    if unit.holder not in ("", "own"):
+        raise SchemaError((words.unknown_holder(unit.holder, (("own", "dataclasses"),)),))
+    return {f"{unit.name}.py": _Module(unit).text()}
+
+
+class _Module:
+    """Prints the module of a unit."""
+
+    def __init__(self, unit: Unit) -> None:
+        self.unit, self.names = unit, names_of(unit)
+        self.lanes = named_parts(unit, WORDS)
+        self.loads, self.structs = set[str](), dict[str, str]()
+        self.root = self.names[unit.type]
+
+    def text(self) -> str:
+        """All of it."""
+        parts = [self._decoder()] if "borrow" in self.unit.kernels else []
+        parts += [self._encoder()] if "encode" in self.unit.kernels else []
+        runtime = RUNTIME.read_text("utf-8")
+        runtime = runtime[runtime.index("import math") :].rstrip()
+        made = "\n".join(
+            f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
+        )
+        text = "\n\n\n".join(
+            [f"{made}\nfrom __future__ import annotations\n\n{runtime}", classes(self.unit).rstrip(), self._constants(), *parts]
+        )
+        return re.sub(r"\n{4,}", "\n\n\n", text).rstrip() + "\n"
+
+    def _constants(self) -> str:
+        """Views of nothing, and functions of the struct module."""
+        lines: list[str] = []
+        for name in sorted(self.loads):
+            _, verb, code, *order = name.split("_")
+            code = "".join(f"{len([*same])}{each}" if len(code) > 1 else each for each, same in groupby(code))
+            if verb == "EMPTY":
+                lines.append(f'{name} = memoryview(b"").cast("{code}")')
+            else:
+                method = "unpack_from" if verb == "load" else "pack_into"
+                lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
+        lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
+        return "\n".join(lines)
+
+    def _lanes(self, kernel: Kernel) -> Lanes:
+        """Those of the unit, with the hidden ones of a kernel."""
+        return self.lanes(kernel.strides)
+
+    def _sites(self, role: Role) -> str:
+        lines = [f"_{role.upper()}_SITES = ("]
+        for number, site in enumerate(self.unit.kernels[role].sites):
+            kind, detail = ("count", NO_MEMORY) if number == 0 else (site.kind, site.detail)
+            inner = "".join(f"({each.offset}, {each.size}, {each.step}, {each.path!a}), " for each in site.parts).rstrip()
+            lines.append(f"    ({kind!a}, {site.path!a}, {detail!a}, {site.line!a}, ({inner})),")
+        return "\n".join([*lines, ")"])
+
+    # --- decoding --------------------------------------------------------------------------------------------------------------------
+
+    def _decoder(self) -> str:
+        kernel, type_ = self.unit.kernels["borrow"], Ref(self.unit.type)
+        taken = frozenset(stmt.lane for body in kernel.bodies for stmt, _ in statements(body) if isinstance(stmt, Advance))
+
+        def made(scope: Scope, _: str) -> str:
+            return Make(self.unit, scope, self.names, taken).value(type_, self.unit.layout.root, 0, "0")
+
+        def inner(scope: Scope) -> list[str]:
+            lines: list[str] = []
+            for lane, struct in self.unit.layout.recursive:
+                text = Make(self.unit, scope, self.names, taken).value(Ref(struct), self.unit.layout.lanes[lane].element, lane, "index")
+                lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
+            return lines
+
+        origins = self.unit.origins.get("borrow", ())
+        text, attempts = print_kernel(
+            kernel, self._lanes(kernel), "borrow", self.loads, origins, made, inner, flat=is_flat(kernel, self._lanes(kernel))
+        )
+        return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
+
+    def _decode(self, attempts: tuple[Attempt, ...]) -> str:
+        writer = Writer()
+        writer.line(f"def decode(data: bytes | bytearray | memoryview) -> {self.root}:")
+        writer.depth = 1
+        writer.line('"""Read a message; raises `DecodeError`."""')
+        writer.line("data = bytes(data)")
+        writer.line("end = len(data)")
+        writer.line("most = 1048576 + 64 * end")
+        self._told(writer, {each for attempt in attempts for each in attempt.needs})
+        for number, attempt in enumerate(attempts):
+            writer.line("try:")
+            writer.line(f"    return {attempt.name}({', '.join(['data', 'end', 'most', *attempt.needs])})")
+            writer.line("except _Failed as failed:")
+            if number == 0:
+                writer.line("    farthest = failed")
+            else:
+                writer.line("    if failed.site == 0 or failed.at > farthest.at:")
+                writer.line("        farthest = failed")
+        writer.line("raise _error(_BORROW_SITES, farthest, end)")
+        return writer.text()
+
+    def _told(self, writer: Writer, needs: set[str]) -> None:
+        if "told_now" in needs:
+            writer.line("told_now = now()")
+        if "told_number" in needs:
+            writer.line("told_number = next(_numbers)")
+
+    # --- encoding --------------------------------------------------------------------------------------------------------------------
+
+    def _encoder(self) -> str:
+        roles: tuple[Role, ...] = ("size", "encode")
+        kernels: dict[Role, Kernel] = {role: self.unit.kernels[role] for role in roles}
+        flat = all(is_flat(kernel, self._lanes(kernel)) for kernel in kernels.values())
+        texts, attempts = list[str](), dict["Role", "Attempt"]()
+        hidden = max(len(kernel.strides) for kernel in kernels.values()) - len(self.unit.layout.lanes)
+        for role, kernel in kernels.items():
+            lanes = self._lanes(kernel)
+
+            def result(scope: Scope, position: str, role: str = role, lanes: Lanes = lanes) -> str:
+                if role == "encode":
+                    return position
+                given = [f"{scope.view(lane, '')}, {scope.room(lane)}" for lane in range(lanes.own, len(lanes.all))]
+                return ", ".join([position, *given]) + ("," if not given else "")
+
+            text, (attempts[role], *_) = print_kernel(
+                kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), result, lambda _: [], flat=flat
+            )
+            texts += [self._sites(role), f"\n{text.rstrip()}"]
+        longest = max(kernels.values(), key=lambda each: len(each.strides))
+        texts.append(f"\n{self._encode(self._lanes(longest), attempts, flat, hidden)}")
+        return "\n\n".join(texts)
+
+    def _measured(self, size: Attempt, hidden: int) -> str:
+        """The call that measures a message, or the size that all have."""
+        match self.unit.kernels["size"].bodies[0]:
+            case (Return(Const(_, value)),):
+                return f"{int(value)}," + " bytearray(), 0," * hidden
+            case _:
+                return f"{size.name}({', '.join(['None', 'math.inf', '1 << 60', *size.needs])})"
+
+    def _encode(self, lanes: Lanes, attempts: dict[Role, Attempt], flat: bool, hidden: int) -> str:
+        needs = {each for attempt in attempts.values() for each in attempt.needs}
+        collect = Collect(self.unit, lanes, self.structs, Writer(depth=2))
+        writer = collect.writer
+        for lane in range(1, lanes.own):
+            writer.line(f"{lanes.rows(lane)} = bytearray()")
+        for lane, struct in self.unit.layout.recursive:
+            with writer.indented(f"def collect_{lanes.rows(lane)}(at, element):"):
+                found: dict[int, tuple[str, str]] = {}
+                collect.value(Ref(struct), self.unit.layout.lanes[lane].element, "element", found)
+                collect.pack(lane, "at", found)
+        collect.root(needs, flat=flat)
+        for lane in range(lanes.own):
+            name, stride = lanes.rows(lane), lanes.stride(lane)
+            for code in sorted(set(CODES.values())):
+                if view_name(lanes, lane, code) in needs:
+                    writer.line(f'{name}_{code} = memoryview({name}).cast("{code}")')
+            if lane and f"{name}_used" in needs | {each.replace("_room", "_used") for each in needs}:
+                writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
+        self._told(writer, needs)
+        measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]
+        bound = ", ".join(["needed", *measured]) + ("" if measured else ",")
+        writer.line(f"{bound} = {self._measured(attempts['size'], hidden)}")
+        lines = list(writer.lines)
+        return "\n".join(
+            [
+                f"def encode(target: {self.root}) -> bytes:",
+                '    """The message; raises `EncodeError`."""',
+                "    sites = _SIZE_SITES",
+                "    try:",
+                *lines,
+                "        sites, data = _ENCODE_SITES, bytearray(needed)",
+                f"        written = {attempts['encode'].name}({', '.join(['data', 'needed', '1 << 60', *attempts['encode'].needs])})",
+                "    except _Failed as failed:",
+                "        raise _error(sites, failed, None) from None",
+                "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",
+                '        raise EncodeError("range", "", str(error)) from error',
+                "    return bytes(data if written == needed else data[:written])",
+            ]
+        )

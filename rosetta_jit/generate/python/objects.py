@@ -1,0 +1,327 @@
+"""Between the rows of kernels and objects: an expression that makes one, and statements that take one apart."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosetta_jit.backends.base import Writer
+from rosetta_jit.generate.python.classes import member_names
+from rosetta_jit.generate.python.expressions import CODES, Scope, flat_name
+from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
+from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.unit import Unit
+    from rosetta_jit.model.layout import Slot
+    from rosetta_jit.model.types import Type
+
+
+OUTSIDE = 2
+"""How deep the statements of `encode` are that stand in no loop."""
+
+_HOW = {"utf-8": "", "octets": '"utf-8", "surrogateescape"'}
+"""How texts are decoded: those that were checked, and others."""
+
+
+@dataclass(slots=True)
+class Make:
+    """Expressions for objects; ``names`` are the classes, ``reserved`` the lanes of which the kernel takes rows: others stay empty."""
+
+    unit: Unit
+    scope: Scope
+    names: Mapping[str, str]
+    reserved: frozenset[int]
+    depth: int = 0
+
+    def value(self, type_: Type, slot: Slot, lane: int, row: str) -> str:
+        """The value at a slot of a row."""
+        resolved = self.unit.schema.resolve(type_)
+        match resolved, slot:
+            case _, Number(offset, scalar):
+                text = self.scope.field(lane, row, offset, scalar)
+                return f"{text} != 0" if scalar == "bool" else text
+            case Struct(), Row():
+                return self.struct(resolved, slot, lane, row)
+            case Union(), Variant():
+                return self.union(resolved, slot, lane, row)
+            case Struct(), Span():
+                assert isinstance(type_, Ref)
+                return f"{self.row(type_, slot.lane, self._start(slot, lane, row))} if {self._count(slot, lane, row)} else None"
+            case ((String() | Bytes() | Array() | Map()), Span()):
+                return self.sequence(resolved, slot, lane, row)
+            case _:
+                raise AssertionError(type_)
+
+    def _start(self, slot: Span, lane: int, row: str) -> str:
+        return self.scope.field(lane, row, slot.offset, "i64")
+
+    def _count(self, slot: Span, lane: int, row: str) -> str:
+        return self.scope.field(lane, row, slot.offset + 8, "i64")
+
+    def struct(self, struct: Struct, slot: Row, lane: int, row: str) -> str:
+        given: list[str] = []
+        for each, member in zip(struct.fields, slot.members, strict=True):
+            if member.presence is None:
+                given.append(self.value(each.type, member.slot, lane, row))
+                continue
+            assert isinstance(each.type, Optional)
+            word, bit = divmod(member.presence, 64)
+            there = f"{self.scope.field(lane, row, slot.offset + 8 * word, 'u64')} & {1 << bit}"
+            given.append(f"({self.value(each.type.value, member.slot, lane, row)}) if {there} else None")
+        if slot.unknown is not None:
+            given.append(self._text("_bytes", slot.unknown, lane, row))
+        return f"{self.names[struct.name]}({', '.join(given)})"
+
+    def union(self, union: Union, slot: Variant, lane: int, row: str) -> str:
+        which = self.scope.field(lane, row, slot.offset, "i64")
+        cases = [
+            f'("{each.name}", {self.value(each.type, member.slot, lane, row)}) if {which} == {number} else '
+            for number, (each, member) in enumerate(zip(union.cases, slot.members, strict=True), 1)
+        ]
+        return f"({''.join(cases)}None)"
+
+    def _text(self, function: str, slot: Span, lane: int, row: str) -> str:
+        return f"{function}({self.scope.view(slot.lane, '')}, data, {self._start(slot, lane, row)}, {self._count(slot, lane, row)})"
+
+    def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
+        start, count = self._start(slot, lane, row), self._count(slot, lane, row)
+        element = self.unit.layout.lanes[slot.lane].element
+        match type_:
+            case String("utf-16"):
+                return f"_text16({self.scope.view(slot.lane, '')}, {start}, {count})"
+            case String(encoding):
+                if slot.lane not in self.reserved:
+                    text = f"data[{start} : {start} - 1 - {count}].decode({_HOW[encoding]})"
+                    return f'{text} if {count} else ""'
+                return self._text("_text", slot, lane, row)
+            case Bytes():
+                return self._text("_bytes", slot, lane, row)
+            case Array() if isinstance(element, Number):
+                if WIDTH[element.scalar] == 1 and element.scalar != "bool":
+                    borrowed = self._text("_bytes", slot, lane, row)
+                    return f'memoryview({borrowed}).cast("{CODES[element.scalar]}").tolist()'
+                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{start} : {start} + {count}].tolist()"
+                return f"[*map(bool, {numbers})]" if element.scalar == "bool" else numbers
+            case Array(inner) if self._is_borrowed(inner, slot.lane):
+                assert isinstance(inner, String)
+                return self._texts(inner, slot, start, count)
+            case Array(inner):
+                self.depth += 1
+                index = f"i_{self.depth}"
+                text = f"[{self.row(inner, slot.lane, index)} for {index} in range({start}, {start} + {count})]"
+                self.depth -= 1
+                return text
+            case Map(key, value):
+                self.depth += 1
+                index, entry = f"i_{self.depth}", map_entry(key, value)
+                assert isinstance(element, Row)
+                parts = [
+                    self.value(each.type, member.slot, slot.lane, index) for each, member in zip(entry.fields, element.members, strict=True)
+                ]
+                self.depth -= 1
+                return f"{{{parts[0]}: {parts[1]} for {index} in range({start}, {start} + {count})}}"
+
+    def _is_borrowed(self, type_: Type, lane: int) -> bool:
+        """Whether elements are texts that all lie in the message."""
+        element = self.unit.layout.lanes[lane].element
+        if not isinstance(element, Span) or not isinstance(type_, String) or type_.encoding == "utf-16":
+            return False
+        return element.lane not in self.reserved
+
+    def _texts(self, type_: String, slot: Span, start: str, count: str) -> str:
+        rows = self.scope.view(slot.lane, "q")
+        parts = (f"{rows}[{f'{start} * 2' + offset} : ({start} + {count}) * 2 : 2]" for offset in ("", " + 1"))
+        return f'[data[begin : begin - 1 - size].decode({_HOW[type_.encoding]}) if size else "" for begin, size in zip({", ".join(parts)})]'
+
+    def row(self, type_: Type, lane: int, index: str) -> str:
+        """The object of a row; those of types that contain themselves are made by a function."""
+        if self.unit.layout.lanes[lane].links is not None:
+            return f"made_{self.scope.lanes.rows(lane)}({index})"
+        return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
+
+
+@dataclass(slots=True)
+class Collect:
+    """Statements that take an object apart: its numbers become locals, or parts of rows that are packed."""
+
+    unit: Unit
+    lanes: Lanes
+    structs: dict[str, str]
+    writer: Writer = field(default_factory=lambda: Writer(depth=1))
+    number: int = 0
+
+    def name(self, what: str) -> str:
+        self.number += 1
+        return f"{what}_{self.number}"
+
+    def value(self, type_: Type, slot: Slot, at: str, found: dict[int, tuple[str, str]]) -> None:
+        """A value of an object: ``found`` gets the expression and the scalar for each offset of the row."""
+        resolved = self.unit.schema.resolve(type_)
+        match resolved, slot:
+            case _, Number(offset, scalar):
+                found[offset] = (f"1 if {at} else 0" if scalar == "bool" else at, scalar)
+            case Struct(), Row():
+                self.struct(resolved, slot, at, found)
+            case Union(), Variant():
+                self.union(resolved, slot, at, found)
+            case Struct(), Span():
+                self.link(type_, slot, at, found)
+            case ((String() | Bytes() | Array() | Map()), Span()):
+                self.sequence(resolved, slot, at, found)
+            case _:
+                raise AssertionError(type_)
+
+    def _span(self, slot: Span, start: str, count: str, found: dict[int, tuple[str, str]]) -> None:
+        found[slot.offset], found[slot.offset + 8] = (start, "i64"), (count, "i64")
+
+    def struct(self, struct: Struct, slot: Row, at: str, found: dict[int, tuple[str, str]]) -> None:
+        own = self.name("each") if not at.isidentifier() else at
+        if own != at:
+            self.writer.line(f"{own} = {at}")
+        words = [self.name("presence") for _ in range(slot.presence_words)]
+        for number, word in enumerate(words):
+            self.writer.line(f"{word} = 0")
+            found[slot.offset + 8 * number] = (word, "u64")
+        for each, member, name in zip(struct.fields, slot.members, member_names(struct), strict=True):
+            if member.presence is None:
+                self.value(each.type, member.slot, f"{own}.{name}", found)
+                continue
+            assert isinstance(each.type, Optional)
+            word, bit = divmod(member.presence, 64)
+            self.maybe(each.type.value, member.slot, f"{own}.{name}", f"{words[word]} |= {1 << bit}", found)
+        if slot.unknown is not None:
+            self.sequence(Bytes(), slot.unknown, f"{own}.unknown_fields", found)
+
+    def maybe(self, type_: Type, slot: Slot, at: str, there: str, found: dict[int, tuple[str, str]]) -> None:
+        """What is there under a condition: its numbers are 0 else."""
+        inner: dict[int, tuple[str, str]] = {}
+        outer, self.writer = self.writer, Writer(depth=self.writer.depth + 1)
+        value = self.name("value")
+        self.writer.line(there)
+        self.value(type_, slot, value, inner)
+        names = {offset: self.name("part") for offset in inner}
+        lines = [f"{self.writer.depth * '    '}{names[offset]} = {text}" for offset, (text, _) in inner.items()]
+        inside, self.writer = [*self.writer.lines, *lines], outer
+        self.writer.line(f"{' = '.join([*names.values(), value])} = 0" if names else f"{value} = 0")
+        self.writer.line(f"{value} = {at}")
+        self.writer.line(f"if {value} is not None:")
+        self.writer.lines += inside
+        found |= {offset: (names[offset], scalar) for offset, (_, scalar) in inner.items()}
+
+    def union(self, union: Union, slot: Variant, at: str, found: dict[int, tuple[str, str]]) -> None:
+        which, case = self.name("which"), self.name("case")
+        self.writer.line(f"{which} = 0")
+        self.writer.line(f"{case} = {at} or (None, None)")
+        found[slot.offset] = (which, "i64")
+        for number, (each, member) in enumerate(zip(union.cases, slot.members, strict=True), 1):
+            self.maybe(each.type, member.slot, f'({case}[1] if {case}[0] == "{each.name}" else None)', f"{which} = {number}", found)
+
+    def link(self, type_: Type, slot: Span, at: str, found: dict[int, tuple[str, str]]) -> None:
+        rows, start, count = self.name("rows"), self.name("start"), self.name("count")
+        self.writer.line(f"{rows} = [] if {at} is None else [{at}]")
+        self._rows(type_, slot.lane, rows, start, count)
+        self._span(slot, start, count, found)
+
+    def sequence(self, type_: String | Bytes | Array | Map, slot: Span, at: str, found: dict[int, tuple[str, str]]) -> None:
+        lane, start, count = self.lanes.rows(slot.lane), self.name("start"), self.name("count")
+        element = self.unit.layout.lanes[slot.lane].element
+        if not isinstance(type_, Map) and isinstance(element, Number):
+            size = WIDTH[element.scalar]
+            if self.writer.depth == OUTSIDE and not self.unit.layout.recursive:  # nothing else is in that lane
+                self.writer.line(f"{lane} = {self._raw(type_, element.scalar, at)}")
+                self._span(slot, "0", f"len({lane}){f' // {size}' if size > 1 else ''}", found)
+                return
+            raw = self.name("raw")
+            self.writer.line(f"{raw} = {self._raw(type_, element.scalar, at)}")
+            self.writer.line(f"{start} = len({lane}){f' // {size}' if size > 1 else ''}")
+            self.writer.line(f"{count} = len({raw}){f' // {size}' if size > 1 else ''}")
+            self.writer.line(f"{lane}.extend({raw})")
+        elif isinstance(type_, Map):
+            self._entries(type_, slot.lane, at, start, count)
+        else:
+            assert isinstance(type_, Array)
+            self._rows(type_.element, slot.lane, at, start, count)
+        self._span(slot, start, count, found)
+
+    def _raw(self, type_: String | Bytes | Array, scalar: str, at: str) -> str:
+        match type_:
+            case String("utf-16"):
+                return f'{at}.encode("utf-16-le", "surrogatepass")'
+            case String():
+                return f'{at}.encode("utf-8", "surrogateescape")'
+            case Bytes():
+                return at
+            case Array():
+                return f'array("{CODES[scalar]}", {at}).tobytes()'
+
+    def _rows(self, type_: Type, lane: int, at: str, start: str, count: str) -> None:
+        """Rows for the elements of a list, which are reserved before any is filled."""
+        self._loop(lane, at, start, count, partial(self._element, type_, lane))
+
+    def _element(self, type_: Type, lane: int, own: str, found: dict[int, tuple[str, str]]) -> None:
+        if self.unit.layout.lanes[lane].links is None:
+            self.value(type_, self.unit.layout.lanes[lane].element, own, found)
+
+    def _loop(self, lane: int, at: str, start: str, count: str, fill: Callable[[str, dict[int, tuple[str, str]]], None]) -> None:
+        rows, stride = self.lanes.rows(lane), self.lanes.stride(lane)
+        own, index = self.name("element"), self.name("at")
+        self.writer.line(f"{start} = len({rows}) // {stride}")
+        self.writer.line(f"{count} = len({at})")
+        self.writer.line(f"{rows}.extend(bytes({stride} * {count}))")
+        with self.writer.indented(f"for {index}, {own} in enumerate({at}, {start}):"):
+            if self.unit.layout.lanes[lane].links is not None:
+                self.writer.line(f"collect_{rows}({index}, {own})")
+                return
+            found: dict[int, tuple[str, str]] = {}
+            fill(own, found)
+            self.pack(lane, index, found)
+
+    def _entries(self, type_: Map, lane: int, at: str, start: str, count: str) -> None:
+        element = self.unit.layout.lanes[lane].element
+        assert isinstance(element, Row)
+        entry = map_entry(type_.key, type_.value)
+
+        def fill(own: str, found: dict[int, tuple[str, str]]) -> None:
+            for number, (each, member) in enumerate(zip(entry.fields, element.members, strict=True)):
+                self.value(each.type, member.slot, f"{own}[{number}]", found)
+
+        items = self.name("items")
+        self.writer.line(f"{items} = {at}.items()")
+        self._loop(lane, items, start, count, fill)
+
+    def pack(self, lane: int, index: str, found: dict[int, tuple[str, str]]) -> None:
+        """Write a row."""
+        if not found:
+            return
+        stride = self.lanes.stride(lane)
+        where = "0" if index == "0" else f"{index} * {stride}"
+        texts = [text for _, (text, _) in sorted(found.items())]
+        self.writer.line(f"{self.struct_for(found)}({self.lanes.rows(lane)}, {where}, {', '.join(texts)})")
+
+    def struct_for(self, found: dict[int, tuple[str, str]]) -> str:
+        """The function that packs numbers at such offsets."""
+        code, at = "=", 0
+        for offset, (_, scalar) in sorted(found.items()):
+            code += f"{offset - at}x" if offset > at else ""
+            code += CODES[scalar]
+            at = offset + WIDTH[scalar]
+        return self.structs.setdefault(code, f"_pack_{len(self.structs) + 1}")
+
+    def root(self, flat_rows: set[str], *, flat: bool) -> None:
+        """The message."""
+        found: dict[int, tuple[str, str]] = {}
+        self.value(Ref(self.unit.type), self.unit.layout.root, "target", found)
+        if not flat:
+            self.writer.line(f"message = bytearray({self.lanes.stride(0)})")
+            self.pack(0, "0", found)
+            return
+        for offset, (text, scalar) in sorted(found.items()):
+            name = flat_name(self.lanes, offset, scalar)
+            if name in flat_rows:
+                self.writer.line(f"{name} = {text}")

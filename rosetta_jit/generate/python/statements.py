@@ -1,0 +1,325 @@
+"""Kernel statements as Python statements, one a line. What a message cannot be raises `_Failed`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.backends.base import Writer
+from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, location, view_name
+from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Advance,
+    Assign,
+    Block,
+    Call,
+    Const,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    For,
+    HostCall,
+    If,
+    Kernel,
+    Let,
+    Place,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Stmt,
+    Store,
+    Switch,
+    Unary,
+    Var,
+    While,
+)
+from rosetta_jit.kernel.passes.fold import FALSE, folded
+from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rosetta_jit.generate.origins import Origin
+    from rosetta_jit.kernel.ir import Effect, Site
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """A body as a function: its name, and the names of what it needs of the message's lanes and row."""
+
+    name: str
+    needs: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class Function:
+    """One function being printed. ``result`` gives what a return of success gives, ``routines`` are functions by name with what they need.
+
+    ``positive`` are the locals that are not negative; ``reserved`` says how often rows of a lane are reserved, ``outside`` of which lanes
+    that is not within a loop or a case.
+    """
+
+    scope: Scope
+    kernel: Kernel
+    sites: Sequence[Site]
+    routines: Mapping[str, Attempt]
+    origins: Sequence[Origin]
+    result: Callable[[Scope, str], str]
+    read: frozenset[str] = frozenset()
+    is_routine: bool = False
+    moved: set[int] = field(default_factory=set[int])
+    positive: frozenset[str] = frozenset()
+    reserved: Counter[int] = field(default_factory=Counter[int])
+    outside: set[int] = field(default_factory=set[int])
+    writer: Writer = field(default_factory=lambda: Writer(depth=1))
+
+    def line(self, text: str) -> None:
+        self.writer.line(text)
+
+    def text(self, expr: Expr) -> str:
+        return bare(expression(self.scope, expr))
+
+
+def print_block(function: Function, block: Block) -> None:
+    """The statements of a block."""
+    before = len(function.writer.lines)
+    for group in grouped(block):
+        if len(group) == 1:
+            _statement(function, group[0])
+        else:
+            _together(function, group)
+    if len(function.writer.lines) == before:
+        function.line("pass")
+
+
+def _together(function: Function, group: list[Stmt]) -> None:
+    """Scalars that lie one behind the other, by one call."""
+    scope, found = function.scope, [each for stmt in group if (each := scalar_of(stmt)) is not None]
+    order = next((order for type_, _, order in found if WIDTH[type_] > 1), "<")
+    codes, at = "".join(CODES[type_] for type_, _, _ in found), function.text(found[0][1])
+    targets: list[str] = []
+    for stmt in group:
+        match stmt:
+            case Let(name, _):
+                targets.append(scope.locals.identifier(name) if name in function.read else "_")
+            case SetField(place, value):
+                targets.append(scope.field(place.lane, expression(scope, place.row), place.offset, type_of(value)))
+            case Store(_, value, _):
+                targets.append(function.text(value))
+            case _:
+                raise AssertionError(stmt)
+    if isinstance(group[0], Store):
+        function.line(f"{scope.struct(order, codes, 'store')}(data, {at}, {', '.join(targets)})")
+    else:
+        function.line(f"{', '.join(targets)} = {scope.struct(order, codes, 'load')}(data, {at})")
+
+
+def _statement(function: Function, stmt: Stmt) -> None:
+    match stmt:
+        case Require(at, size, failure):
+            _fail_if(function, _lacks(function, at, size), failure)
+        case Expect(condition, failure):
+            if condition == FALSE:
+                _fail(function, failure)
+            else:
+                _fail_if(function, function.text(folded(Unary("not", condition))), failure)
+        case Let(name, value) | Var(name, value) | Assign(name, value):
+            if name in function.read:
+                text = function.text(value)
+                function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
+        case Store() | SetField() | Copy() | Fill():
+            _effect(function, stmt)
+        case Reserve(lane, count):
+            _reserve(function, lane, function.text(count))
+        case Advance(lane, count):
+            function.line(f"{function.scope.used(lane)} += {function.text(count)}")
+        case Return(position):
+            function.line(f"return {function.result(function.scope, function.text(position))}")
+        case For() | While() | If() | Switch():
+            _nested(function, stmt)
+        case Call():
+            _call(function, stmt)
+        case HostCall():
+            _host_call(function, stmt)
+        case _:
+            assert_never(stmt)
+
+
+def _origin(function: Function, stmt: Stmt) -> str:
+    line = origin_of(stmt, function.origins) if function.origins else None
+    return "" if line is None else f"  # {ascii(line)[1:-1]}"
+
+
+def _lacks(function: Function, at: Expr, size: Expr) -> str:
+    """Whether bytes are missing."""
+    where, length = function.text(at), expression(function.scope, size)
+    if is_not_negative(at, function.positive) and is_not_negative(size, function.positive):
+        if isinstance(size, Const):
+            return f"end < {where} + {length}" if not isinstance(at, Const) else f"end < {int(at.value) + int(size.value)}"
+        return f"{bare(length)} > end - {expression(function.scope, at)}"
+    if isinstance(size, Const):
+        if isinstance(at, Const):
+            return f"end < {int(at.value) + int(size.value)}"
+        return f"not 0 <= {where} <= end - {length}"
+    if not isinstance(at, Const):
+        return f"{where} < 0 or not 0 <= {bare(length)} <= end - {expression(function.scope, at)}"
+    return f"not 0 <= {bare(length)} <= end - {where}"
+
+
+def _fail_if(function: Function, condition: str, failure: Failure) -> None:
+    with function.writer.indented(f"if {condition}:"):
+        _fail(function, failure)
+
+
+def _fail(function: Function, failure: Failure) -> None:
+    site = function.sites[failure.site]
+    at = function.text(failure.at)
+    if function.is_routine:
+        function.line(f"raise _Failed(sites[{failure.site - 1}], {at}, indices)")
+        return
+    indices = [function.text(each) for each in failure.indices]
+    detail = ""
+    if site.detail_lane is not None:
+        *indices, first, count = indices
+        detail = f", bytes({function.scope.view(site.detail_lane, '')}[{first} : {first} + {count}])"
+    said = f"  # {ascii(f'{site.kind} {site.path}: {site.detail}')[1:-1]}"
+    given = f", ({', '.join(indices)}{',' if len(indices) == 1 else ''})" if indices or detail else ""
+    function.line(f"raise _Failed({failure.site}, {at}{given}{detail}){said}")
+
+
+def _effect(function: Function, stmt: Effect) -> None:
+    scope, origin = function.scope, _origin(function, stmt)
+    match stmt:
+        case Store(at, value, order):
+            type_, where, text = type_of(value), function.text(at), function.text(value)
+            if type_ in ("u8", "bool"):
+                function.line(f"data[{where}] = {text}{origin}")
+            else:
+                function.line(f"{scope.struct('<' if WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}")
+        case SetField(place, value):
+            field = scope.field(place.lane, expression(scope, place.row), place.offset, type_of(value))
+            text = function.text(value)
+            if type_of(value) == "f32" and text.startswith("_single(") and (place.lane or not scope.flat):
+                text = bare(text.removeprefix("_single"))  # a view rounds by itself
+            function.line(f"{field} = {text}{origin}")
+        case Copy(target, source, size):
+            (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
+            function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
+        case Fill(target, size, byte):
+            if isinstance(target, Place) and target.lane == 0 and scope.flat:
+                function.line("<row>")
+                return
+            (to, first), length = location(scope, target), expression(scope, size)
+            filling = f"bytes({bare(length)})" if byte == 0 else f"bytes([{byte}]) * {length}"
+            function.line(f"{to}[{first} : {first} + {length}] = {filling}{origin}")
+        case _:
+            assert_never(stmt)
+
+
+def _reserve(function: Function, lane: int, count: str) -> None:
+    scope, name = function.scope, function.scope.lanes.rows(lane)
+    if lane and function.reserved[lane] == 1 and lane in function.outside and lane not in scope.rooms and not function.is_routine:
+        _reserve_once(function, lane, count)
+        return
+    used, room = scope.used(lane), scope.room(lane)
+    function.moved.add(lane)
+    free = room if lane == 0 else f"{room} - {used}"
+    with function.writer.indented(f"if {count} > {free}:"):
+        function.line(f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most)")
+        function.line(f"<views {lane}>")
+
+
+def _reserve_once(function: Function, lane: int, count: str) -> None:
+    """Rows of a lane that has none yet, and gets no others."""
+    scope, stride = function.scope, function.scope.lanes.stride(lane)
+    with function.writer.indented(f"if {count} > most:"):
+        function.line("raise _Failed(0, 0)")
+    size = count if stride == 1 else f"{stride} * ({count})" if " " in count else f"{stride} * {count}"
+    function.line(f"{scope.view(lane, '')} = bytearray({size})")
+    function.line(f"<views {lane}>")
+    function.moved.add(lane)
+
+
+def _nested(function: Function, stmt: For | While | If | Switch) -> None:
+    scope = function.scope
+    match stmt:
+        case For(_, count, _) if (found := turned(stmt)) is not None:
+            _turn(function, count, found, decodes=isinstance(stmt.body[-1], SetField))
+        case For(variable, count, body):
+            with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
+                print_block(function, body)
+        case While(condition, body):
+            with function.writer.indented(f"while {function.text(condition)}:"):
+                print_block(function, body)
+        case If(condition, then, otherwise):
+            if not then:
+                condition, then, otherwise = folded(Unary("not", condition)), otherwise, ()
+            with function.writer.indented(f"if {function.text(condition)}:"):
+                print_block(function, then)
+            if otherwise:
+                with function.writer.indented("else:"):
+                    print_block(function, otherwise)
+        case Switch(value, cases, default):
+            with function.writer.indented(f"match {function.text(value)}:"):
+                for number, body in cases:
+                    with function.writer.indented(f"case {number}:"):
+                        print_block(function, body)
+                with function.writer.indented("case _:"):
+                    print_block(function, default)
+        case _:
+            assert_never(stmt)
+
+
+def _turn(function: Function, count: Expr, found: tuple[Place, Expr, str], *, decodes: bool) -> None:
+    """An array whose numbers have their high byte first, as a whole."""
+    place, base, type_ = found
+    scope, size = function.scope, f"{expression(function.scope, count)} * {WIDTH[type_]}"
+    (lane, first), begin = location(scope, place), expression(scope, base)
+    rows, part = f"{lane}[{first} : {first} + {size}]", f"data[{bare(begin)} : {begin} + {size}]"
+    target, source = (rows, part) if decodes else (part, rows)
+    with function.writer.indented(f"if {function.text(count)} > 0:"):
+        function.line(f'{target} = _turned({source}, "{CODES[type_]}")')
+
+
+def _call(function: Function, call: Call) -> None:
+    """A routine gets the numbers of the sites at which the caller fails where it does, and the indices there."""
+    scope, routine = function.scope, function.routines[call.routine]
+    _pass_on(function, routine)
+    results = [scope.locals.identifier(result.name) for result in call.results]
+    sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
+    indices = "indices" if function.is_routine else _tuple([function.text(each) for each in call.indices])
+    given = ", ".join(["data", "end", _tuple(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
+    bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
+    function.line(f"{bound}{routine.name}({given})")
+
+
+def _pass_on(function: Function, routine: Attempt) -> None:
+    """What a routine needs its caller needs, too."""
+    scope = function.scope
+    for lane in range(len(scope.lanes.all)):
+        for code in ("", *set(CODES.values())):
+            if view_name(scope.lanes, lane, code) in routine.needs:
+                scope.views.add((lane, code))
+        if f"{scope.lanes.rows(lane)}_room" in routine.needs:
+            scope.rooms.add(lane)
+    scope.rows.update(each for each in routine.needs if each.startswith("m_"))
+
+
+def _tuple(texts: list[str]) -> str:
+    return f"({', '.join(texts)}{',' if len(texts) == 1 else ''})"
+
+
+def _host_call(function: Function, call: HostCall) -> None:
+    result = function.scope.locals.identifier(call.result.name)
+    given = ", ".join(function.text(each) for each in call.arguments)
+    with function.writer.indented("try:"):
+        function.line(f'{result} = functions["{call.function}"]({given})')
+    with function.writer.indented("except Refused:"):
+        _fail(function, call.failure)

@@ -1,0 +1,151 @@
+"""Generated Python does what the library does, without it."""
+
+from __future__ import annotations
+
+import ast
+import struct
+import subprocess
+import sys
+import types
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.build import Wishes, generated
+from tests.generate.corpora import corpora
+from tests.generate.driver import expected, harmed
+from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
+from tests.generate.test_cpp import OUTER
+from tests.golden import GOLDEN, check_golden
+
+BOTH = ("decode", "encode")
+FEW = {"lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf", "protobuf rj.Tree"}
+
+
+@pytest.fixture
+def module(monkeypatch):
+    """A function that imports what is generated."""
+
+    def imported(request, directions=BOTH):
+        made = types.ModuleType("generated_unit")
+        monkeypatch.setitem(sys.modules, made.__name__, made)  # dataclasses look there for the names of types
+        text = generated(request, "python", directions, "unit")["unit.py"]
+        exec(compile(text, "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
+        return made
+
+    return imported
+
+
+def answer(unit, message: bytes) -> str:
+    """As the drivers in C and C++ say it."""
+    try:
+        return f"ok {unit.encode(unit.decode(message)).hex()}"
+    except unit.MessageError as error:
+        line = f" ({error.line})" if error.line else ""
+        offset = "" if error.offset is None else f" {error.offset}"
+        return f"{error.kind}{offset} [{error.path}] {error.detail}{line}"
+
+
+def same(found: str, wanted: str) -> bool:
+    """A signalling NaN of 32 bits becomes a quiet one in Python's floats: one bit of a byte."""
+    if found == wanted or not (found.startswith("ok ") and wanted.startswith("ok ") and len(found) == len(wanted)):
+        return found == wanted
+    pairs = zip(bytes.fromhex(found[3:]), bytes.fromhex(wanted[3:]), strict=True)
+    return all(one ^ other in (0, 0x40) for one, other in pairs)
+
+
+def answers_as_the_library(unit, programs, messages) -> None:
+    for message in messages:
+        found, wanted = answer(unit, message), expected(*programs, message)
+        assert same(found, wanted), (message.hex(), found, wanted)
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_python_answers_as_the_library_does(name, module):
+    request, good = SUBJECTS[name]
+    of = (rj.Decoder, rj.Encoder) if request.mapping else (rj.Decoder.of, rj.Encoder.of)
+    programs = [make(request.mapping or request.type, encoding=request.encoding) for make in of]
+    answers_as_the_library(module(request), programs, harmed(good, 12, name))
+
+
+@pytest.mark.parametrize("corpus", [each for each in corpora() if each.name in FEW], ids=lambda each: each.name)
+def test_messages_of_peers(corpus, module):
+    answers_as_the_library(module(corpus.request), corpus.programs(), harmed(list(corpus.messages[:4]), 4, corpus.name))
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("corpus", corpora(), ids=lambda each: each.name)
+def test_all_messages_of_peers(corpus, module):
+    answers_as_the_library(module(corpus.request), corpus.programs(), harmed(list(corpus.messages), 4, corpus.name))
+
+
+def test_the_text_is_the_same_every_time():
+    check_golden(GOLDEN / "generate" / "torso_state.py.txt", generated(TORSO, "python", BOTH, "torso_state")["torso_state.py"])
+
+
+def test_a_module_needs_the_standard_library_alone(tmp_path):
+    (tmp_path / "torso.py").write_text(generated(TORSO, "python", BOTH, "torso")["torso.py"])
+    message = struct.pack("<ii3d", 266, 3, 90.0, 0.0, -90.0)
+    said = f"import torso; print(torso.decode({message!r}).angles); print(torso.encode(torso.JointAngles([0.0] * 3)).hex())"
+    said = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); {said}"
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r}); {said}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines() == ["[1.5707963705062866, 0.0, -1.5707963705062866]", struct.pack("<ii3d", 266, 3, 0.0, 0.0, 0.0).hex()]
+
+
+def test_a_hostile_schema_stays_in_its_place(module):
+    unit = module(type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": HOSTILE + OUTER}))
+    rows = (
+        struct.pack("<If", 1, 2.5)
+        + struct.pack("<I", 2)
+        + b"ab"
+        + bytes([7])
+        + struct.pack("<2q", -1, 1)
+        + struct.pack("<I", 1)
+        + b"x"
+        + bytes(4)
+    )
+    message = struct.pack("<id", 5, 0.5) + struct.pack("<I", 3) + b'*/"' + bytes([1, 0, 1, 1]) + struct.pack("<I", 2) + b"\0\1" + rows
+    assert answer(unit, message) == f"ok {message.hex()}"
+
+
+def test_docs_of_a_schema_are_docs():
+    """What ends a string, or begins a line, in a schema does neither in the module."""
+    schema = 'int32 x # """ + exit() #\\\nint32 y # \\"""\nstring s="""x\n'
+    text = generated(type_request("decode", "a/B", {"encoding": "ros1", "schema": schema}), "python", BOTH, "unit")["unit.py"]
+    calls = {node.func.id for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+    assert "exit" not in calls
+
+
+def test_functions_of_the_mapping_are_the_programs_own(tmp_path, module):
+    (tmp_path / "calling.mapping").write_text(CALLING)
+    unit = module(request_of("decode", {"encoding": "yarp3"}, mapping=str(tmp_path / "calling.mapping")), ("decode",))
+
+    def halved(number):
+        if number < 0:
+            raise unit.Refused
+        return number / 2
+
+    unit.functions["halved"] = halved
+    assert unit.decode(struct.pack("<ii3d", 266, 3, 90.0, 0.0, 0.0)).angles == pytest.approx([0.785398], rel=1e-6)
+    with pytest.raises(unit.DecodeError, match="rejected"):
+        unit.decode(struct.pack("<ii3d", 266, 3, -90.0, 0.0, 0.0))
+
+
+def test_objects_that_cannot_be_written(module):
+    unit = module(SUBJECTS["joints"][0])
+    with pytest.raises(unit.EncodeError, match="range"):
+        unit.encode(unit.JointState(name=[1]))
+    with pytest.raises(unit.EncodeError, match="range"):
+        unit.encode(unit.JointState(header=unit.Header(seq=-1)))
+
+
+def test_classes_are_the_modules_own():
+    with pytest.raises(SchemaError, match="unknown-holder"):
+        generated(TORSO, "python", BOTH, "torso", Wishes(holder="protobuf"))
