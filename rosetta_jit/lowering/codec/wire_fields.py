@@ -8,15 +8,19 @@ fill afterwards. In the alternatives of a `Choice` the same fields are bound in 
 from __future__ import annotations
 
 from dataclasses import field, replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.kernel.ir import Const, Copy, Expr, Local, Place, Scalar, Wire
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import Stored, scalar_name
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
+from rosetta_jit.model import expr
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Choice, Codec, Computed, Number, Path, Repeat, Seq, Table
 from rosetta_jit.wire.size import fixed_size
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 EACH = "[]"
 """In a path, stands for any element of the array before it."""
@@ -129,10 +133,13 @@ class WireFields:
         return WireElements(self, self.path + path, self.shown(path))
 
     def branch(self, choice: Choice) -> None:
-        """Declare the variables that every alternative is going to bind."""
+        """Declare the variables that every alternative is going to bind, and bind what all of them are going to read."""
         if not self.element:
             for _, codec in choice.alternatives:
                 self.declare(codec, ())
+            for path in {} if self.supply is None else dict.fromkeys(path for _, codec in choice.alternatives for path in _told_by(codec)):
+                if (self.path + path, "value") not in self.found.variables:
+                    self.get(path)
 
     def supplied(self, key: Path) -> Supply:
         """Where an encoding walk gets its values; a decoding one has bound what it could."""
@@ -251,3 +258,30 @@ def leaves(item: Codec, offset: int = 0) -> list[Leaf]:
 def _stem(key: Path, role: str) -> str:
     name = "_".join(part for part in key if part != EACH) or "message"
     return name if role == "value" else f"{name}_{role}"
+
+
+def _told_by(codec: Codec) -> Iterator[Path]:
+    """The numbers by which a codec tells counts."""
+    match codec:
+        case Seq(items):
+            for item in items:
+                yield from _told_by(item)
+        case Repeat(_, count, _) | Blob(_, count, _, _):
+            yield from _named_in(count.value)
+        case _:
+            pass
+
+
+def _named_in(value: object) -> Iterator[Path]:
+    match value:
+        case expr.Path(_, steps):
+            yield tuple(step.name for step in steps if isinstance(step, expr.Member))
+        case expr.Unary(_, operand):
+            yield from _named_in(operand)
+        case expr.Binary(_, left, right):
+            yield from (*_named_in(left), *_named_in(right))
+        case expr.Call(_, arguments):
+            for each in arguments:
+                yield from _named_in(each)
+        case _:
+            pass

@@ -1,4 +1,4 @@
-"""The shipped mappings between YARP's images and vectors and RST: bytes of real YARP in, values by numpy, and back."""
+"""The shipped mappings between YARP's images, vectors and matrices and RST: bytes of real YARP in, values by numpy, and back."""
 
 from __future__ import annotations
 
@@ -144,6 +144,22 @@ def test_vectors_of_any_length(dialect, backend):
         assert np.array_equal(angles.angles, np.radians(degrees).astype(np.float32))
         back = np.frombuffer(encode(angles)[8:], "<f8")
         assert np.allclose(back, degrees, rtol=2e-7, atol=0)
+
+
+@pytest.mark.parametrize(("dialect", "backend"), [("yarp3", "python"), ("yarp4", "llvm")])
+def test_matrices(dialect, backend):
+    decode, encode = programs("matrix", dialect, backend)
+    for name in ("matrix_1x1", "matrix_2x3"):
+        data = messages(dialect)[name]
+        found = decode(data)
+        assert f"matrix_{found.size.m}x{found.size.n}" == name
+        assert bytes(np.asarray(found.data.value)) == data[-8 * found.size.m * found.size.n :]
+        assert encode(found) == data
+    found.size.m = 4
+    with pytest.raises(rj.EncodeError, match="must agree with the fields that determine it"):
+        encode(found)
+    empty = encode.holder_type.from_dict({"size": {"m": 0, "n": 3}, "data": {}})
+    assert decode(encode(empty)).to_dict() == {"size": {"m": 0, "n": 3}, "data": {"value": []}}
 
 
 @pytest.mark.parametrize("backend", ["llvm", "python"])
