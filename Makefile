@@ -25,7 +25,7 @@ demo: $(VENV)/.demo ## play the bundled recordings through compiled kernels; wri
 	$(BIN)/rosetta-jit demo --output $(OUTPUT)
 
 usecase: $(VENV)/.test ## a component on RSB moves a simulated iCub on YARP (a real one where `make yarp` has built it); writes a page
-	$(BIN)/python -m usecase $(ARGS)
+	$(BIN)/python -m tests.usecase $(ARGS)
 
 test: check ## lint, check types, run all tests but the campaigns
 	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile $(ARGS)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-import usecase.__main__ as usecase
-from usecase.page import write
+import tests.usecase.__main__ as usecase
+from tests.usecase.page import write
 
 POSES = ((0.3, 0.0, 0.1), (-0.2, 0.1, 0.2))
 

@@ -1,4 +1,4 @@
-"""`python -m usecase`: plays the use case, with the real YARP where it is built, and writes a page about it."""
+"""`python -m tests.usecase`: plays the use case, with the real YARP where it is built, and writes a page about it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.checking import checked
 from rosetta_jit.bridge.running import Running
-from usecase.component import Seen, run
-from usecase.page import write
+from tests.usecase.component import Seen, run
+from tests.usecase.page import write
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -37,7 +37,7 @@ def play(seconds: float, build: Path | None) -> tuple[Seen, list[dict[str, Any]]
             from tests.transports.name_server import NameServer
 
             stack.callback(NameServer(yarp).close)
-            stack.enter_context(_program([sys.executable, "-m", "usecase.simulator", str(yarp)]))
+            stack.enter_context(_program([sys.executable, "-m", "tests.usecase.simulator", str(yarp)]))
         else:
             env = _name_server_environment(folder, yarp)
             arguments = ["--read", "--socket", str(yarp), "--portdb", ":memory:", "--subdb", ":memory:"]
@@ -119,7 +119,7 @@ def _free_port() -> int:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="usecase", description=__doc__)
     parser.add_argument("--seconds", type=float, default=9.0)
-    parser.add_argument("--output", type=Path, default=HERE.parent / "build" / "usecase")
+    parser.add_argument("--output", type=Path, default=HERE.parents[1] / "build" / "usecase")
     given = parser.parse_args()
     build = built(given.output / "simulator")
     how = "The simulator is on the real YARP" if build else "The simulator is on ports of ours, because YARP is not built (`make yarp`)"

@@ -12,7 +12,7 @@ from rosetta_jit.runtime.looks.png import png
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from usecase.component import Seen
+    from tests.usecase.component import Seen
 
 WIDTH, HEIGHT, MARGIN = 760, 300, 40
 COLORS = ("#c0392b", "#27ae60", "#2c5aa0")
