@@ -49,6 +49,7 @@ class RosCaller(Caller):
             "persistent": "1",
         }
         self._turn = threading.Lock()
+        self._greeted = threading.Event()
         self._stream: Stream | None = None
         self._pending: Pending | None = None
         self._closed = False
@@ -101,7 +102,9 @@ class RosCaller(Caller):
         self.reconnects += self._stream is not None
         self._stream = Stream(sock, self._machine, self._gone)
         self.connections = 1
+        self._greeted.clear()
         loop().run(self._stream.start)
+        self._greeted.wait(max(until - monotonic(), 0))  # rospy loses what comes before it has answered the header
         return self._stream
 
     def _machine(self, stream: Stream) -> Machine:
@@ -112,6 +115,7 @@ class RosCaller(Caller):
         if wrong := disagreement(self._wanted, fields):
             raise ProtocolError(wrong)
         told = {"callerid": fields.get("callerid", ""), "md5": fields.get("md5sum", "")}
+        self._greeted.set()
         while True:
             worked = bytes((yield Between(1))) == WORKED
             (size,) = LENGTH.unpack((yield 4))
@@ -133,6 +137,7 @@ class RosCaller(Caller):
         if pending is not None:
             kind = "type" if "another " in why else "closed"
             pending.fail(TransportError(kind, self.address, why or "the connection ended before the answer came"))
+        self._greeted.set()
 
 
 def serve(address: Address, server: Server, options: Mapping[str, Any]) -> None:

@@ -20,7 +20,7 @@ MAX_BYTES = 4 << 20
 MAX_REQUESTS = 32
 """At a time, of who asks this node."""
 
-TIMEOUT_S = 3.0
+TIMEOUT_S = 5.0
 
 
 def ask(uri: str, method: str, *arguments: Any) -> Any:
