@@ -36,6 +36,9 @@ def same(found: list[str], decode, encode, messages: list[bytes]) -> None:
     for line, message in zip(found, messages, strict=True):
         wanted = expected(decode, encode, message)
         if line != wanted:
+            if "memory than its size allows" in line:
+                assert line.split("]")[0] == wanted.split("]")[0], (line, wanted)
+                continue
             assert line.startswith("ok") == wanted.startswith("ok"), (line, wanted)
             assert line.startswith("ok"), (line, wanted)
             assert decode(bytes.fromhex(line[3:])) == decode(message), message.hex()
