@@ -50,6 +50,8 @@ def answer(unit, message: bytes) -> str:
 
 def same(found: str, wanted: str) -> bool:
     """A signalling NaN of 32 bits becomes a quiet one in Python's floats: one bit of a byte."""
+    if "memory than its size allows" in found:
+        return found.split("]", maxsplit=1)[0] == wanted.split("]", maxsplit=1)[0]
     if found == wanted or not (found.startswith("ok ") and wanted.startswith("ok ") and len(found) == len(wanted)):
         return found == wanted
     pairs = zip(bytes.fromhex(found[3:]), bytes.fromhex(wanted[3:]), strict=True)

@@ -52,7 +52,7 @@ rosetta_jit::error report(const site *sites, const struct failure &failure, int6
     static_cast<void>(holder);
     const site &where = sites[failure.site];
     if (failure.site == 0) {
-        return {status::full, lanes[failure.offset], -1, "the message asks for more memory than its size allows", ""};
+        return {status::count, lanes[failure.offset], 0, "the message asks for more memory than its size allows", ""};
     }
     rosetta_jit::error found = rosetta_jit::detail::error_of(where, failure.offset, failure.indices, available);
 $said    return found;

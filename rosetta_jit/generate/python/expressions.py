@@ -74,7 +74,8 @@ class Scope:
     """What the printers of a function share.
 
     ``flat``: the fields of the message's row are locals, ``rows``, of which ``floats`` are floats. ``views`` are the lanes that it reaches,
-    with the code of the view, empty for the bytes themselves; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs.
+    with the code of the view, empty for the bytes themselves; ``paths`` are the fields that lanes belong to; ``counted`` and ``rooms`` are
+    lanes, ``loads`` functions that it needs.
     """
 
     locals: Namespace
@@ -82,6 +83,7 @@ class Scope:
     flat: bool
     loads: set[str]
     name: str
+    paths: tuple[str, ...]
     views: set[tuple[int, str]] = field(default_factory=set[tuple[int, str]])
     rows: set[str] = field(default_factory=set[str])
     floats: set[str] = field(default_factory=set[str])

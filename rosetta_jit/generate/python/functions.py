@@ -84,6 +84,7 @@ def print_kernel(
     origins: Sequence[Origin],
     result: Callable[[Scope, str], str],
     inner: Callable[[Scope], list[str]],
+    paths: tuple[str, ...],
     *,
     flat: bool,
 ) -> tuple[str, tuple[Attempt, ...]]:
@@ -94,7 +95,7 @@ def print_kernel(
     words |= {f"{lanes.rows(lane)}_{what}" for lane in range(len(lanes.all)) for what in ("used", "room")}
 
     def scope() -> Scope:
-        return Scope(Namespace(words), lanes, flat, loads, kernel.name)
+        return Scope(Namespace(words), lanes, flat, loads, kernel.name, paths)
 
     for routine in kernel.routines:
         function = Function(scope(), kernel, routine.sites, routines, (), result, is_routine=True)

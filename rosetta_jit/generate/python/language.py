@@ -43,6 +43,7 @@ class _Module:
     def __init__(self, unit: Unit) -> None:
         self.unit, self.names = unit, names_of(unit)
         self.lanes = named_parts(unit, WORDS)
+        self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
         self.root = self.names[unit.type]
 
@@ -104,7 +105,7 @@ class _Module:
 
         origins = self.unit.origins.get("borrow", ())
         text, attempts = print_kernel(
-            kernel, self._lanes(kernel), "borrow", self.loads, origins, made, inner, flat=is_flat(kernel, self._lanes(kernel))
+            kernel, self._lanes(kernel), "borrow", self.loads, origins, made, inner, self.paths, flat=is_flat(kernel, self._lanes(kernel))
         )
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 
@@ -153,7 +154,7 @@ class _Module:
                 return ", ".join([position, *given]) + ("," if not given else "")
 
             text, (attempts[role], *_) = print_kernel(
-                kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), result, lambda _: [], flat=flat
+                kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), result, lambda _: [], self.paths, flat=flat
             )
             texts += [self._sites(role), f"\n{text.rstrip()}"]
         longest = max(kernels.values(), key=lambda each: len(each.strides))

@@ -44,7 +44,7 @@ class EncodeError(MessageError):
 class _Failed(Exception):
     """An attempt to read or write has come upon something that cannot be."""
 
-    def __init__(self, site: int, at: int, indices: tuple[int, ...] = (), detail: bytes | None = None) -> None:
+    def __init__(self, site: int, at: int, indices: tuple[Any, ...] = (), detail: bytes | None = None) -> None:
         self.site, self.at, self.indices, self.detail = site, at, indices, detail
 
 
@@ -52,6 +52,8 @@ def _error(sites: tuple[tuple[Any, ...], ...], failed: _Failed, end: int | None)
     """The error of a failure; ``end`` is that of the message which was read."""
     kind, path, detail, line, parts = sites[failed.site]
     at, indices = failed.at, list(failed.indices)
+    if failed.site == 0:
+        path = "{}"
     for offset, size, step, inner in parts:
         available, element = (0 if end is None else end - at), 0
         if step and available - offset - size >= 0:
@@ -70,11 +72,11 @@ def _error(sites: tuple[tuple[Any, ...], ...], failed: _Failed, end: int | None)
     return EncodeError(kind, path, detail, line) if end is None else DecodeError(kind, path, detail, line, at)
 
 
-def _more(lane: Any, room: int, missing: int, size: int, most: int) -> tuple[bytearray, int]:
+def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -> tuple[bytearray, int]:
     """A lane with room for more rows of ``size`` bytes; a message that asks for more than ``most`` takes a length from what it says."""
     wanted = room + missing
     if wanted > most:
-        raise _Failed(0, 0)
+        raise _Failed(0, 0, (path,))
     if room:
         wanted = max(wanted, min(most, 2 * room))
     grown = bytearray(wanted * size)

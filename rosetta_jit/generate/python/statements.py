@@ -231,16 +231,20 @@ def _reserve(function: Function, lane: int, count: str) -> None:
     used, room = scope.used(lane), scope.room(lane)
     function.moved.add(lane)
     free = room if lane == 0 else f"{room} - {used}"
+    path = ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
     with function.writer.indented(f"if {count} > {free}:"):
-        function.line(f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most)")
+        function.line(
+            f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most, {path})"
+        )
         function.line(f"<views {lane}>")
 
 
 def _reserve_once(function: Function, lane: int, count: str) -> None:
     """Rows of a lane that has none yet, and gets no others."""
     scope, stride = function.scope, function.scope.lanes.stride(lane)
+    path = ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
     with function.writer.indented(f"if {count} > most:"):
-        function.line("raise _Failed(0, 0)")
+        function.line(f"raise _Failed(0, 0, ({path},))")
     size = count if stride == 1 else f"{stride} * ({count})" if " " in count else f"{stride} * {count}"
     function.line(f"{scope.view(lane, '')} = bytearray({size})")
     function.line(f"<views {lane}>")
