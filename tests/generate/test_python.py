@@ -151,3 +151,17 @@ def test_objects_that_cannot_be_written(module):
 def test_classes_are_the_modules_own():
     with pytest.raises(SchemaError, match="unknown-holder"):
         generated(TORSO, "python", BOTH, "torso", Wishes(holder="protobuf"))
+
+
+def test_what_the_host_tells(module):
+    """Messages are counted by the module, decoded and encoded ones together."""
+    schema = {
+        "a.bottle-schema": '"a" (("value" :int))',
+        "b.proto": 'syntax = "proto3"; package b; message Number { int32 value = 1; int64 now = 2; }',
+        "m.mapping": 'import "a.bottle-schema"\nimport "b.proto"\ndata-holder: b.Number\nwire-schema: a\nunpack-rules:\n'
+        "  .value = int32(counter() + .value)\n  .now = now()\n",
+    }
+    unit = module(request_of("decode", {"schema": schema, "encoding": "yarp3"}, mapping="m.mapping"), ("decode",))
+    unit.now = lambda: 17
+    message = struct.pack("<iii", 257, 1, 40)
+    assert [(found.value, found.now) for found in map(unit.decode, [message] * 3)] == [(40, 17), (41, 17), (42, 17)]

@@ -16,7 +16,7 @@ from rosetta_jit.generate.python.expressions import CODES, view_name
 from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
 from rosetta_jit.generate.python.objects import Collect, Make
 from rosetta_jit.kernel.ir import Advance, Const, Return
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.shape import is_told, statements
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
@@ -73,6 +73,8 @@ class _Module:
                 method = "unpack_from" if verb == "load" else "pack_into"
                 lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
+        if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
+            lines.append("_numbers = _count()")
         return "\n".join(lines)
 
     def _lanes(self, kernel: Kernel) -> Lanes:

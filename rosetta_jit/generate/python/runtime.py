@@ -7,6 +7,7 @@ from array import array
 from collections.abc import Callable
 from ctypes import c_float
 from dataclasses import dataclass, field
+from itertools import count as _count
 from struct import Struct
 from struct import error as _StructError
 from time import time_ns as _time_ns
