@@ -6,6 +6,7 @@ import subprocess
 import sys
 import zipfile
 from importlib.metadata import entry_points
+from pathlib import Path
 
 import pytest
 
@@ -17,8 +18,11 @@ OFFERS = f"[{GROUP}]\nthing = somewhere:THING\n"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder in which packages are installed."""
-    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path), str(tmp_path / "nowhere")])
+    """A folder in which packages are installed, in an interpreter to which no other test has added archives or finders."""
+    monkeypatch.setattr(
+        sys, "meta_path", [each for each in sys.meta_path if getattr(each, "__module__", "").startswith("_frozen_importlib")]
+    )
+    monkeypatch.setattr(sys, "path", [*(each for each in sys.path if Path(each).is_dir()), str(tmp_path), str(tmp_path / "nowhere")])
     return tmp_path
 
 

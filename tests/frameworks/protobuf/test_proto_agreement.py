@@ -13,7 +13,7 @@ from rosetta_jit.source import Source
 from tests.frameworks.protobuf.proto_files import IDL, SHIPPED, VECTORS, load_from, names, protoc, source
 
 CORPUS = [(folder, name) for folder in (VECTORS, IDL, SHIPPED) for name in names(folder)]
-RST_TYPES = 69
+RST_TYPES = 70
 
 
 @pytest.mark.parametrize(("folder", "name"), CORPUS, ids=[name for _, name in CORPUS])
