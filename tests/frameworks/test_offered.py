@@ -18,14 +18,19 @@ OFFERS = f"[{GROUP}]\nthing = somewhere:THING\n"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder in which packages are installed, in an interpreter to which no other test has added archives or finders."""
-    monkeypatch.setattr(
-        sys, "meta_path", [each for each in sys.meta_path if getattr(each, "__module__", "").startswith("_frozen_importlib")]
-    )
+    """A folder in which packages are installed."""
     monkeypatch.setattr(sys, "path", [*(each for each in sys.path if Path(each).is_dir()), str(tmp_path), str(tmp_path / "nowhere")])
     return tmp_path
 
 
+@pytest.fixture
+def own_finders(monkeypatch):
+    """An interpreter to which no package has added a finder of its own, which might know of packages anywhere."""
+    own = [each for each in sys.meta_path if getattr(each, "__module__", "").startswith("_frozen_importlib")]
+    monkeypatch.setattr(sys, "meta_path", own)
+
+
+@pytest.mark.usefixtures("own_finders")
 def test_nothing_is_offered_by_others(folder):
     (folder / "other-1.dist-info").mkdir()
     (folder / "other-1.dist-info" / "entry_points.txt").write_text("[console_scripts]\nother = other:main\n")
@@ -45,6 +50,7 @@ def test_what_is_offered_is_seen(name, folder):
     assert entry_points(group=GROUP)
 
 
+@pytest.mark.usefixtures("own_finders")
 def test_archives_and_other_finders_might_offer_it(folder, monkeypatch):
     assert not may_be_offered(GROUP)
     with zipfile.ZipFile(folder / "packed.zip", "w") as packed:
