@@ -117,9 +117,13 @@ def are_straight_and_compute(kernels: Iterable[Kernel]) -> bool:
 
 
 def has_loops_for_vectors(kernel: Kernel) -> bool:
-    """Whether a kernel of moderate size has, in the first of its bodies, loops over elements that do nothing but compute and store."""
-    every = list(_usual_statements(kernel))
-    return len(every) <= MODERATE and any(isinstance(each, For) and _only_stores(each.body) for each in every)
+    """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute and store."""
+    return any(isinstance(each, For) and _only_stores(each.body) for each in _usual_statements(kernel))
+
+
+def is_moderate(kernel: Kernel) -> bool:
+    """Whether a kernel is of a size for which LLVM can be asked for all that it can do."""
+    return sum(1 for _ in _usual_statements(kernel)) <= MODERATE
 
 
 def _only_stores(block: Block) -> bool:

@@ -43,6 +43,7 @@ NO_PROOF = {
     "is_large",
     "are_straight_and_compute",
     "has_loops_for_vectors",
+    "is_moderate",
     "_usual_statements",
     "_only_stores",
     "is_short_and_straight",

@@ -32,6 +32,7 @@ from rosetta_jit.kernel.shape import (
     calls_to_host,
     has_loops_for_vectors,
     is_large,
+    is_moderate,
     is_short_and_straight,
     is_told,
     our_functions,
@@ -127,16 +128,19 @@ def _optimise(
     """Run LLVM's passes once.
 
     Kernels leave little for LLVM to find, and a few passes find it, in time that is in proportion to the kernel. Those of O3, which take
-    five times as long, are for loops over elements that become loops over vectors; those of O1, with vectors made of statements that stand
-    side by side, for arithmetic without loops. docs/performance.md has the figures.
+    five times as long, are for loops over elements that become loops over vectors; those of O1 for such loops in large kernels and, with
+    vectors made of statements that stand side by side, for arithmetic without loops. docs/performance.md has the figures.
     """
     make_private(module, (*SYMBOLS[entry], TABLE))
-    thorough = bool(options.get("functions") or options.get("thorough")) or any(has_loops_for_vectors(kernel) for kernel in kernels)
-    if are_vast(kernels) or not (thorough or are_straight_and_compute(kernels)):
+    asked = bool(options.get("functions") or options.get("thorough"))
+    loops = [kernel for kernel in kernels if has_loops_for_vectors(kernel)]
+    is_straight = are_straight_and_compute(kernels)
+    if are_vast(kernels) or not (asked or loops or is_straight):
         run_few_passes(module, machine)
         return
+    thorough = asked or any(map(is_moderate, loops))
     tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
-    tuning.loop_vectorization = tuning.slp_vectorization = True
+    tuning.loop_vectorization, tuning.slp_vectorization = True, thorough or is_straight
     builder = binding.create_pass_builder(machine, tuning)
     run_passes(builder.getModulePassManager(), module, builder)
 
