@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import gc
+from functools import lru_cache
 
 import pytest
 from hypothesis import settings
+
+from rosetta_jit.kernel.passes import order as passes
+from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.pipeline.build import Build
 
 settings.register_profile("reproducible", derandomize=True)
 settings.load_profile("reproducible")
@@ -16,6 +21,32 @@ def own_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path_factory.mktemp("kernels")))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def proven_once():
+    """Programs of several backends have the same kernels: each is proven once a process. Tests of the proof do not come this way."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Build, "_optimised", lambda build, kernel: optimised(Lowered(kernel, to_text(kernel))))  # noqa: ARG005 - a method
+        yield
+
+
+class Lowered:
+    """A kernel that is known by its text: 0.0 and -0.0 are equal, but not the same."""
+
+    def __init__(self, kernel, text):
+        self.kernel, self.text = kernel, text
+
+    def __hash__(self):
+        return hash(self.text)
+
+    def __eq__(self, other):
+        return self.text == other.text
+
+
+@lru_cache(maxsize=200)
+def optimised(lowered):
+    return passes.run(lowered.kernel)
 
 
 @pytest.fixture(scope="module", autouse=True)
