@@ -73,8 +73,8 @@ def _names(class_):
 
 
 def _is_shown(name, value):
-    if name.startswith("_") or name.endswith("_"):
-        return False
+    if name.startswith("_") or name.endswith("_") or "; for transports." in (value.__doc__ or ""):
+        return False  # what only those call who write a transport stands in their source
     return isinstance(value, property | cached_property | classmethod | staticmethod) or inspect.isfunction(value)
 
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections import Counter, deque
+from collections import deque
 from dataclasses import field
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.garbage import imported
-from rosetta_jit.terminal import printable
+from rosetta_jit.transports.end import End
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-    from types import TracebackType
 
     from rosetta_jit.transports.address import Option
 
@@ -79,50 +78,11 @@ class Message:
         )
 
 
-MAX_REASONS, MAX_REASON = 50, 400
-"""Different reasons that are counted apart, and the characters of one: peers must not fill memory with them."""
-
 NOTHING: Mapping[str, Any] = {}
 """The attributes of messages without any."""
 
 
-class Counts:
-    """What passed at one end, and what did not.
-
-    Attributes
-    ----------
-    messages, bytes : int
-        Received, or taken to be sent.
-    lost : Counter
-        Messages that did not arrive or were not sent, by the reason in words.
-    reconnects : int
-        Connections that were made again.
-    connections : int
-        Peers that are connected now.
-    """
-
-    def __init__(self, address: str, lost: Lost | None = None) -> None:
-        self.address = address
-        self.messages = 0
-        self.bytes = 0
-        self.lost: Counter[str] = Counter()
-        self.reconnects = 0
-        self.connections = 0
-        self._tell = lost
-        self._lock = threading.Lock()
-
-    def lose(self, reason: str, count: int = 1) -> None:
-        """Count messages that are lost, and say why; for transports. A reason may hold what a peer said."""
-        reason = printable(reason[:MAX_REASON])
-        with self._lock:
-            if reason not in self.lost and len(self.lost) >= MAX_REASONS:
-                reason = "other reasons"
-            self.lost[reason] += count
-        if self._tell is not None:
-            self._tell(reason, count)
-
-
-class Source(Counts):
+class Source(End):
     """Messages that arrive at an address; a context manager, and an iterable where no callback gets them.
 
     Iterating ends when the source is closed, or where the channel has an end (a pipe, a file). Messages that nobody takes
@@ -140,8 +100,7 @@ class Source(Counts):
 
     def arrived(self, message: Message) -> None:
         """Count a message, and pass it on; for transports. What the callback raises is reported, and costs this message alone."""
-        self.messages += 1
-        self.bytes += len(message.data)
+        self.passed(len(message.data))
         try:
             self._deliver(message)
         except Exception as error:  # noqa: BLE001 - the user's code: it must not end the thread that serves all connections
@@ -152,6 +111,19 @@ class Source(Counts):
         """Say what closes it; for transports."""
         self._close = close
         return self
+
+    def read(self, run: Callable[[threading.Event], object]) -> Source:
+        """Receive in a thread of its own, until the event that it gets is set; for transports."""
+        ends = threading.Event()
+        thread = threading.Thread(target=run, args=(ends,), name=self.address, daemon=True)
+
+        def close() -> None:
+            ends.set()
+            if thread is not threading.current_thread():
+                thread.join()
+
+        thread.start()
+        return self.opened(close)
 
     def ended(self) -> None:
         """Nothing comes any more; for transports."""
@@ -186,14 +158,8 @@ class Source(Counts):
         while (message := self.take()) is not None:
             yield message
 
-    def __enter__(self) -> Self:
-        return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self.close()
-
-
-class Sink(Counts):
+class Sink(End):
     """Where messages are sent; a context manager. Transports derive from it."""
 
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
@@ -228,14 +194,8 @@ class Sink(Counts):
     def close(self) -> None:
         """Send what was taken, for as long as the option `linger` says, and stop."""
 
-    def __enter__(self) -> Self:
-        return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self.close()
-
-
-class Caller(Counts):
+class Caller(End):
     """The asking end of remote procedure calls; a context manager. Transports derive from it."""
 
     def __call__(
@@ -253,14 +213,8 @@ class Caller(Counts):
     def close(self) -> None:
         """Stop; who waits for an answer gets an error."""
 
-    def __enter__(self) -> Self:
-        return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self.close()
-
-
-class Server(Counts):
+class Server(End):
     """The answering end; a context manager. Answers are worked out in a thread of its own, one after the other.
 
     At most ``queue`` questions wait; further ones are refused, and counted.
@@ -312,8 +266,7 @@ class Server(Counts):
                 if not self._asked:
                     return
                 message, reply = self._asked.popleft()
-            self.messages += 1
-            self.bytes += len(message.data)
+            self.passed(len(message.data))
             try:
                 answer = self._answer(message)
             except Exception as error:  # noqa: BLE001 - the user's code: the peer gets to know
@@ -321,12 +274,6 @@ class Server(Counts):
                 reply(None, f"{type(error).__name__}: {error}")
             else:
                 reply(None if answer is None else bytes(answer), None)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self.close()
 
 
 class Pending:

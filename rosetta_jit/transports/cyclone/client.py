@@ -116,16 +116,7 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
 
     calls = {"on_sample_lost": lost, "on_subscription_matched": matched, "on_requested_incompatible_qos": refused}
     reader = sub.DataReader(endpoint.participant, endpoint.topic, qos=endpoint.qos, listener=core.Listener(**calls))
-    ends = threading.Event()
-    thread = threading.Thread(target=_read, args=(reader, endpoint, address.rest, source, options, ends), name=str(address), daemon=True)
-    thread.start()
-
-    def close() -> None:
-        ends.set()
-        if thread is not threading.current_thread():
-            thread.join()
-
-    source.opened(close)
+    source.read(lambda ends: _read(reader, endpoint, address.rest, source, options, ends))
 
 
 def _read(reader: Any, endpoint: Endpoint, channel: str, source: Source, options: Mapping[str, Any], ends: threading.Event) -> None:
@@ -142,7 +133,7 @@ def _read(reader: Any, endpoint: Endpoint, channel: str, source: Source, options
                 if not info.valid_data:
                     continue
                 if len(data) > most:
-                    source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+                    source.lose_large(len(data), most)
                 else:
                     source.arrived(Message(data, channel, type_, time_ns(), info.source_timestamp, None))
     reader.set_listener(None)
@@ -175,8 +166,7 @@ class DdsSink(Sink):
         del attributes
         if self._writer is None:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         if len(data) < ENCAPSULATION_BYTES:
             raise TransportError("protocol", self.address, "CDR begins with four bytes that say how it is written")
         if not data[1] & 1 and not self._has_struct:
@@ -188,8 +178,7 @@ class DdsSink(Sink):
         if self._raw.ddspy_write_ts(self._writer._ref, padded, made) < 0:  # noqa: SLF001 - it has no public way for bytes
             self.lose("readers are too slow, or the sample is not CDR")
             return False
-        self.messages += 1
-        self.bytes += len(data)
+        self.passed(len(data))
         return True
 
     def close(self) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import threading
 from importlib import import_module
 from time import time_ns
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from rosetta_jit.transports.base import Message, Sink, Source
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from threading import Event
 
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
@@ -48,19 +48,19 @@ class Service:
 
 def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
     """Receive what is published to a service, in a thread of its own. The data of a message are in shared memory."""
-    service, ends = Service(address, options), threading.Event()
+    service = Service(address, options)
     subscriber = service.messages.subscriber_builder().create()
     listener = service.event.listener_builder().create()
     pause = service.iox.Duration.from_secs_f64(max(options["poll"], 0.001))
     channel, most = address.rest, options["max_message"]
     frombuffer = import_module("numpy").frombuffer
 
-    def run() -> None:
+    def run(ends: Event) -> None:
         while not ends.is_set():
             while (sample := subscriber.receive()) is not None:
                 data = frombuffer(sample.payload().as_memory_view(), "u1").data  # else its elements have no values in Python
                 if len(data) > most:
-                    source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+                    source.lose_large(len(data), most)
                 else:
                     source.arrived(Message(data, channel, None, time_ns()))
                 sample.delete()
@@ -70,15 +70,7 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
         source.connections = 0
 
     source.connections = 1
-    thread = threading.Thread(target=run, name=str(address), daemon=True)
-    thread.start()
-
-    def close() -> None:
-        ends.set()
-        if thread is not threading.current_thread():
-            thread.join()
-
-    source.opened(close)
+    source.read(run)
 
 
 def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
@@ -103,15 +95,13 @@ class IceoryxSink(Sink):
         if self._service is None:
             raise TransportError("closed", self.address, "this sink is closed")
         size = len(data)
-        if size > self._most:
-            raise TransportError("too large", self.address, f"{size} bytes are more than max_message={self._most}")
+        self.check_size(size, self._most)
         sample = self._publisher.loan_slice_uninit(size)
         if size:
             ctypes.memmove(sample.payload().as_ptr(), bytes(data), size)
         self.connections = sample.assume_init().send()
         self._notifier.notify()
-        self.messages += 1
-        self.bytes += size
+        self.passed(size)
         return True
 
     def close(self) -> None:

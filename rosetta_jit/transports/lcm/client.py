@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 from importlib import import_module
 from time import time_ns
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from rosetta_jit.transports.base import Message, Sink, Source
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from threading import Event
 
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
@@ -25,17 +25,17 @@ LOOK_MS = 100
 
 def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> None:
     """Receive the messages of a channel, or of all whose names match a regular expression."""
-    most, ends = options["max_message"], threading.Event()
+    most = options["max_message"]
     client = _client(address, options)
 
     def take(channel: str, data: bytes) -> None:
         if len(data) > most:
-            source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+            source.lose_large(len(data), most)
             return
         told = {"fingerprint": int.from_bytes(data[:8], "big")} if len(data) >= 8 else None
         source.arrived(Message(data, channel, None, time_ns(), None, told))
 
-    def run() -> None:
+    def run(ends: Event) -> None:
         while not ends.is_set():
             try:
                 client.handle_timeout(LOOK_MS)
@@ -47,15 +47,7 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
 
     client.subscribe(_channel(address, MAX_CHANNEL_BYTES * 4), take)
     source.connections = 1
-    thread = threading.Thread(target=run, name=str(address), daemon=True)
-    thread.start()
-
-    def close() -> None:
-        ends.set()
-        if thread is not threading.current_thread():
-            thread.join()
-
-    source.opened(close)
+    source.read(run)
 
 
 def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> Sink:
@@ -77,15 +69,13 @@ class LcmSink(Sink):
         del time, attributes
         if self._client is None:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         try:
             self._client.publish(self._channel, bytes(data))
         except OSError as error:
             self.lose(error.strerror or "LCM cannot send")
             return False
-        self.messages += 1
-        self.bytes += len(data)
+        self.passed(len(data))
         return True
 
     def close(self) -> None:

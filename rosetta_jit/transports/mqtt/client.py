@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.transports.address import Address
-    from rosetta_jit.transports.base import Counts, Lost
+    from rosetta_jit.transports.base import Lost
+    from rosetta_jit.transports.end import End
 
 MAX_TOPIC_BYTES = 65_535
 
@@ -30,7 +31,7 @@ class Client:
         The broker cannot be reached, or refuses.
     """
 
-    def __init__(self, address: Address, counts: Counts, options: Mapping[str, Any]) -> None:
+    def __init__(self, address: Address, counts: End, options: Mapping[str, Any]) -> None:
         self._counts = counts
         self._connected = threading.Event()
         self._why = "no answer in time"
@@ -89,7 +90,7 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
 
     def take(_: Any, __: Any, found: paho.MQTTMessage) -> None:
         if len(found.payload) > most:
-            source.lose(f"a message of {len(found.payload)} bytes, more than max_message={most}")
+            source.lose_large(len(found.payload), most)
             return
         source.arrived(Message(bytes(found.payload), found.topic, None, time_ns(), None, {"qos": found.qos, "retain": found.retain}))
 
@@ -124,8 +125,7 @@ class MqttSink(Sink):
         del time
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         retain = bool(attributes.get("retain", self._retain)) if attributes else self._retain
         if len(self._waiting) >= self._queue:
             self.lose("the broker is too slow")
@@ -139,8 +139,7 @@ class MqttSink(Sink):
                 self._waiting.add(info.mid)
         if info.rc == paho.MQTT_ERR_SUCCESS and info.is_published():  # meanwhile
             self._sent(None, None, info.mid)
-        self.messages += 1
-        self.bytes += len(data)
+        self.passed(len(data))
         return True
 
     def flush(self, timeout: float = 5.0) -> bool:

@@ -59,16 +59,14 @@ class RosCaller(Caller):
     ) -> Message:
         del attributes
         until = monotonic() + (self._timeout if timeout is None else timeout)
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         with self._turn:
             pending = self._pending = Pending()
             stream = self._connected(until)
             try:
                 if not stream.send(LENGTH.pack(len(data)), data):
                     pending.fail(TransportError("closed", self.address, "the connection is gone"))
-                self.messages += 1
-                self.bytes += len(data)
+                self.passed(len(data))
                 return pending.wait(until, self.address)
             except TransportError as error:
                 if error.kind == "timeout":  # a late answer would be taken for that of the next question

@@ -232,8 +232,7 @@ class RosSink(Sink):
         del time, attributes
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         if self._latch:
             self._latched = bytes(data)
         head, streams = LENGTH.pack(len(data)), tuple(self._streams)
@@ -244,8 +243,7 @@ class RosSink(Sink):
             else:
                 self.lose("the subscriber is too slow")
         if taken:
-            self.messages += 1
-            self.bytes += len(data)
+            self.passed(len(data))
         return taken
 
     def flush(self, timeout: float = 5.0) -> bool:

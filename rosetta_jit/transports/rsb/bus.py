@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import socket
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.transports.base import Counts
+    from rosetta_jit.transports.end import End
     from rosetta_jit.transports.feeding import Machine
 
 HANDSHAKE = bytes(4)
@@ -52,7 +52,7 @@ def frames(take: Callable[[memoryview], object], most: int, *, is_client: bool, 
 class Participant:
     """Who listens on a scope: gets its events in the loop's thread, or in that of who sends them in this process."""
 
-    def __init__(self, scope: str, counts: Counts, take: Callable[[Event], object]) -> None:
+    def __init__(self, scope: str, counts: End, take: Callable[[Event], object]) -> None:
         self.scope = scope
         self.counts = counts
         self.take = take
@@ -69,7 +69,7 @@ class Bus:
         self._targets = resolve(host, port)
         self._streams: set[Stream] = set()
         self._listening: dict[str, list[Participant]] = {}
-        self._everyone: list[Counts] = []
+        self._everyone: list[End] = []
         self._listener: Listener | None = None
         self._dialer: Dialer | None = None
         self._ready = threading.Event()
@@ -86,7 +86,7 @@ class Bus:
         """Whether this process serves the bus."""
         return self._listener is not None
 
-    def join(self, counts: Counts, participant: Participant | None = None) -> None:
+    def join(self, counts: End, participant: Participant | None = None) -> None:
         """Begin to take part."""
 
         def work() -> None:
@@ -97,7 +97,7 @@ class Bus:
 
         loop().run(work)
 
-    def leave(self, counts: Counts, participant: Participant | None = None) -> None:
+    def leave(self, counts: End, participant: Participant | None = None) -> None:
         """Take part no more."""
 
         def work() -> None:
@@ -108,7 +108,7 @@ class Bus:
 
         loop().run(work)
 
-    def send(self, event: Event, counts: Counts, wait: float = 0.0) -> bool:
+    def send(self, event: Event, counts: End, wait: float = 0.0) -> bool:
         """Send an event to all others, and to the listeners of this process."""
         parts = encode(event)
         head = _LENGTH.pack(sum(map(len, parts)))

@@ -50,8 +50,7 @@ class RsbCaller(Caller):
     ) -> Message:
         if self._closed:
             raise TransportError("closed", self.address, "this caller is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         until = monotonic() + (self._timeout if timeout is None else timeout)
         event = self._informer.event(data, None, {**(attributes or {}), "method": REQUEST}, self.address)
         pending = Pending()
@@ -59,8 +58,7 @@ class RsbCaller(Caller):
             self._asked[event.id] = pending
         try:
             self._bus.send(event, self)
-            self.messages += 1
-            self.bytes += len(data)
+            self.passed(len(data))
             return pending.wait(until, self.address)
         finally:
             with self._lock:

@@ -108,13 +108,11 @@ class RsbSink(Sink):
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         event = self._informer.event(data, time, attributes, self.address)
         taken = self.bus.send(event, self, 0 if loop().is_current else self._timeout)
         if taken:
-            self.messages += 1
-            self.bytes += len(data)
+            self.passed(len(data))
         return taken
 
     def flush(self, timeout: float = 5.0) -> bool:

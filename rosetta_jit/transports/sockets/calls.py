@@ -53,8 +53,7 @@ class TcpCaller(Caller):
             if not stream.send(*parts):
                 self._asked.remove(pending)
                 raise TransportError("closed", self.address, "the connection is gone, or too slow")
-        self.messages += 1
-        self.bytes += len(data)
+        self.passed(len(data))
         try:
             return pending.wait(until, self.address)
         except TransportError as error:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.transports.address import Address
-    from rosetta_jit.transports.base import Counts, Lost
+    from rosetta_jit.transports.base import Lost
+    from rosetta_jit.transports.end import End
     from rosetta_jit.transports.feeding import Machine
 
 
@@ -38,7 +39,7 @@ class Links:
     def __init__(
         self,
         address: Address,
-        counts: Counts,
+        counts: End,
         machine: Callable[[Stream], Machine],
         *,
         listen: bool,
@@ -151,8 +152,7 @@ class TcpSink(Sink):
             else:
                 self.lose("the peer is too slow")
         if taken:
-            self.messages += 1
-            self.bytes += len(data)
+            self.passed(len(data))
         return taken
 
     def flush(self, timeout: float = 5.0) -> bool:

@@ -121,8 +121,7 @@ class UdpSink(Sink):
                 raise TransportError("closed", self.address, "this sink is closed") from None
             self.lose(error.strerror or "the socket failed")
             return False
-        self.messages += 1
-        self.bytes += len(data)
+        self.passed(len(data))
         return True
 
     def close(self) -> None:

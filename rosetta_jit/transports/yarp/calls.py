@@ -61,16 +61,14 @@ class YarpCaller(Caller):
         self, data: bytes | bytearray | memoryview, *, timeout: float | None = None, attributes: Mapping[str, Any] | None = None
     ) -> Message:
         until = monotonic() + (self._timeout if timeout is None else timeout)
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         envelope = None if attributes is None else attributes.get("envelope")
         with self._turn:
             stream = self._connected(until)
             pending = self._pending = Pending()
             if not stream.send(head_of(len(data), reply=True, envelope=envelope), data):
                 raise TransportError("closed", self.address, "the connection is gone")
-            self.messages += 1
-            self.bytes += len(data)
+            self.passed(len(data))
             try:
                 return pending.wait(until, self.address)
             except TransportError as error:

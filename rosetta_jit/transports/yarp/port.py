@@ -22,7 +22,8 @@ from rosetta_jit.transports.yarp.outgoing import Output
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.transports.base import Counts, Message
+    from rosetta_jit.transports.base import Message
+    from rosetta_jit.transports.end import End
     from rosetta_jit.transports.yarp.incoming import Line, Reply
     from rosetta_jit.transports.yarp.names import Contact, NameServer
 
@@ -66,7 +67,7 @@ class Port:
         name: str,
         names: NameServer,
         options: Mapping[str, Any],
-        counts: Counts,
+        counts: End,
         *,
         take: Callable[[Message], object] | None = None,
         asked: Callable[[Message, Reply], object] | None = None,

@@ -58,8 +58,7 @@ class YarpSink(Sink):
     def send(self, data: bytes | bytearray | memoryview, *, time: int | None = None, attributes: Mapping[str, Any] | None = None) -> bool:
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         head = head_of(len(data), envelope=self._envelope(time, attributes))
         outputs = tuple(self.port.outputs.values())
         if not outputs and not self._is_own:
@@ -72,8 +71,7 @@ class YarpSink(Sink):
             else:
                 self.lose("the reader is too slow")
         if taken:
-            self.messages += 1
-            self.bytes += len(data)
+            self.passed(len(data))
         return taken
 
     def flush(self, timeout: float = 5.0) -> bool:

@@ -54,8 +54,7 @@ class ZenohCaller(Caller):
         attachment = (attributes or {}).get("attachment")
         handler = zenoh.handlers.Callback(take, ended, indirect=False)
         self._session.get(self._key, handler, payload=bytes(data), attachment=attachment, timeout=seconds)
-        self.messages += 1
-        self.bytes += len(data)
+        self.passed(len(data))
         return pending.wait(monotonic() + seconds + 0.5, self.address)
 
     def close(self) -> None:

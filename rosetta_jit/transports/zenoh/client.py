@@ -30,7 +30,7 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
             return
         data = sample.payload.to_bytes()
         if len(data) > most:
-            source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+            source.lose_large(len(data), most)
             return
         source.arrived(message_of(sample, data))
 
@@ -61,6 +61,17 @@ def publish(address: Address, options: Mapping[str, Any], lost: Lost | None) -> 
     return ZenohSink(address, options, lost)
 
 
+def put(sink: Sink, publisher: Any, data: bytes | bytearray | memoryview, **told: Any) -> bool:
+    """Hand a message over to zenoh; counts whether it was taken."""
+    try:
+        publisher.put(bytes(data), **told)
+    except zenoh.ZError as error:
+        sink.lose(f"zenoh: {error}"[:200])
+        return False
+    sink.passed(len(data))
+    return True
+
+
 class ZenohSink(Sink):
     """Puts messages to a key, with the attributes `attachment` (bytes) and `encoding`. A full queue of zenoh makes the sender wait."""
 
@@ -79,17 +90,9 @@ class ZenohSink(Sink):
         del time
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         told = attributes or {}
-        try:
-            self._publisher.put(bytes(data), encoding=told.get("encoding"), attachment=told.get("attachment"))  # pyright: ignore[reportUnknownMemberType]
-        except zenoh.ZError as error:
-            self.lose(f"zenoh: {error}"[:200])
-            return False
-        self.messages += 1
-        self.bytes += len(data)
-        return True
+        return put(self, self._publisher, data, encoding=told.get("encoding"), attachment=told.get("attachment"))
 
     def close(self) -> None:
         if not self._closed:

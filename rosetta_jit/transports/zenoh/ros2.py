@@ -20,6 +20,7 @@ import zenoh
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.ros2_names import mangled, plain, topic_of
+from rosetta_jit.transports.zenoh.client import put
 from rosetta_jit.transports.zenoh.sessions import sessions
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def subscribe(address: Address, source: Source, options: Mapping[str, Any]) -> N
         if sample.kind != zenoh.SampleKind.PUT:
             return
         if len(data) > most:
-            source.lose(f"a message of {len(data)} bytes, more than max_message={most}")
+            source.lose_large(len(data), most)
             return
         found, hash_ = str(sample.key_expr).split("/")[-2:]
         told = attachment_of(sample.attachment.to_bytes()) if sample.attachment is not None else {}
@@ -138,13 +139,9 @@ class Ros2Sink(Sink):
         del attributes
         if self._closed:
             raise TransportError("closed", self.address, "this sink is closed")
-        if len(data) > self._most:
-            raise TransportError("too large", self.address, f"{len(data)} bytes are more than max_message={self._most}")
+        self.check_size(len(data), self._most)
         told = _ATTACHMENT.pack(next(self._number), time_ns() if time is None else time, GID_BYTES, self._gid)
-        self._publisher.put(bytes(data), attachment=told)  # pyright: ignore[reportUnknownMemberType]
-        self.messages += 1
-        self.bytes += len(data)
-        return True
+        return put(self, self._publisher, data, attachment=told)
 
     def close(self) -> None:
         if not self._closed:

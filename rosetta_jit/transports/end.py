@@ -1,0 +1,79 @@
+"""What every end of a channel is: it counts what passes and what is lost, and is closed when its block ends."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from typing import TYPE_CHECKING, Self
+
+from rosetta_jit.errors import TransportError
+from rosetta_jit.terminal import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    Lost = Callable[[str, int], object]
+
+MAX_REASONS, MAX_REASON = 50, 400
+"""Different reasons that are counted apart, and the characters of one: peers must not fill memory with them."""
+
+
+class End:
+    """One end of a channel: what passed there, and what did not.
+
+    Attributes
+    ----------
+    messages, bytes : int
+        Received, or taken to be sent.
+    lost : Counter
+        Messages that did not arrive or were not sent, by the reason in words.
+    reconnects : int
+        Connections that were made again.
+    connections : int
+        Peers that are connected now.
+    """
+
+    def __init__(self, address: str, lost: Lost | None = None) -> None:
+        self.address = address
+        self.messages = 0
+        self.bytes = 0
+        self.lost: Counter[str] = Counter()
+        self.reconnects = 0
+        self.connections = 0
+        self._tell = lost
+        self._lock = threading.Lock()
+
+    def passed(self, size: int) -> None:
+        """Count a message of so many bytes; for transports."""
+        self.messages += 1
+        self.bytes += size
+
+    def check_size(self, size: int, most: int) -> None:
+        """TransportError where a message is larger than `max_message`; for transports."""
+        if size > most:
+            raise TransportError("too large", self.address, f"{size} bytes are more than max_message={most}")
+
+    def lose_large(self, size: int, most: int) -> None:
+        """Count a message that is lost because it is larger than `max_message`; for transports."""
+        self.lose(f"a message of {size} bytes, more than max_message={most}")
+
+    def lose(self, reason: str, count: int = 1) -> None:
+        """Count messages that are lost, and say why; for transports. A reason may hold what a peer said."""
+        reason = printable(reason[:MAX_REASON])
+        with self._lock:
+            if reason not in self.lost and len(self.lost) >= MAX_REASONS:
+                reason = "other reasons"
+            self.lost[reason] += count
+        if self._tell is not None:
+            self._tell(reason, count)
+
+    def close(self) -> None:
+        """Stop."""
+        raise NotImplementedError
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
