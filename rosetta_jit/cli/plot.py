@@ -94,4 +94,4 @@ def _draw(curves: Sequence[Curve], span_ns: tuple[int, int], output: Path, name:
         axes.grid(visible=True, alpha=0.3)
     with named(output):
         figure.savefig(output)
-    print(f"wrote {output}: {len(curves)} curves of {printable(name)}")
+    print(f"wrote {output}: {len(curves)} curve{'s' * (len(curves) != 1)} of {printable(name)}")

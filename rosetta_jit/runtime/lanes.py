@@ -342,8 +342,8 @@ class Lanes:
 
     def begin_filling(self) -> None:
         """Inside ``with lanes:``, before a decode: there is nothing to be read until it has succeeded."""
-        self.words[VALID] = self.words[RESULT] = 0
         self.is_filled = False
+        self.words[VALID] = self.words[RESULT] = 0
 
     def unsettle(self) -> None:
         """Encoders must not read this as it is."""
@@ -360,8 +360,11 @@ class Lanes:
         return memoryview(self.source[0]).cast("B")[start : start + size].toreadonly()
 
     def invalid(self) -> RosettaError:
-        """The error of reading what a decode has not filled: it has failed, or is not done, or about to make room in its slow path."""
-        if not self.is_filled or self.words[RESULT] == GROW:
+        """The error of reading what was not filled a moment ago: a decode had failed, or was not done, or about to make room in its slow path."""
+        words = self.words
+        epoch = words[EPOCH]
+        has_failed = self.is_filled and words[RESULT] != GROW and not words[VALID]
+        if not has_failed or words[EPOCH] != epoch:
             return in_use()
         return InvalidHolder("the last decode into this holder failed; decode again or clear it before you read it")
 

@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosetta_jit.errors import EncodeError, InvalidHolder, ValuesError
+from rosetta_jit.errors import EncodeError, InUse, InvalidHolder, ValuesError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, UNSETTLED, USED, VALID, lane_word
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Array, Bytes, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Union
@@ -194,8 +194,16 @@ def test_a_failed_decode_is_noticed():
     with pytest.raises(InvalidHolder):
         holder.small = 1
     assert "failed" in repr(holder)
+    assert isinstance(holder.lanes_.invalid(), InvalidHolder)
     holder.clear()
     assert holder.to_dict() == flat()().to_dict()
+
+
+def test_a_decode_that_was_done_in_the_meantime_has_not_failed():
+    holder = flat().from_dict(FULL)
+    assert isinstance(holder.lanes_.invalid(), InUse)  # what was being filled when a reader looked, and is whole now
+    holder.lanes_.begin_filling()
+    assert isinstance(holder.lanes_.invalid(), InUse)
 
 
 def test_copies_and_pickles():
