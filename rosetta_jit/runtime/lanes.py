@@ -360,7 +360,7 @@ class Lanes:
         return memoryview(self.source[0]).cast("B")[start : start + size].toreadonly()
 
     def invalid(self) -> RosettaError:
-        """The error of reading what was not filled a moment ago: a decode had failed, or was not done, or about to make room in its slow path."""
+        """The error of reading what was not filled a moment ago: a decode had failed, or was not done, or about to make room for itself."""
         words = self.words
         epoch = words[EPOCH]
         has_failed = self.is_filled and words[RESULT] != GROW and not words[VALID]
