@@ -58,7 +58,10 @@ MAX_BLOCKS = 100
 MAX_EXPRESSION = 100
 
 SHORT = 32
-"""Statements up to which a call costs a kernel more than 5 % of its time."""
+"""Statements up to which a call costs any kernel more than 5 % of its time."""
+
+SHORT_IN_VECTORS = 256
+"""The same where LLVM computes many of them at once."""
 
 MODERATE = 512
 """Statements up to which LLVM can be asked for all that it can do."""
@@ -139,7 +142,9 @@ def _usual_statements(kernel: Kernel) -> Iterator[Stmt]:
 def is_short_and_straight(kernel: Kernel) -> bool:
     """Whether a kernel, in the first of its bodies, takes no longer than a call of it by much."""
     every = [each for each, _ in statements(kernel.bodies[0])]
-    return len(every) <= SHORT and not any(isinstance(each, For | While) for each in every)
+    if len(every) > SHORT and not (len(every) <= SHORT_IN_VECTORS and are_straight_and_compute((kernel,))):
+        return False
+    return not any(isinstance(each, For | While) for each in every)
 
 
 def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
