@@ -7,8 +7,7 @@ from collections import Counter
 from time import monotonic
 from typing import Any
 
-MAX_CAUSES = 100
-"""Different causes that a route counts; further ones are counted together. A peer could think of any number."""
+from rosetta_jit.bridge.limits import MAX_CAUSES
 
 OTHERS = "other causes"
 SUB = 8

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.configuration import Route
+from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
 from rosetta_jit.bridge.live import LINGER_S, LiveRoute
 from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
@@ -28,12 +29,6 @@ RETRY_S = 1.0
 
 FIRST_S = 1.0
 """How long the start waits for what is opened at once; the rest follows."""
-
-MAX_OPENING = 16
-"""Routes that are being opened at the same time."""
-
-MAX_FOUND = 1000
-"""Routes that one pattern may become: a hostile name server could name any number of channels."""
 
 
 class _Shared:

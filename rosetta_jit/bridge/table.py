@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from rosetta_jit.bridge.limits import MAX_NAME, MAX_REASONS
 from rosetta_jit.terminal import cells, printable
 
 HEAD = ("route", "in /s", "out /s", "bytes /s", "p50 us", "p99 us", "sent", "waiting", "dropped", "failed")
-MAX_NAME = 48
-MAX_REASONS = 3
-"""Reasons that are shown below a route; `--json` and the metrics have all."""
 
 
 def rows(snapshot: list[dict[str, Any]]) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable

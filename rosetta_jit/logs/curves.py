@@ -10,6 +10,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
+from rosetta_jit.logs.limits import MAX_LISTED_DEPTH
 from rosetta_jit.runtime.columns import Ragged
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -27,9 +28,6 @@ if TYPE_CHECKING:
 
 POINTS = 1 << 20
 """Points that are kept of a curve; of more, the least and the greatest of some neighbours."""
-
-MAX_DEPTH = 8
-"""Messages in each other, of those that are listed when there is no such field."""
 
 STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 
@@ -135,7 +133,7 @@ def numbers_in(channel: Channel) -> Iterator[str]:
         for name, entry in record.entries.items():
             node: Any = entry.node
             match node:
-                case Inner() if depth < MAX_DEPTH:
+                case Inner() if depth < MAX_LISTED_DEPTH:
                     yield from inside(node, f"{before}{name}.", depth + 1)
                 case Scalar() | Bit():
                     yield before + name

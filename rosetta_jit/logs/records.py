@@ -19,7 +19,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Block, Piece
 from rosetta_jit.logs.checksum import crc32
 from rosetta_jit.logs.compression import Scratch, decompressed
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 from rosetta_jit.logs.walking import Why, walk
 from rosetta_jit.startup.dataclass import dataclass
 

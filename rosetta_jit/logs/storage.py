@@ -21,9 +21,6 @@ from rosetta_jit.errors import LogError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-MAX_RECORD_BYTES = 1 << 30
-"""A record, and what a chunk may hold when it is decompressed: more is damage, or an attack."""
-
 
 class Storage:
     """A file that can be read at any place. The size is that when it was opened: a log that is being written is read so far.

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.logs.limits import MAX_VARINT_BYTES
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-MAX_BYTES = 10
 
 
 def varint(data: bytes | memoryview, at: int) -> tuple[int, int]:
     """A varint, and the place behind it; ValueError if it does not end, or takes more than 64 bits."""
     value = 0
-    for place in range(at, min(at + MAX_BYTES, len(data))):
+    for place in range(at, min(at + MAX_VARINT_BYTES, len(data))):
         byte = data[place]
         value |= (byte & 0x7F) << 7 * (place - at)
         if byte < 0x80:

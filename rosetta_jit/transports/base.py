@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     Lost = Callable[[str, int], object]
     Answer = Callable[["Message"], "bytes | bytearray | memoryview | None"]
 
-MAX_MESSAGE_BYTES = 64 << 20
-"""What `max_message` is where nobody says it."""
-
 QUEUE = 1000
 """Messages that wait for who iterates over a source, where nobody says how many."""
 

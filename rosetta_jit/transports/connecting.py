@@ -25,9 +25,6 @@ LAST_PAUSE_S = 2.0
 CONNECT_S = 5.0
 """How long one attempt may take."""
 
-MAX_CONNECTIONS = 512
-"""Of one listener; further ones are closed at once."""
-
 
 def resolve(host: str, port: int, kind: int = socket.SOCK_STREAM) -> list[Target]:
     """The addresses of a host, those of IPv4 first; may take a while.

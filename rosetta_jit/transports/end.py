@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING, Self
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.terminal import printable
+from rosetta_jit.transports.limits import MAX_REASON, MAX_REASONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
     Lost = Callable[[str, int], object]
-
-MAX_REASONS, MAX_REASON = 50, 400
-"""Different reasons that are counted apart, and the characters of one: peers must not fill memory with them."""
 
 
 class End:

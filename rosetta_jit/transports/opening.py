@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.catalogue import transports as words
 from rosetta_jit.errors import AddressError, MissingPackage
 from rosetta_jit.transports.address import Address, Option, parse, settle
-from rosetta_jit.transports.base import MAX_MESSAGE_BYTES, QUEUE, Server, Source, Transport
+from rosetta_jit.transports.base import QUEUE, Server, Source, Transport
 from rosetta_jit.transports.installed import installed
+from rosetta_jit.transports.limits import MAX_MESSAGE_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

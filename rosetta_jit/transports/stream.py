@@ -9,6 +9,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from rosetta_jit.transports.feeding import FIRST_BYTES, Feed, ProtocolError
+from rosetta_jit.transports.limits import MAX_HELD_BYTES, MAX_WAITING_BYTES
 from rosetta_jit.transports.loop import READ, WRITE, loop
 
 if TYPE_CHECKING:
@@ -18,12 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.loop import Timer
 
     Bytes = bytes | bytearray | memoryview
-
-MAX_WAITING_BYTES = 16 << 20
-"""Bytes that wait for a slow peer; one message of any size may always begin to wait."""
-
-MAX_HELD_BYTES = 1 << 30
-"""Of memory for incoming messages of all connections together. Who would need more is cut off: many peers may send large ones at once."""
 
 
 class Stream:

@@ -16,7 +16,8 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.bridge.checking import checked
-from rosetta_jit.bridge.counting import MAX_CAUSES, Latencies, RouteCounts
+from rosetta_jit.bridge.counting import Latencies, RouteCounts
+from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows

@@ -10,7 +10,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import LogError
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 
 from .made import write_bag, write_lcm, write_mcap, write_old_bag
 

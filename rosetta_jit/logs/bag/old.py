@@ -20,6 +20,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.bag.grammar import EMPTY_MD5, header_of, number
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.limits import MAX_HEADER_BYTES
 from rosetta_jit.logs.records import PEEK
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -33,9 +34,6 @@ MAGIC = b"#ROSBAG V1.2\n"
 DEFINITION, MESSAGE = 1, 2
 WINDOW = 1 << 20
 """Bytes that are read at once."""
-
-MAX_HEADER_BYTES = 16 << 20
-"""Of a record: it may hold the definition of a type."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from rosetta_jit.logs.bag.grammar import CHUNK_INFO, CONNECTION, BagGrammar, hea
 from rosetta_jit.logs.bag.old import MAGIC as OLD_MAGIC
 from rosetta_jit.logs.bag.old import OldBagReader
 from rosetta_jit.logs.base import Extent
+from rosetta_jit.logs.limits import MAX_INDEX_BYTES
 from rosetta_jit.logs.records import PEEK, Chunk, Records, Region, Scanned, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.storage import Storage
 
 MAGIC = b"#ROSBAG V2.0\n"
-MAX_INDEX_BYTES = 1 << 28
 
 
 @dataclass(frozen=True, slots=True)

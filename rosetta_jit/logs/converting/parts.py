@@ -15,6 +15,7 @@ import numpy as np
 
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
+from rosetta_jit.logs.limits import MAX_OPEN, MAX_STRETCHES
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -27,12 +28,6 @@ if TYPE_CHECKING:
 
 WAITING_BYTES = 64 << 20
 """What is in memory of all files together until their groups of rows are full."""
-
-MAX_OPEN = 64
-"""Files that are open at once."""
-
-MAX_STRETCHES = 10_000
-"""Folders of times: a damaged log may have any times."""
 
 SECOND = 10**9
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
-from rosetta_jit.logs.varints import MAX_BYTES, varint
+from rosetta_jit.logs.limits import MAX_RECORD_BYTES, MAX_VARINT_BYTES
+from rosetta_jit.logs.varints import varint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -50,12 +50,12 @@ class DelimitedReader:
     def _messages(self) -> Iterator[bytes]:
         at, base, window = 0, 0, b""
         while at < self._storage.size:
-            if at + MAX_BYTES > base + len(window):
+            if at + MAX_VARINT_BYTES > base + len(window):
                 base, window = at, self._storage.read(at, WINDOW)
             try:
                 size, behind = varint(window, at - base)
             except ValueError:
-                self._tell((words.log_cut if at + MAX_BYTES > self._storage.size else words.damaged)(self._storage.name, at))
+                self._tell((words.log_cut if at + MAX_VARINT_BYTES > self._storage.size else words.damaged)(self._storage.name, at))
                 return
             begin = base + behind
             if size > min(self._storage.size - begin, MAX_RECORD_BYTES):

@@ -12,8 +12,8 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
+from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 from rosetta_jit.logs.records import WINDOW, add_counts
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
 from rosetta_jit.logs.walking import Rows, Why, walk
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Extent
 from rosetta_jit.logs.fields import Fields
+from rosetta_jit.logs.limits import MAX_SUMMARY_BYTES
 from rosetta_jit.logs.mcap.grammar import CHANNEL, CHUNK_INDEX, FOOTER, HEADER, MAGIC, PREFIX, SCHEMA, STATISTICS, McapGrammar
 from rosetta_jit.logs.records import Chunk, Records, Region, Scanned, pieces_of, segments_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.storage import Storage
 
 FOOTER_SIZE = PREFIX.size + 20
-MAX_SUMMARY_BYTES = 1 << 28
 
 
 @dataclass(frozen=True, slots=True)

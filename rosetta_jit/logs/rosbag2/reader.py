@@ -15,9 +15,10 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Reader, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.compression import Scratch, decompressed, zstd_size
+from rosetta_jit.logs.limits import MAX_METADATA_BYTES, MAX_RECORD_BYTES
 from rosetta_jit.logs.mcap.reader import McapReader
 from rosetta_jit.logs.rosbag2.sqlite import SqliteReader
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES, open_storage
+from rosetta_jit.logs.storage import open_storage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 PART = 1 << 32
 """Connections of file n are numbered from n times this on."""
 
-MAX_METADATA_BYTES = 16 << 20
 SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 
 

@@ -12,7 +12,7 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.limits import MAX_RECORD_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

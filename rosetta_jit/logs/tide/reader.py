@@ -20,7 +20,7 @@ from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
 from rosetta_jit.logs.fields import Fields
-from rosetta_jit.logs.storage import MAX_RECORD_BYTES
+from rosetta_jit.logs.limits import MAX_DEFINITION_BYTES, MAX_RECORD_BYTES
 from rosetta_jit.logs.varints import fields
 
 if TYPE_CHECKING:
@@ -33,7 +33,6 @@ HEAD = 12
 TIDE_SIZE = 10
 CHUNK_HEAD, ENTRY_HEAD = 25, struct.Struct("<IQI")
 EVENT = re.compile(r"rsb-event(?:-0\.(\d+))?:(.*)", re.DOTALL)
-MAX_DEFINITION_BYTES = 64 << 20
 
 
 class TideReader:

@@ -11,6 +11,8 @@ import zlib
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.logs.limits import MAX_PIXELS
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -19,7 +21,6 @@ NETPBM = re.compile(rb"P([56])\s(\d+)\s(\d+)\s255\s")
 DEPTH = {b"mono": 1, b"rgb": 3, b"dec": 4}
 CODES = {each.ljust(4, b"\0"): each for each in DEPTH}
 QUANTUM = 8
-MAX_PIXELS = 1 << 28
 
 
 class ImageError(ValueError):

@@ -19,6 +19,7 @@ from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.frameworks.yarp.text import parse_text
 from rosetta_jit.logs.base import Block, Connection, Extent, Piece, Wanted
 from rosetta_jit.logs.blocks import blocks_of
+from rosetta_jit.logs.limits import MAX_INFO_BYTES, MAX_LINE_BYTES
 from rosetta_jit.logs.yarp.images import ImageError, image_message
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -36,9 +37,7 @@ IMAGES = {b"[rgb]": "yarp.sig.ImageOfPixelRgb", b"[mono]": "yarp.sig.ImageOfPixe
 TIME = re.compile(rb"-?\d{1,10}(\.\d{0,9})?")
 """Seconds: an exponent, or more digits, might become a number without an end, and is nothing that YARP writes."""
 
-MAX_LINE_BYTES = 256 << 20
 PATH_BYTES = 4096
-MAX_INFO_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.limits import MAX_SERVICE_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,15 +18,13 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
 
-MAX_NAME_BYTES = 255
-
 
 class Service:
     """A node, and the two services of a name."""
 
     def __init__(self, address: Address, options: Mapping[str, Any]) -> None:
-        if not address.rest or not address.rest.isprintable() or len(address.rest.encode()) > MAX_NAME_BYTES:
-            raise address.wrong(f"a name of at most {MAX_NAME_BYTES} bytes", "iceoryx:camera/left")
+        if not address.rest or not address.rest.isprintable() or len(address.rest.encode()) > MAX_SERVICE_BYTES:
+            raise address.wrong(f"a name of at most {MAX_SERVICE_BYTES} bytes", "iceoryx:camera/left")
         self.iox: Any = import_module("iceoryx2")
         self.iox.set_log_level(self.iox.LogLevel.Error)
         try:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.limits import MAX_CHANNEL_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.base import Lost
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
-MAX_CHANNEL_BYTES = 63
 LOOK_MS = 100
 """How often the thread looks whether its source was closed."""
 

@@ -11,6 +11,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
+from rosetta_jit.transports.limits import MAX_TOPIC_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
     from rosetta_jit.transports.end import End
-
-MAX_TOPIC_BYTES = 65_535
 
 
 class Client:

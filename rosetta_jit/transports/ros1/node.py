@@ -12,8 +12,9 @@ from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.connecting import MAX_CONNECTIONS, Listener, resolve
+from rosetta_jit.transports.connecting import Listener, resolve
 from rosetta_jit.transports.feeding import ProtocolError
+from rosetta_jit.transports.limits import MAX_CONNECTIONS, MAX_TASKS
 from rosetta_jit.transports.ros1.tcpros import header, read_header
 from rosetta_jit.transports.ros1.xmlrpc import Answering, ask
 from rosetta_jit.transports.stream import Stream
@@ -29,9 +30,6 @@ HEARTBEAT_S = 3.0
 """How often a node looks whether the master still knows it."""
 
 SOON_S = 0.5
-MAX_TASKS = 10_000
-"""Connections to be made; others say to whom."""
-
 HEADER_S = 10.0
 NAME = re.compile(r"/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*")
 _NUMBERS = count(1)

@@ -9,8 +9,8 @@ from urllib.parse import urlsplit
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
-from rosetta_jit.transports.connecting import MAX_CONNECTIONS
 from rosetta_jit.transports.feeding import Between
+from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.ros1.node import graph_name, nodes, refuse
 from rosetta_jit.transports.ros1.tcpros import LENGTH, disagreement, header, messages, read_header

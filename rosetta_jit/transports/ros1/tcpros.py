@@ -13,14 +13,12 @@ import struct
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.transports.feeding import Between, ProtocolError
+from rosetta_jit.transports.limits import MAX_HEADER_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping
 
     from rosetta_jit.transports.feeding import Machine
-
-MAX_HEADER_BYTES = 1 << 20
-"""A header holds the whole text of a type."""
 
 LENGTH = struct.Struct("<I")
 _BETWEEN = Between(4)

@@ -12,13 +12,10 @@ from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.limits import MAX_REQUESTS, MAX_XML_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-MAX_BYTES = 4 << 20
-MAX_REQUESTS = 32
-"""At a time, of who asks this node."""
 
 TIMEOUT_S = 5.0
 
@@ -37,7 +34,7 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
         try:
             body = xmlrpc.client.dumps(arguments, method).encode()
             connection.request("POST", place.path or "/", body, {"Content-Type": "text/xml"})
-            answer = connection.getresponse().read(MAX_BYTES)
+            answer = connection.getresponse().read(MAX_XML_BYTES)
         finally:
             connection.close()
         values: tuple[Any, ...] = xmlrpc.client.loads(answer)[0]
@@ -85,7 +82,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         size = self.headers.get("Content-Length", "")
-        if not size.isdecimal() or int(size) > MAX_BYTES:
+        if not size.isdecimal() or int(size) > MAX_XML_BYTES:
             self.send_error(413)
             return
         try:

@@ -15,8 +15,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.connecting import MAX_CONNECTIONS, Dialer, Listener, resolve
+from rosetta_jit.transports.connecting import Dialer, Listener, resolve
 from rosetta_jit.transports.feeding import Between, ProtocolError
+from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.rsb.notification import Event, NoEventError, decode, encode, scope_in
 from rosetta_jit.transports.rsb.scopes import above, normal

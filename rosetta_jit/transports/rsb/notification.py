@@ -14,13 +14,12 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rosetta_jit.transports.limits import MAX_ENTRIES
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 ID_BYTES = 16
-MAX_ENTRIES = 1000
-"""Causes, user infos and user times of one event."""
-
 _WIDTH = {1: 8, 5: 4}
 
 

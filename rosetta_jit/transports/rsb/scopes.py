@@ -6,17 +6,18 @@ import re
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from rosetta_jit.transports.limits import MAX_SCOPE_CHARACTERS
+
 if TYPE_CHECKING:
     from rosetta_jit.transports.address import Address
 
 SCOPE = re.compile(r"/(?:[-_a-zA-Z0-9]+/)*(?:[-_a-zA-Z0-9]+)?")
-MAX_CHARS = 1000
 
 
 @lru_cache(maxsize=1024)
 def normal(scope: str) -> str | None:
     """A scope with its last slash; None where it is none."""
-    if len(scope) > MAX_CHARS or not SCOPE.fullmatch(scope):
+    if len(scope) > MAX_SCOPE_CHARACTERS or not SCOPE.fullmatch(scope):
         return None
     return scope if scope.endswith("/") else f"{scope}/"
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
-from rosetta_jit.transports.connecting import MAX_CONNECTIONS, Dialer, Listener
+from rosetta_jit.transports.connecting import Dialer, Listener
+from rosetta_jit.transports.limits import MAX_CONNECTIONS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.sockets.framing import framed, messages
 from rosetta_jit.transports.sockets.places import targets

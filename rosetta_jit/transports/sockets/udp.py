@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.base import Message, Sink, Source
 from rosetta_jit.transports.connecting import taken
+from rosetta_jit.transports.limits import MAX_DATAGRAM
 from rosetta_jit.transports.loop import READ, loop
 from rosetta_jit.transports.sockets.places import targets
 
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.transports.address import Address
     from rosetta_jit.transports.base import Lost
-
-MAX_DATAGRAM = 65_507
-"""Of UDP over IPv4: 65,535 bytes less both headers."""
 
 AT_ONCE = 64
 """Datagrams that are read before another socket has its turn."""

@@ -7,13 +7,12 @@ import socket
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import TransportError
+from rosetta_jit.transports.limits import MAX_ADMIN_BYTES, MAX_ADMIN_WORDS
 
 if TYPE_CHECKING:
     from rosetta_jit.transports.yarp.names import Contact
 
 WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|([^\s"]+)')
-MAX_ANSWER_BYTES = 1 << 20
-MAX_WORDS = 8
 
 
 def quoted(text: str) -> str:
@@ -25,7 +24,7 @@ def quoted(text: str) -> str:
 def words_of(command: str) -> list[str]:
     """The words of a command, without quotes."""
     found = [re.sub(r"\\(.)", r"\1", match[1]) if match[1] is not None else match[2] for match in WORD.finditer(command[:2000])]
-    return found[:MAX_WORDS]
+    return found[:MAX_ADMIN_WORDS]
 
 
 def ask_port(contact: Contact, command: str, timeout: float) -> str:
@@ -40,7 +39,7 @@ def ask_port(contact: Contact, command: str, timeout: float) -> str:
     try:
         with socket.create_connection((contact.host, contact.port), timeout) as sock:
             sock.sendall(f"CONNACK admin\r\na\r\n{command}\r\n".encode())
-            while b"<ACK>" not in got and len(got) < MAX_ANSWER_BYTES:
+            while b"<ACK>" not in got and len(got) < MAX_ADMIN_BYTES:
                 piece = sock.recv(4096)
                 if not piece:
                     break

@@ -10,6 +10,7 @@ import struct
 from typing import TYPE_CHECKING
 
 from rosetta_jit.transports.feeding import ProtocolError
+from rosetta_jit.transports.limits import MAX_BOTTLE_DEPTH
 
 if TYPE_CHECKING:
     from typing import Any
@@ -25,8 +26,6 @@ FORMATS = {INT32: "<i", INT64: "<q", 32: "<b", 64: "<h", 128: "<f", 20: "<d", 18
 """But for tag 10, which is a float64 in YARP 3 and a float32 in YARP 4."""
 
 UNIT = 255
-MAX_DEPTH = 100
-
 _I32 = struct.Struct("<i")
 _PAIR = struct.Struct("<ii")
 
@@ -45,7 +44,7 @@ def _skip(data: bytes | memoryview, at: int, dialect: str, depth: int) -> int:
 
 
 def _skip_body(data: bytes | memoryview, at: int, unit: int, dialect: str, depth: int) -> int:
-    if depth > MAX_DEPTH:
+    if depth > MAX_BOTTLE_DEPTH:
         raise ValueError(depth)
     (count,) = _I32.unpack_from(data, at)
     at, widths = at + 4, WIDTHS[dialect]
@@ -104,8 +103,8 @@ def from_text(text: str, dialect: str) -> bytes:
 
 def _list(text: str, dialect: str, depth: int) -> tuple[int, list[bytes]]:
     """The tag that all elements have, or 0; and their bytes, with their tags in this case."""
-    if depth > MAX_DEPTH:
-        raise ProtocolError(f"lists nested deeper than {MAX_DEPTH}")
+    if depth > MAX_BOTTLE_DEPTH:
+        raise ProtocolError(f"lists nested deeper than {MAX_BOTTLE_DEPTH}")
     values = [_element(each, dialect, depth) for each in _tokens(text)]
     tags = {tag for tag, _ in values}
     if len(tags) == 1 and not min(tags) & GROUP:

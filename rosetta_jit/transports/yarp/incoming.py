@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from rosetta_jit.terminal import printable
 from rosetta_jit.transports.base import Message
 from rosetta_jit.transports.feeding import ProtocolError, Until
+from rosetta_jit.transports.limits import MAX_LINE_BYTES
 from rosetta_jit.transports.yarp.bottles import from_text, is_open, to_text
 from rosetta_jit.transports.yarp.stamps import attributes_of
 from rosetta_jit.transports.yarp.wire import ACK, FIRST_CARRIER, TCP, WITH_ACKS, frames, hello_rest, int_of, name_in, yarp_int
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
 HELLO_S = 10.0
 """How long a connection may say nothing."""
-
-MAX_LINE = 1 << 20
 
 UNKNOWN = b"* Error. Protocol not found.\r\n* This port understands tcp, fast_tcp, text and text_ack.\r\n"
 HELP = b"Port command not understood.\r\nType d to send data to the port's owner.\r\nType ? for help.\r\n"
@@ -137,7 +136,7 @@ def _data(port: Owner, line: Line, command: str, ack: bytes, sender: str, carrie
     while is_open(text):
         start = text[:-1] if text.endswith("\\") else f"{text} "
         text = start + (yield from _line())
-        if len(text) > min(port.most, MAX_LINE):
+        if len(text) > min(port.most, MAX_LINE_BYTES):
             raise ProtocolError(f"a message above max_message={port.most}")
     data = from_text(text, port.dialect)
     sent, told = attributes_of(command[2:] if command[1:2] == " " else "", sender, carrier)
@@ -161,5 +160,5 @@ def _text_reply(line: Line, ack: bytes, dialect: str) -> Reply:
 
 
 def _line(*, between: bool = False) -> Generator[Any, memoryview, str]:
-    raw: memoryview = yield Until(b"\n", MAX_LINE, between)
+    raw: memoryview = yield Until(b"\n", MAX_LINE_BYTES, between)
     return bytes(raw).rstrip(b"\r\n").decode("utf-8", "replace")

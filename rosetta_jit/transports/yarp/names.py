@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.transports.limits import MAX_NAMES_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 DEFAULT = ("127.0.0.1", 10000)
 END = b"*** end of message"
-MAX_ANSWER_BYTES = 4 << 20
 REGISTRATION = re.compile(r"registration name (.*) ip (\S+) port (\d{1,5}|none) type (\S+)")
 NAME = re.compile(r"/[!#-'*-~]{0,250}")
 """Names that can be said in a line of text: no blanks, quotes or parentheses."""
@@ -64,7 +64,7 @@ class NameServer:
         try:
             with socket.create_connection((self.host, self.port), self._timeout) as sock:
                 sock.sendall(f"NAME_SERVER {command}\n".encode())
-                while end not in got and len(got) < MAX_ANSWER_BYTES:
+                while end not in got and len(got) < MAX_NAMES_BYTES:
                     piece = sock.recv(65536)
                     if not piece:
                         break

@@ -7,16 +7,12 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from rosetta_jit.transports.feeding import Between, ProtocolError
+from rosetta_jit.transports.limits import MAX_SKIPPED_BYTES, MAX_WAITING_BYTES
 from rosetta_jit.transports.yarp.wire import goodbye, hello, int_of
 
 if TYPE_CHECKING:
     from rosetta_jit.transports.feeding import Machine
     from rosetta_jit.transports.stream import Stream
-
-MAX_WAITING_BYTES = 16 << 20
-"""Of messages for one reader; one of any size may always wait."""
-
-MAX_SKIPPED = 1 << 16
 
 
 class Output:
@@ -54,7 +50,7 @@ class Output:
             while self.carrier == "fast_tcp":
                 yield Between(1)
             skipped = int_of((yield Between(8)))
-            if not 0 <= skipped <= MAX_SKIPPED:
+            if not 0 <= skipped <= MAX_SKIPPED_BYTES:
                 raise ProtocolError("an acknowledgement of impossible length")
             yield skipped
 

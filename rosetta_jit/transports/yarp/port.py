@@ -11,7 +11,8 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
-from rosetta_jit.transports.connecting import MAX_CONNECTIONS, Listener, resolve
+from rosetta_jit.transports.connecting import Listener, resolve
+from rosetta_jit.transports.limits import MAX_CONNECTING, MAX_CONNECTIONS, MAX_OUTPUTS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.stream import Stream
 from rosetta_jit.transports.yarp.admin import ask_port, quoted, words_of
@@ -32,10 +33,6 @@ SOON_S = 0.5
 
 HEARTBEAT_S = 3.0
 """How often a port looks whether the name server still knows it."""
-
-MAX_OUTPUTS = 256
-MAX_TASKS = 100
-"""Connections that others ask for and that are not made yet."""
 
 CONNECT_S = 2.0
 
@@ -160,7 +157,7 @@ class Port:
                 output = self.outputs.get(other)
                 answer(f"(from {quoted(self.name)}) (to {quoted(other)}) (carrier {output.carrier})" if output else "")
             case ["[add]", other, *carrier]:
-                if len(self._tasks) < MAX_TASKS:
+                if len(self._tasks) < MAX_CONNECTING:
                     self._soon(lambda: answer(self._add(other, *carrier[:1])))
                 else:
                     answer(f"-1 {quoted('This port is busy')}")

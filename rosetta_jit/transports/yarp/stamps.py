@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.transports.limits import MAX_STAMP_DIGITS
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-MAX_DIGITS = 30
 
 
 def stamp(sequence: int, time_ns: int) -> str:
@@ -22,7 +22,7 @@ def attributes_of(envelope: str, sender: str, carrier: str) -> tuple[int | None,
         return None, told
     told["envelope"] = envelope
     sequence, _, seconds = envelope.partition(" ")
-    if len(envelope) > MAX_DIGITS + 12 or not sequence.isdecimal():
+    if len(envelope) > MAX_STAMP_DIGITS + 12 or not sequence.isdecimal():
         return None, told
     whole, _, part = seconds.partition(".")
     if not (whole.isdecimal() and (part.isdecimal() or not part) and len(whole) < 12):

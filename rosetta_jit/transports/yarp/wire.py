@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.transports.feeding import Between, ProtocolError
+from rosetta_jit.transports.limits import MAX_ENVELOPE_BYTES, MAX_YARP_NAME_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
 FIRST_CARRIER = 7777
 TCP = 3
 WITH_ACKS = 128
-MAX_NAME_BYTES = 1000
-MAX_ENVELOPE_BYTES = 4096
-
 _INT = struct.Struct("<2si2s")
 _LENGTH = struct.Struct("<i")
 _COMMAND = struct.Struct("<i4B")
@@ -135,7 +133,7 @@ def hello_rest() -> Generator[Any, memoryview, str]:
         No name has such a length.
     """
     (size,) = _LENGTH.unpack((yield 4))
-    if not 1 <= size <= MAX_NAME_BYTES:
+    if not 1 <= size <= MAX_YARP_NAME_BYTES:
         raise ProtocolError(f"a name of {size} bytes")
     return name_in(bytes((yield size)))
 

@@ -1,0 +1,20 @@
+"""The limits of bridges: what keeps memory bounded whatever peers send. docs/security.md prints them."""
+
+from __future__ import annotations
+
+# --- Routes --------------------------------------------------------------------------------------------------------------
+
+MAX_OPENING = 16
+"""routes that are being opened at the same time"""
+
+MAX_FOUND = 1000
+"""routes that one pattern becomes: a hostile name server could name any number of channels"""
+
+MAX_CAUSES = 100
+"""different causes of errors that a route counts apart"""
+
+MAX_NAME = 48
+"""characters of a route's name in the live table"""
+
+MAX_REASONS = 3
+"""reasons that the live table shows below a route; `--json` and the metrics have all"""
