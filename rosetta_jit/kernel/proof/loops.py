@@ -1,7 +1,8 @@
 """What is true in every round of a loop: guessed at the entry, kept as long as each round keeps it.
 
 The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero. One that a
-round breaks is dropped for good, so that for all its loops together a kernel is walked at most once for each guess.
+round breaks is dropped for good, so that for all its loops together a kernel is walked at most once for each guess. To walk a loop again
+is to walk all loops in it again: what can hardly hold is not tried.
 """
 
 from __future__ import annotations
@@ -9,19 +10,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Advance, Assign
+from rosetta_jit.kernel.ir import Advance, Assign, Local
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.proof.symbolic import linear
-from rosetta_jit.kernel.shape import statements
+from rosetta_jit.kernel.shape import bound_names, expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
-    from rosetta_jit.kernel.ir import Block
+    from rosetta_jit.kernel.ir import Block, Expr
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.scope import Scope, Typed
 
@@ -120,6 +121,35 @@ def _conjuncts(formula: Formula) -> list[Linear]:
 def changed_names(body: Block) -> set[str]:
     """The variables that a loop assigns."""
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
+
+
+def needless(body: Block, said: Iterable[Expr], known: Container[str]) -> set[Guess]:
+    """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps."""
+    users: dict[str, set[str]] = {}
+    assigned: dict[str, list[set[str]]] = {}
+    for stmt, _ in statements(body):
+        read = {name for expr in expressions_of(stmt) for name in _names(expr)}
+        if isinstance(stmt, Assign):
+            assigned.setdefault(stmt.name, []).append(read)
+        for name in read:
+            users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
+    told = {name for expr in said for name in _names(expr)}
+    variables = [name for name in assigned if name in known]
+    return {Guess(name, 2, 1) for name in variables if name in told or not all(map(_made_of(name, users).intersection, assigned[name]))}
+
+
+def _names(expr: Expr) -> Iterator[str]:
+    return (part.name for part in subexpressions(expr) if isinstance(part, Local))
+
+
+def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
+    """A variable, and all that is computed from it, directly or not."""
+    found, waiting = {name}, [name]
+    while waiting:
+        new = users.get(waiting.pop(), set()) - found
+        found |= new
+        waiting += new
+    return found
 
 
 def advanced_lanes(body: Block) -> set[int]:

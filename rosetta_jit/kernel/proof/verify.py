@@ -35,7 +35,7 @@ from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
 from rosetta_jit.kernel.proof.formula import All, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
-from rosetta_jit.kernel.proof.loops import Loop, bounds, walk_rounds
+from rosetta_jit.kernel.proof.loops import Loop, bounds, needless, walk_rounds
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.scope import entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
@@ -329,5 +329,8 @@ def _assume_invariant(scope: Scope, loop: While) -> None:
 
 
 def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave: Callable[[], None]) -> None:
-    dropped = walk.dropped.setdefault(id(loop), set())
+    dropped = walk.dropped.get(id(loop))
+    if dropped is None:
+        said = loop.invariant if isinstance(loop, While) else ()
+        dropped = walk.dropped[id(loop)] = needless(loop.body, said, walk.scope.locals)
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave), dropped)
