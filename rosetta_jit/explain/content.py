@@ -23,7 +23,7 @@ from rosetta_jit.language.check.left_out import unread, unset
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
-from rosetta_jit.language.places import shown_fields, shown_names
+from rosetta_jit.language.places import rules_within, shown_fields, shown_names
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.startup.dataclass import dataclass
@@ -124,15 +124,15 @@ def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Check
         return None
     source, target = (checked.wire, checked.holder) if name == "unpack" else (checked.holder, checked.wire)
     lines = tuple(islice(Lines.of(written, name, rules, checked.uses).lines(derived), MAX_LINES))
-    refusals = [node.text for node in nodes(rules) if isinstance(node, typed.Reject)]
+    refusals = [rule.text for rule in rules_within(rules) if isinstance(rule, typed.Reject)]
     refusals += [node.reason for node in nodes(rules) if isinstance(node, typed.Choice) and node.otherwise is None]
     losses = tuple(_losses(rules, lines, source, target))
     return Direction(name, lines, losses, tuple(dict.fromkeys(refusals)), _cost(name, request, _field_names(checked)))
 
 
 def _losses(rules: tuple[Rule, ...], lines: tuple[Line, ...], source: Message, target: Message) -> list[Loss]:
-    ignored = [shown_fields(node.place.steps) for node in nodes(rules) if isinstance(node, typed.Ignore)]
-    left = [shown_fields(node.place.steps) for node in nodes(rules) if isinstance(node, typed.Default)]
+    ignored = [shown_fields(rule.place.steps) for rule in rules_within(rules) if isinstance(rule, typed.Ignore)]
+    left = [shown_fields(rule.place.steps) for rule in rules_within(rules) if isinstance(rule, typed.Default)]
     changed: dict[str, list[str]] = defaultdict(list)
     for line in lines:
         for note in (note for note in line.notes if note.lossy):

@@ -6,13 +6,13 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from rosetta_jit.explain.nodes import by_span, names_of, nodes, places, span_of
+from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
 from rosetta_jit.language.both_ways.typed_inverse import as_written, for_type
-from rosetta_jit.language.places import shown_fields
+from rosetta_jit.language.places import rules_within, shown_fields
 from rosetta_jit.model.expr import Member, Path
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Place, Rule
     from rosetta_jit.language.uses import Use
     from rosetta_jit.model.expr import Expr, Side
-    from rosetta_jit.model.mapping import Mapping
+    from rosetta_jit.model.mapping import Mapping, Way
     from rosetta_jit.model.mapping import Rule as Untyped
     from rosetta_jit.source import Span
 
@@ -124,9 +124,9 @@ class Lines:
                 for use in used:
                     yield self.line(rule, _by_type(use), depth, [], use)
                     yield from self.opened(use, depth)
-            case Assign(place, value, via=via):
-                by = "" if via is None else f' via "{via.mapping}"' + ("" if via.depth is None else f" to depth {via.depth}")
-                yield self.line(rule, self.text(rule.span) or f"{show_expr(place)} = {_expr(self.made(place, value, rule))}{by}", depth)
+            case Assign(place, value, by=way):
+                text = f"{show_expr(place)} = {_expr(self.made(place, value, rule))}{_by(way)}"
+                yield self.line(rule, self.text(rule.span) or text, depth)
                 yield from self.of_used(rule, depth)
             case SetLength(place, value):
                 yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
@@ -169,7 +169,7 @@ class Lines:
     def made(self, place: Path, value: Expr, rule: Untyped) -> Expr:
         """A value as it was made for the type of its place, if a typed rule tells that."""
         names = "".join(f".{step.name}" for step in place.steps if isinstance(step, Member))
-        assigned = (node for node in nodes(tuple(self.typed.get(span_of(rule.span), ()))) if isinstance(node, typed.Assign))
+        assigned = (each for each in rules_within(tuple(self.typed.get(span_of(rule.span), ()))) if isinstance(each, typed.Assign))
         found = next((each.place.type for each in assigned if shown_fields(each.place.steps).endswith(names)), None)
         return value if found is None else for_type(value, found)
 
@@ -182,6 +182,15 @@ def _expr(value: Expr) -> str:
     """An expression without brackets around the whole."""
     text = show_expr(as_written(value))
     return text[1:-1] if text.startswith("(") and _closes_last(text) else text
+
+
+def _by(way: Way | None) -> str:
+    """By which mapping a value becomes another."""
+    match way:
+        case Via(name, depth):
+            return f' via "{name}"' + ("" if depth is None else f" to depth {depth}")
+        case _:
+            return ""
 
 
 def _closes_last(text: str) -> bool:

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
 
-NODES = typed.__name__.rpartition(".")[0]
-"""The package whose classes are nodes; types, fields and spans are of others."""
+NODES = (typed.__name__.rpartition(".")[0], typed.Assign.__module__)
+"""Where the classes of nodes are; types, fields and spans are elsewhere."""
 
 
 def nodes(root: object) -> Iterator[object]:

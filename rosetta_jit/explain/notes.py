@@ -48,7 +48,7 @@ def notes(rules: list[Rule]) -> tuple[Note, ...]:
 
 def _notes(rule: Rule) -> Iterator[Note]:
     match rule:
-        case typed.Assign(place, value, change=change):
+        case typed.Assign(place, value, by=change):
             yield from _units(rule) if change is None else _changes(change)
             yield from _conversions((place, value))
         case typed.SetLength(place, value):
@@ -93,7 +93,7 @@ def _changes(change: Change) -> Iterator[Note]:
     yield from (Note(f"{node.source} → {node.target}") for node in nodes(change) if isinstance(node, typed.Rescale))
 
 
-def _units(rule: typed.Assign) -> Iterator[Note]:
+def _units(rule: typed.Assignment) -> Iterator[Note]:
     """From which unit to which; one that only one side declares is said to be so."""
     wanted = _told(unit_at(rule.place) or unit_of(rule.value))
     read = dict.fromkeys(_told(unit_at(place)) for place in places(rule.value, "wire" if rule.place.side == "holder" else "holder"))

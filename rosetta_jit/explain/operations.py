@@ -57,7 +57,7 @@ def operations_of(rules: tuple[Rule, ...], *, chosen: bool = False) -> Iterator[
             case typed.Assign() | typed.SetLength():
                 yield from _of_nodes((rule.place, rule.value))
                 if isinstance(rule, typed.Assign):
-                    yield from _of_nodes(rule.change)
+                    yield from _of_nodes(rule.by)
                     yield from _of_assignment(rule, chosen=chosen)
             case typed.For(_, start, stop, body):
                 yield "subtype loops"
@@ -109,7 +109,7 @@ def _of_node(node: object) -> Iterator[Operation]:
             pass
 
 
-def _of_assignment(rule: typed.Assign, *, chosen: bool) -> Iterator[Operation]:
+def _of_assignment(rule: typed.Assignment, *, chosen: bool) -> Iterator[Operation]:
     """What shows only in a rule as a whole."""
     place, value = rule.place, rule.value
     read = places(value, "wire" if place.side == "holder" else "holder")

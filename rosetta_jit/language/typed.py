@@ -4,12 +4,11 @@
          | Given                                                     each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
-    Rule = Assign(Place, Expr, Change?) | SetLength(Place, Expr of int64) | For(Local, start, stop, Rule*)
-         | When(Expr of bool, Rule*, Rule*) | Reject(text) | Ignore(Place) | Default(Place)
+    Rule = those of `model.rules`, with Place and Expr: of int64 in a SetLength, of bool in a When; an Assign is `by` a Change
 
 Every change of a scalar type is a `Convert`; both operands of a `Binary` have one type, which is its own unless it compares.
 Numbers of different units are converted by a `Binary` of `*`, and of `+` where their scales have different origins; within a whole value,
-by the `change` of its `Assign`.
+by the `Change` of its `Assign`.
 Only an `Assign` of a whole array, struct, string or blob (`Access` as the value) may have two types: elements are then widened,
 text is checked, and a length that the target fixes is checked.
 """
@@ -17,9 +16,10 @@ text is checked, and a length that the target fixes is checked.
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 from typing import Literal as OneOf
 
+from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, When
 from rosetta_jit.model.types import Bool, Int
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -275,70 +275,7 @@ class EachMember:
 Change = Rescale | EachElement | EachMember
 
 
-@dataclass(frozen=True, slots=True)
-class Assign:
-    """``.place = value``; where that is a whole array, struct, union or map, ``change`` says which of its numbers have another unit."""
-
-    place: Place
-    value: Expr
-    span: Span | None = field(default=None, compare=False, repr=False)
-    change: Change | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class SetLength:
-    """``len(.place) = value``"""
-
-    place: Place
-    value: Expr
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class For:
-    """A loop; ``stop`` is exclusive, and below ``start`` it is an error of kind ``count``."""
-
-    variable: Local
-    start: Expr
-    stop: Expr
-    body: tuple[Rule, ...]
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class When:
-    """One block or the other."""
-
-    condition: Expr
-    then: tuple[Rule, ...]
-    otherwise: tuple[Rule, ...]
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Reject:
-    """The message is refused, with this text, or with what the ``pieces`` say, which are texts; ``written`` is as in `mapping.Reject`."""
-
-    text: str
-    span: Span | None = field(default=None, compare=False, repr=False)
-    pieces: tuple[Expr, ...] = ()
-    written: bool = field(default=False, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Ignore:
-    """Nothing reads this place, and that is meant."""
-
-    place: Place
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Default:
-    """Nothing sets this place, and that is meant: numbers are 0, texts and arrays empty, what can be absent is."""
-
-    place: Place
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-Rule = Assign | SetLength | For | When | Reject | Ignore | Default
+Assignment: TypeAlias = Assign[Place, Expr, Change]
+Rule: TypeAlias = (
+    Assignment | SetLength[Place, Expr] | For["Rule", Expr] | When["Rule", Expr] | Reject[Expr] | Ignore[Place] | Default[Place]
+)

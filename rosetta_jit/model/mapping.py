@@ -1,9 +1,8 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
     Mapping = Import*, Function*, Parameter*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
-    Rule    = Assign(place, Expr, via) | SetLength(place, Expr) | For(variable, start, stop, Rule*)
-            | When(condition, Rule*, Rule*) | Reject(text) | Relation(Path | Len, Expr)
-            | Ignore(Path) | Default(Path) | SameNames(Path*) | Arranged(place, flag, {constant: Expr})
+    Rule    = those of `model.rules`, with Path and Expr; an Assign is `by` a Via, or "checked"
+            | Relation(Path | Len, Expr, Via) | SameNames(Path*) | Arranged(place, flag, {constant: Expr})
 
 In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's. Relations and loops of them stand in the rules for
 both directions alone, with the place on the holder's side.
@@ -12,12 +11,15 @@ both directions alone, with the place on the holder's side.
 from __future__ import annotations
 
 from dataclasses import field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
+from typing import Literal as OneOf
 
+from rosetta_jit.model.expr import Expr, Path
+from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, When
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Expr, Len, Path
+    from rosetta_jit.model.expr import Len
     from rosetta_jit.source import Source, Span
 
 
@@ -67,61 +69,8 @@ class TypeName:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Assign:
-    """``.place = value``; where it ``fits``, a value that the place cannot hold is an error when it comes, and needs no word before.
-
-    With ``via``, the value is a message, or several, that another mapping relates to the place.
-    """
-
-    place: Path
-    value: Expr
-    span: Span | None = field(default=None, compare=False, repr=False)
-    fits: bool = False
-    via: Via | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class SetLength:
-    """``len(.place) = value``"""
-
-    place: Path
-    value: Expr
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class For:
-    """``for variable from start to stop ... end``; ``stop`` is exclusive and not below ``start``."""
-
-    variable: str
-    start: Expr
-    stop: Expr
-    body: tuple[Rule, ...]
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class When:
-    """``when condition ... else ... end``"""
-
-    condition: Expr
-    then: tuple[Rule, ...]
-    otherwise: tuple[Rule, ...]
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Reject:
-    """``reject "text"``: the message is refused, whatever else it holds. ``pieces`` are the texts and values of a text with braces.
-
-    One that is ``written`` stands in the text; all others check what relations say.
-    """
-
-    text: str
-    span: Span | None = field(default=None, compare=False, repr=False)
-    pieces: tuple[Expr, ...] = ()
-    written: bool = field(default=False, compare=False, repr=False)
+Way: TypeAlias = Via | OneOf["checked"]
+"""How a value becomes one of a place: by another mapping; or ``checked``, so that what the place cannot hold is an error when it comes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,22 +81,6 @@ class Relation:
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
     via: Via | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Ignore:
-    """``ignore .place``: it is meant that no rule reads it."""
-
-    place: Path
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Default:
-    """``default .place``: it is meant that no rule sets it, and it has the value that nothing was said of."""
-
-    place: Path
-    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +109,19 @@ class Arranged:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Rule = Assign | SetLength | For | When | Reject | Relation | Ignore | Default | SameNames | Arranged
+Assignment: TypeAlias = Assign[Path, Expr, Way]
+Rule: TypeAlias = (
+    Assignment
+    | SetLength[Path, Expr]
+    | For["Rule", Expr]
+    | When["Rule", Expr]
+    | Reject[Expr]
+    | Relation
+    | Ignore[Path]
+    | Default[Path]
+    | SameNames
+    | Arranged
+)
 
 
 @dataclass(frozen=True, slots=True)

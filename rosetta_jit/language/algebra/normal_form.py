@@ -35,7 +35,7 @@ from rosetta_jit.model.types import Bytes, String
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
 
 
 def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
@@ -91,8 +91,8 @@ def _normal(rule: Rule, names: dict[str, Expr]) -> Rule:
             return replace(rule, place=placed(place, change))
         case For(variable, start, stop, body):
             number = Local(f"${len(names)}")
-            inner = normal(body, {**names, variable.name: number})
-            return replace(rule, variable=number, start=change(start), stop=change(stop), body=inner)
+            inner = normal(body, {**names, variable: number})
+            return replace(rule, variable=number.name, start=change(start), stop=change(stop), body=inner)
         case When():
             table = _table(rule)
             if table is not None:
@@ -116,7 +116,7 @@ def _is_key(condition: Expr) -> bool:
     )
 
 
-def _table(rule: When) -> Assign | None:
+def _table(rule: When[Rule, Expr]) -> Assignment | None:
     """A choice among texts that was made rules, as a choice again."""
     cases: list[tuple[Expr, Expr]] = []
     place: Place | None = None

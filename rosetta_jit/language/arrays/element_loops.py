@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.mapping import Assignment, Rule
 
     Inside = Callable[[list[Expr], int], tuple[Rule, ...]]
 
@@ -35,14 +35,14 @@ class Moves:
     ``level`` is how many loops are around, ``variable`` names the one at a level, ``expanded`` gives the rules for one element.
     """
 
-    rule: Assign
+    rule: Assignment
     target: View
     views: dict[Path | Call, View]
     count: Expr
     padding: Padding | None
     level: int
     variable: Callable[[int], str]
-    expanded: Callable[[Assign, int], tuple[Rule, ...]]
+    expanded: Callable[[Assignment, int], tuple[Rule, ...]]
 
     def rules(self) -> tuple[Rule, ...]:
         views = (self.target, *self.views.values())
@@ -88,7 +88,7 @@ class Moves:
 
             name = self.variable(level)
             place = _element(self.target, [plus(times(y, stride), Name(name))])
-            fill = Assign(place, Literal(0, self.rule.span), self.rule.span)
+            fill: Rule = Assign(place, Literal(0, self.rule.span), self.rule.span)
             return (
                 *self.nest((replace(first, count=groups), *inner), element, level),
                 For(name, size, stride, (fill,), self.rule.span),

@@ -21,7 +21,7 @@ from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
 from rosetta_jit.language.typed import FieldStep
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
-from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Struct, Union
 from rosetta_jit.model.walk import parts
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.arrays.layouts import View
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.mapping import Assignment, Rule
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
@@ -73,8 +73,8 @@ class _Expansion:
             case Arranged(place, flag, cases, span):
                 if len(cases) > 1:  # those for both directions have one left
                     self.scope.problems.append(words.several_layouts(span))
-                assigns = [part for constant, value in cases[:1] for part in (Assign(flag, constant, span), Assign(place, value, span))]
-                return tuple(made for each in assigns for made in self.assign(each, lengths, level))
+                pairs = [pair for constant, value in cases[:1] for pair in ((flag, constant), (place, value))]
+                return tuple(made for target, value in pairs for made in self.assign(Assign(target, value, span), lengths, level))
             case For(body=body):
                 return (replace(rule, body=self.block(body, lengths, level)),)
             case When(condition, (Reject() as refusal,), ()) if any(map(has_each, parts(condition))):
@@ -84,10 +84,10 @@ class _Expansion:
             case _:
                 return (rule,)
 
-    def assign(self, rule: Assign, lengths: Lengths, level: int) -> tuple[Rule, ...]:
-        if rule.via is None and isinstance(rule.value, Path) and self.are_unlike_maps(rule.place, rule.value):
+    def assign(self, rule: Assignment, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        if not isinstance(rule.by, Via) and isinstance(rule.value, Path) and self.are_unlike_maps(rule.place, rule.value):
             return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
-        if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.fits):
+        if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.by == "checked"):
             rule = _each(rule, rule.value)
         if not any(is_many(part) for side in (rule.place, rule.value) for part in parts(side)):
             return (rule,)
@@ -102,7 +102,7 @@ class _Expansion:
             self.broken.append((*around, *(step.name for step in rule.place.steps if isinstance(step, Member))))
             return ()
 
-    def refused(self, rule: When, refusal: Reject, level: int) -> tuple[Rule, ...]:
+    def refused(self, rule: When[Rule, Expr], refusal: Reject[Expr], level: int) -> tuple[Rule, ...]:
         """A rejection for what some element has, as a loop."""
         try:
             views = {source: view_of(source) for source in dict.fromkeys(sources_in(rule.condition))}
@@ -118,7 +118,7 @@ class _Expansion:
         same_lengths = [check for total in others for check in _unless_equal(total, first, rule.span)]
         return (*wrong, *same_lengths, For(name, Literal(0), first, self.block((asked,), {}, level + 1), rule.span))
 
-    def chosen(self, rule: Assign, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+    def chosen(self, rule: Assignment, choice: Choice, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         """A choice among arrays, as one rule a case."""
 
         def assigned(value: Expr) -> tuple[Rule, ...]:
@@ -129,7 +129,7 @@ class _Expansion:
             rest = (When(condition, assigned(value), rest, rule.span),)
         return rest
 
-    def loops(self, rule: Assign, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
+    def loops(self, rule: Assignment, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
         value, padding = _padded(rule.value)
         sources = [_whole(value)] if whole or padding else list(dict.fromkeys(sources_in(value)))
         views = {source: view_of(source) for source in sources}
@@ -145,7 +145,7 @@ class _Expansion:
         if padding:
             before += _unless_equal(next(iter(views.values())).total, times(padding[0], padding[1]), rule.span)
 
-        def expanded(element: Assign, level: int) -> tuple[Rule, ...]:
+        def expanded(element: Assignment, level: int) -> tuple[Rule, ...]:
             if next(self.made) > MAX_MADE:
                 raise LayoutError(words.too_many_rules(rule.span, MAX_MADE))
             return self.block((element,), lengths, level)
@@ -153,7 +153,7 @@ class _Expansion:
         moves = Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded)
         return (*before, *moves.rules())
 
-    def counted(self, rule: Assign, target: View, given: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
+    def counted(self, rule: Assignment, target: View, given: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
         """How many elements a rule sets, and what checks or sets that."""
         known = self.known_count(target, lengths)
         is_open = _is_open(target)
@@ -217,13 +217,13 @@ class _Expansion:
         return name
 
 
-def _each(rule: Assign, value: Path) -> Assign:
+def _each(rule: Assignment, value: Path) -> Assignment:
     """A rule for arrays as one for each element."""
     step = Each(rule.span)
     return replace(rule, place=replace(rule.place, steps=(*rule.place.steps, step)), value=replace(value, steps=(*value.steps, step)))
 
 
-def _entries(rule: Assign, value: Path) -> list[Assign]:
+def _entries(rule: Assignment, value: Path) -> list[Assignment]:
     """Rules for the keys and for the values of a map."""
     steps = [(Each(rule.span), Member(name, rule.span)) for name in ("key", "value")]
     return [
@@ -257,7 +257,7 @@ def _add(made: list[Rule], rule: Rule, variable: str) -> None:
             made.append(rule)
 
 
-def _rounds(loop: For) -> object:
+def _rounds(loop: For[Rule, Expr]) -> object:
     """The bounds of a loop, and the array that it sets elements of; the loop itself where that is no single one."""
     steps = loop.body[0].place.steps if loop.body and isinstance(loop.body[0], Assign) else ()
     number = next((number for number, step in enumerate(steps) if step == Index(Name(loop.variable))), None)

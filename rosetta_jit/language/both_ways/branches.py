@@ -50,7 +50,7 @@ def _equal(expr: Expr, constant: Expr) -> dict[Field, Expr]:
     return {solution.place: solution.value}
 
 
-def asked_of_holder(rule: When) -> Expr:
+def asked_of_holder(rule: When[Rule, Expr]) -> Expr:
     """A condition that asks of the holder what is there on the wire: the one block has a relation between the two, the other has none."""
     pairs: dict[Expr, Path] = {}
     for block, other in ((rule.then, rule.otherwise), (rule.otherwise, rule.then)):

@@ -94,7 +94,7 @@ def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
         case Relation(place, value, span, via):
             beside = checked.get(id(rule))
             checks = () if beside is None or beside.side == "holder" else checks_of(beside)
-            set_to = SetLength(place.path, value, span) if isinstance(place, Len) else Assign(place, value, span, via=via)
+            set_to = SetLength(place.path, value, span) if isinstance(place, Len) else Assign(place, value, span, via)
             return (*checks, set_to)
         case For(body=body):
             return (replace(rule, body=_unpacking(body, checked)),)

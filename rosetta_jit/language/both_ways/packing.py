@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse_parts import Digit
     from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.mapping import Rule, Way
     from rosetta_jit.source import Span
 
 
@@ -47,7 +47,7 @@ NOTHING: Mapping[Field, Expr] = MappingProxyType({})
 class _Owed:
     """That the condition of a `when` holds of the message that a block packs, or that it does not."""
 
-    rule: When
+    rule: When[Rule, Expr]
     holds: bool
 
 
@@ -114,7 +114,7 @@ class Packing:
             case Assign() | SetLength():
                 raise AssertionError(rule)
 
-    def loop(self, rule: For, loops: Loops) -> tuple[Rule, ...]:
+    def loop(self, rule: For[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:
         start, stop = (self.known.replaced(bound, loops) for bound in (rule.start, rule.stop))
         missing = [*fields_of(start, "wire"), *fields_of(stop, "wire")]
         if missing:
@@ -162,8 +162,7 @@ class Packing:
         if unknown:
             self.problems.append(words.unknown_layout(unknown[0].span or rule.span, show_expr(unknown[0])))
             return ()
-        set_to = _setting(place, value, rule.span, length=isinstance(target, Len))
-        return (replace(set_to, via=rule.via) if isinstance(set_to, Assign) else set_to,)
+        return (_setting(place, value, rule.span, length=isinstance(target, Len), way=rule.via or "checked"),)
 
     def arranged(self, rule: Arranged, loops: Loops) -> tuple[Rule, ...]:
         """The flag says which of the layouts the holder has."""
@@ -190,7 +189,7 @@ class Packing:
 
     # --- conditions ----------------------------------------------------------------------------------------------------
 
-    def when(self, rule: When, loops: Loops) -> tuple[Rule, ...]:
+    def when(self, rule: When[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:
         condition = self.known.replaced(asked_of_holder(rule), loops)
         if not fields_of(condition, "wire"):
             then, other = self.enter(rule.then, loops), self.enter(rule.otherwise, loops)
@@ -208,7 +207,7 @@ class Packing:
             return ()
         return (When(test, tuple(each for each in then.rules if not _is_tested(each, test)), other.rules, rule.span),)
 
-    def branch(self, rule: When, loops: Loops, *, holds: bool) -> _Block:
+    def branch(self, rule: When[Rule, Expr], loops: Loops, *, holds: bool) -> _Block:
         """One block with what its condition says of the wire, where it cannot be known before the block is."""
         block = rule.then if holds else rule.otherwise
         if _rejects(block):
@@ -256,7 +255,7 @@ class Packing:
 
     # --- what is missing -----------------------------------------------------------------------------------------------
 
-    def refusal(self, rule: Reject, loops: Loops) -> Reject:
+    def refusal(self, rule: Reject[Expr], loops: Loops) -> Reject[Expr]:
         """A rejection with what is known of the values that its text shows; with the text alone, where that is not all."""
         pieces = tuple(self.known.replaced(piece, loops) for piece in rule.pieces)
         return replace(rule, pieces=() if any(fields_of(piece, "wire") for piece in pieces) else pieces)
@@ -305,8 +304,8 @@ def with_known_indices(place: Field, known: Knowledge, loops: Loops) -> Field:
     return Len(found, place.span) if isinstance(place, Len) else found
 
 
-def _setting(place: Path, value: Expr, span: Span | None, *, length: bool) -> Rule:
-    return SetLength(place, value, span) if length else Assign(place, value, span, fits=True)
+def _setting(place: Path, value: Expr, span: Span | None, *, length: bool, way: Way = "checked") -> Rule:
+    return SetLength(place, value, span) if length else Assign(place, value, span, way)
 
 
 def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
@@ -316,7 +315,7 @@ def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
     return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
 
-def _guard(condition: Expr, rule: When, *, holds: bool) -> tuple[Rule, ...]:
+def _guard(condition: Expr, rule: When[Rule, Expr], *, holds: bool) -> tuple[Rule, ...]:
     """That unpacking is going to take this block."""
     if condition == (TRUE if holds else FALSE):
         return ()

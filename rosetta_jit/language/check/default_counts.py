@@ -32,7 +32,7 @@ def defaulted_counts(rules: tuple[Rule, ...], target: Message) -> list[Diagnosti
     return problems
 
 
-def _defaults(rules: tuple[Rule, ...]) -> Iterator[Default]:
+def _defaults(rules: tuple[Rule, ...]) -> Iterator[Default[Place]]:
     for rule in rules:
         match rule:
             case Default(place) if isinstance(place.type, Int) and isinstance(place.steps[-1], FieldStep):

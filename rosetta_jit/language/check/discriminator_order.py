@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.check.discriminators import Discriminator, Names
-    from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
     from rosetta_jit.source import Span
 
     Spot = tuple[Names, tuple[Expr, ...]]
@@ -139,7 +139,7 @@ def _sorted(before: TopologicalSorter[Node]) -> Iterator[int]:
             before.done(number)
 
 
-def _set_in_other_rounds(body: tuple[Rule, ...], variable: Local, by_rule: Mapping[Names, Discriminator]) -> Iterator[Place]:
+def _set_in_other_rounds(body: tuple[Rule, ...], variable: str, by_rule: Mapping[Names, Discriminator]) -> Iterator[Place]:
     """Discriminators that one round of a loop may set after another round has filled a case.
 
     Rounds are apart where all that they set is in the element of the loop's own number.
@@ -148,7 +148,7 @@ def _set_in_other_rounds(body: tuple[Rule, ...], variable: Local, by_rule: Mappi
     for names in {names for names, _ in unset}:
         setting = [place for rule in body for place in _set_by(rule, by_rule) if field_names(place) == names]
         spots = [*(spot for spot in unset if spot[0] == names), *(_spot(place, len(place.steps), names) for place in setting)]
-        apart = any(all(index == variable for index in indices) for indices in zip(*(indices for _, indices in spots), strict=True))
+        apart = any(all(index == Local(variable) for index in indices) for indices in zip(*(indices for _, indices in spots), strict=True))
         if setting and not apart:
             yield setting[0]
 
@@ -156,7 +156,7 @@ def _set_in_other_rounds(body: tuple[Rule, ...], variable: Local, by_rule: Mappi
 # --- spots ---------------------------------------------------------------------------------------------------------------
 
 
-def _settings(rule: Rule) -> list[Assign | SetLength | Default]:
+def _settings(rule: Rule) -> list[Assignment | SetLength[Place, Expr] | Default[Place]]:
     return [each for each in rules_within((rule,)) if isinstance(each, Assign | SetLength | Default)]
 
 

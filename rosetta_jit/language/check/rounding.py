@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.typed import Expr, Rule
+    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
 
 
 def rounded(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
@@ -43,7 +43,7 @@ def _constants(expr: Expr) -> Iterator[Diagnostic]:
         yield from _constants(part)
 
 
-def _by_unit(rule: Assign | SetLength) -> Iterator[Diagnostic]:
+def _by_unit(rule: Assignment | SetLength[Place, Expr]) -> Iterator[Diagnostic]:
     """The conversion of a unit is computed in float64; that its result is a float32 may be the place's wish alone."""
     change = inserted(rule) if isinstance(rule, Assign) and is_single(rule.place.type) else None
     if not isinstance(change, Rescale):

@@ -34,9 +34,9 @@ def _within(rules: tuple[Rule, ...], agreed: Pairs, loops: dict[str, Place]) -> 
     for rule in rules:
         match rule:
             case For(variable, Const(0), LenOf(place), body):
-                yield from _within(body, agreed, {**loops, variable.name: place})
+                yield from _within(body, agreed, {**loops, variable: place})
             case For(variable, body=body):
-                yield from _within(body, agreed, {name: place for name, place in loops.items() if name != variable.name})
+                yield from _within(body, agreed, {name: place for name, place in loops.items() if name != variable})
             case When(_, then, otherwise):
                 yield from _within((*then, *otherwise), agreed, loops)
             case Assign(_, value) | SetLength(_, value):

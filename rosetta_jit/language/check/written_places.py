@@ -76,7 +76,7 @@ def writes_of(
                     found.append(Write(_steps(place), loops, None, polynomial_of(value), span))
                 case For(variable, start, stop, body):
                     first = polynomial_of(start)
-                    loop = Loop(variable.name, first, subtract(polynomial_of(stop), first))
+                    loop = Loop(variable, first, subtract(polynomial_of(stop), first))
                     found += writes_of(body, problems, broken, (*loops, loop))
                 case When() | Reject():
                     raise AssertionError(rule)

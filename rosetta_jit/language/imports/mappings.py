@@ -11,7 +11,7 @@ from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.uses import Others
-from rosetta_jit.model.mapping import Assign, For, When
+from rosetta_jit.model.mapping import Assign, For, Via, When
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.imports.search import Reading, SearchPath
     from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.mapping import Rule, Via
+    from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Source, Span
 
 MAPPING_SUFFIX = ".mapping"
@@ -78,7 +78,7 @@ def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
 def _vias(rules: tuple[Rule, ...]) -> Iterator[Via]:
     for rule in rules:
         match rule:
-            case Assign(via=via) if via is not None:
+            case Assign(by=Via() as via):
                 yield via
             case For(body=body):
                 yield from _vias(body)

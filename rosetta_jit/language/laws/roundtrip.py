@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.language.algebra.equality import Ranges
     from rosetta_jit.language.laws.ways import Way
-    from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
 
@@ -102,7 +102,7 @@ class Trip:
         for condition, holds, ranges in way.known:
             self.know(condition, ranges, holds=holds)
         self.refused = False
-        self.refusals: list[Reject] = []
+        self.refusals: list[Reject[Expr]] = []
         self.by_round = any(has_local(condition) for condition, _, _ in way.known)
         self.left = MAX_ORDERED
 
@@ -324,9 +324,9 @@ class Trip:
                 return expr
 
 
-def _changed(rule: Assign | SetLength, value: Expr) -> Expr:
+def _changed(rule: Assignment | SetLength[Place, Expr], value: Expr) -> Expr:
     """The value of a rule; one within which units change is not followed."""
-    return value if isinstance(rule, SetLength) or rule.change is None else Given("in other units", (), value.type)
+    return value if isinstance(rule, SetLength) or rule.by is None else Given("in other units", (), value.type)
 
 
 def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:

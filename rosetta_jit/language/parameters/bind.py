@@ -170,7 +170,7 @@ class _Binder:
             cases = [(Literal(value=False, span=choice.span), self.expr(choice.cases[0][1]))]
         return replace(choice, cases=tuple(cases), otherwise=otherwise)
 
-    def has_no_rounds(self, written_loop: For, loop: For) -> bool:
+    def has_no_rounds(self, written_loop: For[Rule, Expr], loop: For[Rule, Expr]) -> bool:
         """Whether a loop ends where it starts for the parameters' values, as one over an empty list does."""
         if not any(isinstance(part, Name) and part.name in self.values for part in parts(written_loop.stop)):
             return False

@@ -16,7 +16,7 @@ from rosetta_jit.model.types import Array, Int
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.mapping import Assignment, Rule
 
 
 def spread(rule: Rule, variables: tuple[str, ...]) -> tuple[Rule, ...]:
@@ -30,7 +30,7 @@ def spread(rule: Rule, variables: tuple[str, ...]) -> tuple[Rule, ...]:
             return (rule,)
 
 
-def _spread(rule: Assign | Relation, place: Path, value: List | Given, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+def _spread(rule: Assignment | Relation, place: Path, value: List | Given, variables: tuple[str, ...]) -> tuple[Rule, ...]:
     match value:
         case List(items) if len(items) > MAX_SINGLE and all(isinstance(item, Literal) for item in items):
             count: Expr = Literal(len(items), value.span)
@@ -43,7 +43,7 @@ def _spread(rule: Assign | Relation, place: Path, value: List | Given, variables
             return (_length(rule, place, count), *_loop(rule, place, value, count, variables))
 
 
-def _loop(rule: Assign | Relation, place: Path, value: List | Given, count: Expr, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+def _loop(rule: Assignment | Relation, place: Path, value: List | Given, count: Expr, variables: tuple[str, ...]) -> tuple[Rule, ...]:
     variable = next(name for name in ("item", *(f"item_{number}" for number in range(2, 100))) if name not in variables)
     index = Name(variable, value.span)
     if isinstance(value, Given):
@@ -55,12 +55,12 @@ def _loop(rule: Assign | Relation, place: Path, value: List | Given, count: Expr
     return (For(variable, Literal(0, value.span), count, body, rule.span),)
 
 
-def _item(rule: Assign | Relation, place: Path, index: Expr, value: Expr, variables: tuple[str, ...]) -> tuple[Rule, ...]:
+def _item(rule: Assignment | Relation, place: Path, index: Expr, value: Expr, variables: tuple[str, ...]) -> tuple[Rule, ...]:
     element = replace(place, steps=(*place.steps, Index(index, place.span)))
     return spread(replace(rule, place=element, value=value), variables)
 
 
-def _length(rule: Assign | Relation, place: Path, count: Expr) -> Rule:
+def _length(rule: Assignment | Relation, place: Path, count: Expr) -> Rule:
     if isinstance(rule, Relation):
         return Relation(Len(place, place.span), count, rule.span)
     return SetLength(place, count, rule.span)

@@ -67,7 +67,7 @@ def read_rule(tree: Tree, context: Context) -> Rule:
     match str(tree.data):
         case "assign":
             place, value, *via = _trees(tree)
-            return Assign(_path(place, context.target, context), _expr(value, context), span, via=_via(via, context))
+            return Assign(_path(place, context.target, context), _expr(value, context), span, _via(via, context))
         case "set_length":
             place, value = _trees(tree)
             return SetLength(_path(place, context.target, context), _expr(value, context), span)
@@ -111,7 +111,7 @@ def _via(trees: list[Tree], context: Context) -> Via | None:
     return Via(read_string(name, context.source, context.problems), deepest, context.span(trees[0]))
 
 
-def _when(condition: Expr, body: list[Tree], context: Context, span: Span) -> When:
+def _when(condition: Expr, body: list[Tree], context: Context, span: Span) -> Rule:
     then = tuple(read_rule(rule, context) for rule in body if rule.data not in OTHERWISE)
     others = (rule for block in body if block.data in OTHERWISE for rule in _trees(block))
     return When(condition, then, tuple(read_rule(rule, context) for rule in others), span)

@@ -64,7 +64,7 @@ class _Block:
             case _:
                 return rule
 
-    def loop(self, rule: For) -> For:
+    def loop(self, rule: For[Rule, Expr]) -> Rule:
         """Arrays of which each round has its own are made in the loop; the others around it."""
         known, around = len(self.arrays), self.scope
         self.scope = around.inside(rule.variable)

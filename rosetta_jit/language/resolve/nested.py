@@ -33,6 +33,7 @@ from rosetta_jit.language.typed import (
 )
 from rosetta_jit.language.uses import EnoughError, Use
 from rosetta_jit.model.expr import Path
+from rosetta_jit.model.mapping import Via
 from rosetta_jit.model.types import Array, Optional, Struct, same_name
 
 if TYPE_CHECKING:
@@ -47,32 +48,36 @@ if TYPE_CHECKING:
     RulesOf = Callable[[tuple[model.Rule, ...], Scope], tuple[Rule, ...]]
 
 
-def nest(rule: model.Assign, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...] | None:
+def nest(rule: model.Assignment, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...] | None:
     """The rules that an assignment of messages stands for; None if it is none that a mapping makes."""
-    if rule.via is None and not scope.others.by_type():
+    via = rule.by if isinstance(rule.by, Via) else None
+    if via is None and not scope.others.by_type():
         return None
     if not isinstance(rule.value, Path):
-        if rule.via is not None:
+        if via is not None:
             scope.problems.append(words.not_a_field(rule.value.span))
         return None
-    ends = _ends(rule, rule.value, scope)
+    ends = _ends(rule, rule.value, scope if via is not None else replace(scope, problems=[]))
     if ends is None:
         return None
     place, origin = ends
     target, source = (_message(end, scope) for end in ends)
-    if rule.via is None and (target is None or source is None or target == source):
+    if via is None and (target is None or source is None or target == source):
         return None
     if target is None or source is None:
         scope.problems.append(words.no_messages(rule.span, describe(origin.type), describe(place.type)))
-        return (Default(place, rule.span), Ignore(origin, rule.span))
-    found = _chosen(rule, target, source, scope)
-    return None if found is None and rule.via is None else _used(found, rule, place, origin, scope, rules_of)
+        return _left_out(place, origin, rule.span)
+    found = _imported(target, source, scope) if via is None else _named(via, target, source, scope)
+    if found is None:
+        return None if via is None else _left_out(place, origin, rule.span)
+    others = scope.others
+    others.uses.append(Use(*found, place, origin, rule.span))
+    return _used(others.uses[-1], None if via is None else via.depth, scope, rules_of)
 
 
-def _ends(rule: model.Assign, value: Path, scope: Scope) -> tuple[Place, Place] | None:
+def _ends(rule: model.Assignment, value: Path, scope: Scope) -> tuple[Place, Place] | None:
     """Both places; without `via`, what does not resolve is reported by whoever assigns it."""
-    quiet = scope if rule.via is not None else replace(scope, problems=[])
-    place, origin = resolve_path(rule.place, quiet, type_index), resolve_path(value, quiet, type_index)
+    place, origin = resolve_path(rule.place, scope, type_index), resolve_path(value, scope, type_index)
     return None if isinstance(place, Broken) or isinstance(origin, Broken) else (place, origin)
 
 
@@ -87,21 +92,24 @@ def _value_type(type_: Type, place: Place, scope: Scope) -> Type:
     return scope.messages[place.side].value_type(type_)
 
 
-def _chosen(rule: model.Assign, target: Struct, source: Struct, scope: Scope) -> tuple[model.Mapping, Side] | None:
-    """The mapping, and which of its sides is the target."""
-    if rule.via is None:
-        for each in scope.others.by_type():
-            side = _side(each, target, source)
-            if side is not None:
-                return each, side
-        return None
-    other = scope.others.named(rule.via)
+def _imported(target: Struct, source: Struct, scope: Scope) -> tuple[model.Mapping, Side] | None:
+    """The mapping that is imported for two types, and which of its sides is the target."""
+    for each in scope.others.by_type():
+        side = _side(each, target, source)
+        if side is not None:
+            return each, side
+    return None
+
+
+def _named(via: Via, target: Struct, source: Struct, scope: Scope) -> tuple[model.Mapping, Side] | None:
+    """The mapping of a `via`, and which of its sides is the target."""
+    other = scope.others.named(via)
     if other is None:
         return None
     side = _side(other, target, source)
     if side is None:
         names = other.holder_type, other.wire_type
-        scope.problems.append(words.other_types(rule.via.span, rule.via.mapping, names, (source.name, target.name)))
+        scope.problems.append(words.other_types(via.span, via.mapping, names, (source.name, target.name)))
     return None if side is None else (other, side)
 
 
@@ -114,31 +122,29 @@ def _side(mapping: model.Mapping, target: Struct, source: Struct) -> Side | None
     return None
 
 
-def _used(
-    found: tuple[model.Mapping, Side] | None, rule: model.Assign, place: Place, origin: Place, scope: Scope, rules_of: RulesOf
-) -> tuple[Rule, ...]:
-    """The rules of the mapping; ignored where it could not be read, so that nothing more is said of the two places."""
-    if found is None:
-        return (Default(place, rule.span), Ignore(origin, rule.span))
-    mapping, side = found
-    others = scope.others
-    others.uses.append(Use(mapping, side, place, origin, rule.span))
-    depth = others.using.count(mapping.source.name)
-    most = None if rule.via is None else rule.via.depth
+def _left_out(place: Place, origin: Place, span: Span | None) -> tuple[Rule, ...]:
+    """Rules that say nothing of two places, so that nothing more is reported of them."""
+    return (Default(place, span), Ignore(origin, span))
+
+
+def _used(use: Use, most: int | None, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...]:
+    """The rules of a mapping where it is used; ``most`` is how often it may be within itself, where that is said."""
+    name, span, others = use.mapping.source.name, use.span, scope.others
+    depth = others.using.count(name)
     if depth and (most is None or most > MAX_VIA_DEPTH):
-        scope.problems.append(words.no_depth(rule.span, mapping.source.name, MAX_VIA_DEPTH))
+        scope.problems.append(words.no_depth(span, name, MAX_VIA_DEPTH))
     elif len(others.uses) > MAX_USES:
-        scope.problems.append(words.many_uses(rule.span, MAX_USES))
+        scope.problems.append(words.many_uses(span, MAX_USES))
         raise EnoughError
     elif others.copied() > MAX_COPIED:
-        scope.problems.append(words.many_copies(rule.span, MAX_COPIED))
+        scope.problems.append(words.many_copies(span, MAX_COPIED))
         raise EnoughError
     elif most is not None and depth > most:
-        return _too_deep(most, place, origin, rule.span)
+        return _too_deep(most, use.place, use.origin, span)
     else:
-        inner = replace(scope, others=replace(others, using=(*others.using, mapping.source.name)), suffix=f"~{len(others.uses)}")
-        return _at(mapping, side, (place, origin), rule.span, inner, rules_of)
-    return (Default(place, rule.span), Ignore(origin, rule.span))
+        inner = replace(scope, others=replace(others, using=(*others.using, name)), suffix=f"~{len(others.uses)}")
+        return _at(use, inner, rules_of)
+    return _left_out(use.place, use.origin, span)
 
 
 def _too_deep(most: int, place: Place, origin: Place, span: Span | None) -> tuple[Rule, ...]:
@@ -150,20 +156,18 @@ def _too_deep(most: int, place: Place, origin: Place, span: Span | None) -> tupl
     return (When(there, (Reject(words.too_deep(most), span),), (), span), Default(place, span))
 
 
-def _at(
-    mapping: model.Mapping, side: Side, ends: tuple[Place, Place], span: Span | None, scope: Scope, rules_of: RulesOf
-) -> tuple[Rule, ...]:
+def _at(use: Use, scope: Scope, rules_of: RulesOf) -> tuple[Rule, ...]:
     """The rules of a mapping for two messages, or for each of their elements."""
-    place, origin = ends
+    place, origin, span = use.place, use.origin, use.span
     if not isinstance(place.type, Array) or not isinstance(origin.type, Array):
-        rules = _inside(mapping, side, place, origin, scope, rules_of)
+        rules = _inside(use.mapping, use.side, place, origin, scope, rules_of)
         return (When(Has(origin), rules, (), span),) if _may_lack(place, scope) and _may_lack(origin, scope) else rules
     number = Local(f"each{scope.suffix}")
-    element, source = (_element(end, number, scope) for end in ends)
-    rules = _inside(mapping, side, element, source, scope, rules_of)
+    element, source = (_element(end, number, scope) for end in (place, origin))
+    rules = _inside(use.mapping, use.side, element, source, scope, rules_of)
     fixed = place.type.fixed
     length: Rule = SetLength(place, LenOf(origin) if fixed is None else Const(fixed, INT64), span)
-    return (length, For(number, Const(0, INT64), LenOf(origin), rules, span))
+    return (length, For(number.name, Const(0, INT64), LenOf(origin), rules, span))
 
 
 def _element(place: Place, number: Local, scope: Scope) -> Place:

@@ -37,7 +37,6 @@ from rosetta_jit.language.typed import (
     Default,
     For,
     Ignore,
-    Local,
     Reject,
     SetLength,
     When,
@@ -203,7 +202,7 @@ class _Block:
             case _:
                 assert_never(rule)
 
-    def left_alone(self, rule: model.Ignore | model.Default, path: expr.Path, scope: Scope) -> Rule | None:
+    def left_alone(self, rule: model.Ignore[expr.Path] | model.Default[expr.Path], path: expr.Path, scope: Scope) -> Rule | None:
         place = resolve_path(path, scope, type_index)
         if isinstance(place, Broken):
             self.broken.append(place.fields)
@@ -216,7 +215,7 @@ class _Block:
             return None
         return Default(place, rule.span)
 
-    def when(self, rule: model.When, scope: Scope) -> When | None:
+    def when(self, rule: model.When[model.Rule, expr.Expr], scope: Scope) -> Rule | None:
         condition = type_condition(rule.condition, scope, type_expr)
         then, otherwise = self.rules(rule.then, scope), self.rules(rule.otherwise, scope)
         if condition is None:
@@ -224,16 +223,16 @@ class _Block:
             return None
         return When(condition, then, otherwise, rule.span)
 
-    def assign(self, rule: model.Assign, scope: Scope) -> Rule | None:
+    def assign(self, rule: model.Assignment, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
-        if place is not None and rule.fits:
+        if place is not None and rule.by == "checked":
             rule = replace(rule, value=for_type(rule.value, place.type))
         value = type_expr(rule.value, scope)
         if place is None:
             return None
         if value is not None:
             value = in_unit(value, place, scope)
-        if value is not None and rule.fits:
+        if value is not None and rule.by == "checked":
             value = fitted(value, place.type)
         fitting = None if value is None else fit(value, place, scope)
         if fitting is None:
@@ -241,9 +240,9 @@ class _Block:
             return None
         change = change_within(fitting, place, scope)
         made = _by_case(place, fitting, rule.span)
-        return made if change is None or not isinstance(made, Assign) else replace(made, change=change)
+        return made if change is None or not isinstance(made, Assign) else replace(made, by=change)
 
-    def set_length(self, rule: model.SetLength, scope: Scope) -> SetLength | None:
+    def set_length(self, rule: model.SetLength[expr.Path, expr.Expr], scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
         value = type_integer(rule.value, scope, "a length")
         if place is None:
@@ -253,14 +252,14 @@ class _Block:
             return None
         return SetLength(place, value, rule.span)
 
-    def place(self, rule: model.Assign | model.SetLength, scope: Scope) -> Place | None:
+    def place(self, rule: model.Assignment | model.SetLength[expr.Path, expr.Expr], scope: Scope) -> Place | None:
         place = resolve_path(rule.place, scope, type_index)
         if isinstance(place, Broken):
             self.broken.append(place.fields)
             return None
         return place
 
-    def loop(self, rule: model.For, scope: Scope) -> For | None:
+    def loop(self, rule: model.For[model.Rule, expr.Expr], scope: Scope) -> Rule | None:
         if rule.variable in scope.locals:
             scope.problems.append(words.shadowed(rule.span, rule.variable))
         start = type_integer(rule.start, scope, "where a loop starts")
@@ -273,7 +272,7 @@ class _Block:
             scope.problems.append(words.loop_range(rule.stop.span, int(start.value), int(stop.value)))
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
-        return For(Local(rule.variable + scope.suffix), start, stop, body, rule.span)
+        return For(rule.variable + scope.suffix, start, stop, body, rule.span)
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:

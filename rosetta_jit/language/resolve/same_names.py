@@ -20,16 +20,16 @@ OF_TYPES = frozenset(("lossy-conversion", "type-clash"))
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Message, Scope
-    from rosetta_jit.model.mapping import SameNames
+    from rosetta_jit.model.mapping import Assignment, SameNames
     from rosetta_jit.model.types import Type
 
 
-def rule_for(name: str, rule: SameNames, scope: Scope) -> Assign:
+def rule_for(name: str, rule: SameNames, scope: Scope) -> Assignment:
     """The rule for a field that both messages have."""
     there, here = (Path(side, (Member(name, rule.span),), rule.span) for side in (scope.origin, scope.target))
     source, target = (_number(scope.messages[side], name) for side in (scope.origin, scope.target))
     fits = rule.both and isinstance(source, Int) and isinstance(target, Int) and widens(target, source)
-    return Assign(here, there, rule.span, fits=fits)
+    return Assign(here, there, rule.span, by="checked" if fits else None)
 
 
 def unlike(name: str, rule: SameNames, scope: Scope) -> Diagnostic | None:

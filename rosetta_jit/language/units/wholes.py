@@ -22,7 +22,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Message, Scope
-    from rosetta_jit.language.typed import Assign, Change, Expr, Place
+    from rosetta_jit.language.typed import Assignment, Change, Expr, Place
     from rosetta_jit.language.units.places import Context
     from rosetta_jit.model.types import Field, Type
 
@@ -120,7 +120,7 @@ class _Finder:
         self.scope.problems.append(problem)
 
 
-def inserted(rule: Assign) -> Change | None:
+def inserted(rule: Assignment) -> Change | None:
     """The conversion that the compiler has put into a rule, for whoever explains it."""
     value = rule.value.operand if isinstance(rule.value, Convert) and rule.value.rule == "nearest" else rule.value
     offset = 0.0
@@ -136,4 +136,4 @@ def inserted(rule: Assign) -> Change | None:
                 return Rescale(source, target, factor, offset)
             return None
         case _:
-            return rule.change
+            return rule.by

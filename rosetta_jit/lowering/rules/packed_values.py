@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Compare, Const, Expr, If, Local, Place
 from rosetta_jit.kernel.terms import index
@@ -17,7 +17,7 @@ from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.lowering.rules.holder_side import HolderSide
     from rosetta_jit.lowering.rules.values import Values
@@ -157,36 +157,48 @@ def look_up_arrays(rules: tuple[typed.Rule, ...], holder: HolderSide, values: Va
             holder.array(place, values)
 
 
-def _array_places(node: object) -> list[typed.Place]:
-    """Every place below a rule whose length or elements are read."""
-    match node:
-        case tuple():
-            return [place for each in cast("tuple[object, ...]", node) for place in _array_places(each)]
-        case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
-            return [place]
-        case typed.Assign(_, value) | typed.SetLength(_, value):
-            return _array_places(value)
-        case typed.For(_, start, stop, body):
-            return _array_places((start, stop, *body))
-        case typed.When(condition, then, otherwise):
-            return _array_places((condition, *then, *otherwise))
+def _array_places(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Place]:
+    """Every place whose length or elements rules read."""
+    for rule in rules:
+        match rule:
+            case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
+                yield place
+            case typed.Assign(_, value) | typed.SetLength(_, value):
+                yield from _read(value)
+            case typed.For(_, start, stop, body):
+                yield from _read(start, stop)
+                yield from _array_places(body)
+            case typed.When(condition, then, otherwise):
+                yield from _read(condition)
+                yield from _array_places((*then, *otherwise))
+            case _:
+                pass
+
+
+def _read(*exprs: typed.Expr) -> list[typed.Place]:
+    """The same of expressions."""
+    return [place for expr in exprs for place in _read_by(expr)]
+
+
+def _read_by(expr: typed.Expr) -> list[typed.Place]:
+    match expr:
         case typed.IsText(place):
             return [place, *_indexed(place)]
         case typed.Choice(cases, otherwise):
-            return _array_places((*cases, otherwise))
+            return _read(*(part for case in cases for part in case), *(() if otherwise is None else (otherwise,)))
         case typed.Listed(items, at):
-            return _array_places((*items, at))
+            return _read(*items, at)
         case typed.LenOf(place):
             return [place]
         case typed.Access(place) | typed.Has(place):
             return _indexed(place)
         case typed.Unary(_, operand) | typed.Convert(operand, _, _) | typed.Search(_, _, operand):
-            return _array_places(operand)
+            return _read(operand)
         case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
-            return _array_places((left, right))
+            return _read(left, right)
         case typed.Call(_, arguments) | typed.HostCall(_, arguments):
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]
-            return texts + _array_places(arguments)
+            return texts + _read(*arguments)
         case _:
             return []
 
@@ -194,7 +206,7 @@ def _array_places(node: object) -> list[typed.Place]:
 def _indexed(place: typed.Place) -> list[typed.Place]:
     for number, step in enumerate(place.steps):
         if isinstance(step, typed.IndexStep):
-            return [typed.Place(place.side, place.steps[:number], place.type), *_array_places(step.index)]
+            return [typed.Place(place.side, place.steps[:number], place.type), *_read(step.index)]
     return []
 
 

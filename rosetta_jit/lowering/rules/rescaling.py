@@ -72,7 +72,7 @@ def _element(place: typed.Place, variable: typed.Local) -> typed.Place:
     return replace(place, steps=(*place.steps, typed.IndexStep(variable)), type=type_)
 
 
-def _assigned(place: typed.Place, origin: typed.Place, change: typed.Change | None) -> typed.Assign:
+def _assigned(place: typed.Place, origin: typed.Place, change: typed.Change | None) -> typed.Rule:
     read: typed.Expr = typed.Access(origin, origin.type)
     if isinstance(change, typed.Rescale):
         factors = change.factor, change.offset
@@ -82,4 +82,4 @@ def _assigned(place: typed.Place, origin: typed.Place, change: typed.Change | No
         return typed.Assign(place, converted)
     if isinstance(place.type, Bool | Int | Float | Enum) and origin.type != place.type:
         read = typed.Convert(read, place.type, "widen")
-    return typed.Assign(place, read, change=change)
+    return typed.Assign(place, read, by=change)

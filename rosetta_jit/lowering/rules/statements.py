@@ -57,7 +57,7 @@ class Runner:
                 self.target.choose(rule.place, here)
             match rule:
                 case typed.Assign(place, value):
-                    self.assign(place, value, here, rule.change)
+                    self.assign(place, value, here, rule.by)
                 case typed.SetLength(place, value):
                     self.take(place, self.count(here.of(value)), here)
                 case typed.For():
@@ -115,17 +115,17 @@ class Runner:
             case _:
                 pass
 
-    def loop(self, rule: typed.For, values: Values) -> None:
+    def loop(self, rule: typed.For[typed.Rule, typed.Expr], values: Values) -> None:
         """A loop; what is looked up within it is forgotten behind it."""
         start = values.of(rule.start)
         stop = values.of(rule.stop)
         self.writer.expect(Compare("ge", stop, start), "count", values.where, "the loop ends before it starts", line=values.line)
         count = stop if start == index(0) else binary(self.writer, "-", stop, start, values.where, values.line)
-        number = Local("i64", self.writer.fresh(rule.variable.name))
+        number = Local("i64", self.writer.fresh(rule.variable))
         look_ahead(rule.body, values)
         with self.forgetting(), self.writer.nested() as body:
-            variable = number if start == index(0) else self.writer.let(rule.variable.name, add(number, start))
-            self.run(rule.body, replace(values, variables={**values.variables, rule.variable.name: variable}))
+            variable = number if start == index(0) else self.writer.let(rule.variable, add(number, start))
+            self.run(rule.body, replace(values, variables={**values.variables, rule.variable: variable}))
         self.writer.emit(For(number.name, count, block(body)))
 
     def assign(self, place: typed.Place, value: typed.Expr, values: Values, change: typed.Change | None = None) -> None:
@@ -233,4 +233,4 @@ class Runner:
         self.take(place, count, values)
         variable = typed.Local(next(name for name in names_of_elements() if name not in values.variables))
         rule = element_rule(place, origin, variable, change)
-        self.loop(typed.For(variable, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
+        self.loop(typed.For(variable.name, typed.Const(0, typed.INT64), typed.LenOf(origin), (rule,)), values)
