@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.errors import NumbaTypeError, TypingError
+from numba.core.errors import TypingError
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, overload_method
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 INVALID = "the last decode into this holder failed: decode again before you read it"
 BROKEN = "the element that was here is gone"
-PARALLEL = "a holder is for one thread, and `prange` reads fields before its loop: call such functions in threads, `nogil=True` lets them"
-"""Numba takes attributes for what no call changes, and moves them out of parallel loops."""
 ABSENT = "a message that contains its own type is absent here: ask `has` before you read it"
 
 
@@ -117,7 +115,7 @@ class Reader:
     def other(self, type_: types.Type, **words: ir.Value) -> ir.Value:
         """Another message or sequence of the same holder."""
         made: StructProxy = cgutils.create_struct_proxy(type_)(self.context, self.builder)
-        for name in ("meminfo", "taken", "state", "guard"):
+        for name in ("meminfo", "taken", "state"):
             setattr(made, name, getattr(self.value, name))
         for name, value in words.items():
             setattr(made, name, value)
@@ -174,8 +172,6 @@ class _Fields(AttributeTemplate):
 
 @lower_getattr_generic(MessageType)
 def _read(context: BaseContext, builder: ir.IRBuilder, type_: MessageType, value: ir.Value, name: str) -> ir.Value:
-    if "__numba_parfor" in builder.function.name:
-        raise NumbaTypeError(PARALLEL)
     reader = Reader(context, builder, type_, value)
     reader.check_valid()
     return reader.entry(type_.record.entries[name], reader.value.row)

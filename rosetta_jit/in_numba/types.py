@@ -1,11 +1,10 @@
 """Numba's types of messages and of sequences in them, and how their values lie in registers.
 
-    Message  = meminfo, taken, state, guard, row             a row of a lane, or a part of one
-    Sequence = meminfo, taken, state, guard, start, count    elements of a lane
+    Message  = meminfo, taken, state, row             a row of a lane, or a part of one
+    Sequence = meminfo, taken, state, start, count    elements of a lane
 
 ``state`` is where the holder's state lies, ``taken`` the object that compiled code asks for help with it (`taking.Taken`), ``meminfo`` what
-numba counts references with, to keep that object alive. ``guard`` are two words of that object: the thread that may fill the holder, and
-whether another one has tried to. Nothing else is remembered: lanes are looked up in the state whenever a field is
+numba counts references with, to keep that object alive. Nothing else is remembered: lanes are looked up in the state whenever a field is
 read, so that a value stays safe to use when lanes grow.
 """
 
@@ -14,12 +13,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from numba import types
+from numba.core.errors import NumbaTypeError
 from numba.extending import models, register_model
 
 from rosetta_jit.runtime.cells import SCALARS, dtype_of
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
+    from llvmlite import ir
     from numba.core.datamodel import DataModelManager
 
     from rosetta_jit.runtime.holder import Family
@@ -29,7 +30,11 @@ COMMON = (
     ("meminfo", types.MemInfoPointer(types.voidptr)),
     ("taken", types.voidptr),
     ("state", types.CPointer(types.int64)),
-    ("guard", types.CPointer(types.int64)),
+)
+PARALLEL = (
+    "a holder is for one thread, and the loop of a `prange` runs in several. Before the loop, take the arrays that it reads out of the holder, "
+    "as in `position = holder.position`; to decode in parallel, call a function without `prange` in threads, with a holder for each "
+    "(`nogil=True` lets them run at once)"
 )
 NUMBERS: dict[str, types.Type] = dict(
     zip(
@@ -123,14 +128,30 @@ def _element(family: Family, lane: int) -> types.Type:
     return next(type_ for scalar, type_ in NUMBERS.items() if dtype_of(scalar) == dtype)
 
 
+class _OfOneThread(models.StructModel):
+    """A message or a sequence of a holder, which is no argument of the loop that numba makes of a ``prange``."""
+
+    def from_argument(self, builder: ir.IRBuilder, value: object) -> object:
+        """The argument of a function that is being compiled.
+
+        Raises
+        ------
+        NumbaTypeError
+            The function is the body of a loop that runs in several threads.
+        """
+        if "__numba_parfor" in builder.function.name:
+            raise NumbaTypeError(PARALLEL)
+        return super().from_argument(builder, value)
+
+
 @register_model(MessageType)
-class _MessageModel(models.StructModel):
+class _MessageModel(_OfOneThread):
     def __init__(self, manager: DataModelManager, type_: MessageType) -> None:
         super().__init__(manager, type_, [*COMMON, ("row", types.int64)])
 
 
 @register_model(SequenceType)
-class _SequenceModel(models.StructModel):
+class _SequenceModel(_OfOneThread):
     def __init__(self, manager: DataModelManager, type_: SequenceType) -> None:
         super().__init__(manager, type_, [*COMMON, ("start", types.int64), ("count", types.int64)])
 
