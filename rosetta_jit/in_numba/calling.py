@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -11,9 +10,10 @@ from numba import njit, types
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
-from rosetta_jit.backends.llvm.frame import I64, POINTER, constant, state_word
+from rosetta_jit.backends.llvm.frame import I64, constant, state_word
 from rosetta_jit.backends.numba.function import BYTES, WORDS, body
-from rosetta_jit.in_numba import boxing, sequences
+from rosetta_jit.in_numba import assigning, boxing, sequences
+from rosetta_jit.in_numba.c_call import call_c
 from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.types import MessageType
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.runtime.holder import Family
 
-REGISTERED = (boxing, sequences)
+REGISTERED = (assigning, boxing, sequences)
 """Modules that tell numba of holders when they are imported."""
 
 OUTSIDE = "begin and end of the message fall, or leave the buffer"
@@ -121,7 +121,7 @@ def _begin_filling(family: Family, program: Program) -> Callable[..., Any]:
             reader = Reader(context, builder, cast("MessageType", signature.args[0]), arguments[0])
             _set_valid(reader, 0)
             if program.tell is not None:
-                _call(context, builder, entries(program)[0], ir.VoidType(), [reader.value.taken])
+                call_c(context, builder, entries(program)[0], ir.VoidType(), [reader.value.taken])
             return reader.value.state
 
         return WORDS(holder), codegen
@@ -136,17 +136,8 @@ def _mend(program: Program) -> Callable[..., Any]:
     def mend(typing: object, holder: types.Type, result: types.Type, begin: types.Type, end: types.Type) -> Implementation:  # noqa: ARG001 - as above
         def codegen(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: list[ir.Value]) -> ir.Value:
             reader = Reader(context, builder, cast("MessageType", signature.args[0]), arguments[0])
-            return _call(context, builder, entries(program)[1], I64, [reader.value.taken, *arguments[1:]])
+            return call_c(context, builder, entries(program)[1], I64, [reader.value.taken, *arguments[1:]])
 
         return types.int64(holder, types.int64, types.int64, types.int64), codegen
 
     return mend
-
-
-def _call(context: BaseContext, builder: ir.IRBuilder, function: Any, result: ir.Type, arguments: list[ir.Value]) -> ir.Value:
-    """Call a C function of this process."""
-    address = cast("int", ctypes.cast(function, ctypes.c_void_p).value)
-    pointer = context.add_dynamic_addr(builder, address, info="a kernel's")
-    given = [builder.bitcast(each, POINTER) if isinstance(each.type, ir.PointerType) else each for each in arguments]
-    function_type = ir.FunctionType(result, [each.type for each in given])
-    return builder.call(builder.bitcast(pointer, function_type.as_pointer()), given)

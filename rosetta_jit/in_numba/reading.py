@@ -39,6 +39,12 @@ BROKEN = "the element that was here is gone"
 ABSENT = "a message that contains its own type is absent here: ask `has` before you read it"
 
 
+def cell_type(cell: Cell) -> ir.Type:
+    """The type of a scalar in memory."""
+    scalar = SCALARS[cell.key & 15]
+    return I8 if scalar == "bool" else LLVM_TYPES[scalar]
+
+
 class Reader:
     """What prints code that reads parts of one value, a message or a sequence."""
 
@@ -62,11 +68,13 @@ class Reader:
 
     def cell(self, cell: Cell, row: ir.Value, further: int = 0) -> ir.Value:
         """A scalar of a row, as it lies in memory."""
-        scalar = SCALARS[cell.key & 15]
-        type_ = I8 if scalar == "bool" else LLVM_TYPES[scalar]
+        return self.builder.load(self.cell_address(cell, row, further), typ=cell_type(cell))
+
+    def cell_address(self, cell: Cell, row: ir.Value, further: int = 0) -> ir.Value:
+        """Where a scalar of a row lies."""
         base = self.builder.load(state_word(self.builder, self.state, lane_word(cell.lane, ADDRESS)), typ=POINTER, align=8)
         index = self.builder.add(self.builder.mul(row, constant(cell.step)), constant(cell.index + further))
-        return self.builder.load(self.builder.gep(base, [index], source_etype=type_), typ=type_)
+        return self.builder.gep(base, [index], source_etype=cell_type(cell))
 
     def number(self, cell: Cell, row: ir.Value) -> ir.Value:
         """A scalar of a row, as a value of numba's."""

@@ -32,8 +32,8 @@ class Taken:
 
     Attributes
     ----------
-    memory : list
-        All memory that the holder has had meanwhile.
+    memory : dict
+        All memory that the holder has had meanwhile, by identity.
     address : int
         Where its state lies.
     """
@@ -44,7 +44,12 @@ class Taken:
         self.holder = holder
         self.lanes = lanes = holder.lanes_
         self.address = lanes.address
-        self.memory: list[Any] = [lanes.arena, *lanes.memory.values()]
+        self.memory: dict[int, Any] = {0: lanes.arena}
+        self.keep_memory()
+
+    def keep_memory(self) -> None:
+        """Keep the memory alive that the holder has now."""
+        self.memory |= {id(each): each for each in self.lanes.memory.values()}
 
 
 def take(holder: Holder) -> Taken:
@@ -132,7 +137,7 @@ def entries(program: Program) -> tuple[Any, Any]:
             _LAST.error = error
             program.untell(lanes)
             return 0
-        taken.memory += lanes.memory.values()
+        taken.keep_memory()
         return 1
 
     return _TELL(tell), _MEND(mend)

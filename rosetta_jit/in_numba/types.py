@@ -32,9 +32,9 @@ COMMON = (
     ("state", types.CPointer(types.int64)),
 )
 PARALLEL = (
-    "a holder is for one thread, and the loop of a `prange` runs in several. Before the loop, take the arrays that it reads out of the holder, "
-    "as in `position = holder.position`; to decode in parallel, call a function without `prange` in threads, with a holder for each "
-    "(`nogil=True` lets them run at once)"
+    "a holder is for one thread, and the loop of a `prange` runs in several. Before the loop, take the arrays that it reads out of the "
+    "holder, as in `position = holder.position`; to decode in parallel, call a function without `prange` in threads, with a holder for "
+    "each (`nogil=True` lets them run at once)"
 )
 NUMBERS: dict[str, types.Type] = dict(
     zip(
