@@ -5,6 +5,7 @@
     reading    code that reads fields
     assigning  code that assigns numbers
     sequences  length, elements and iteration
+    maps       keys, values and iteration
     boxing     from Python and back
     c_call     calls from compiled code into C functions
     calling    a kernel as a function for compiled code

@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 
 from rosetta_jit.backends.llvm.frame import I64, constant, state_word
 from rosetta_jit.backends.numba.function import BYTES, WORDS, body
-from rosetta_jit.in_numba import assigning, boxing, sequences
+from rosetta_jit.in_numba import assigning, boxing, maps, sequences
 from rosetta_jit.in_numba.c_call import call_c
 from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.runtime.holder import Family
 
-REGISTERED = (assigning, boxing, sequences)
+REGISTERED = (assigning, boxing, maps, sequences)
 """Modules that tell numba of holders when they are imported."""
 
 OUTSIDE = "begin and end of the message fall, or leave the buffer"

@@ -19,7 +19,7 @@ from numba.np.arrayobj import populate_array
 
 from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, constant, state_word
 from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.in_numba.types import NUMBERS, MessageType, SequenceType, type_of
+from rosetta_jit.in_numba.types import NUMBERS, MapType, MessageType, SequenceType, type_of
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, VALID, lane_word
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
@@ -48,7 +48,7 @@ def cell_type(cell: Cell) -> ir.Type:
 class Reader:
     """What prints code that reads parts of one value, a message or a sequence."""
 
-    def __init__(self, context: BaseContext, builder: ir.IRBuilder, type_: MessageType | SequenceType, value: ir.Value) -> None:
+    def __init__(self, context: BaseContext, builder: ir.IRBuilder, type_: MessageType | SequenceType | MapType, value: ir.Value) -> None:
         self.context, self.builder, self.type = context, builder, type_
         self.value = cgutils.create_struct_proxy(type_)(context, builder, value=value)
         self.state = builder.bitcast(self.value.state, POINTER)
@@ -138,17 +138,15 @@ class Reader:
                 return self.number(cell, row)
             case Text(cell, lane) | Blob(cell, lane) | Numbers(cell, lane):
                 return self.array(cast("types.Array", type_), lane, *self.span(cell, lane, row, there))
-            case Items(cell, lane):
+            case Items(cell, lane) | Pairs(cell, lane):
                 start, count = self.span(cell, lane, row, there)
-                return self.other(cast("SequenceType", type_), start=start, count=count)
+                return self.other(type_, start=start, count=count)
             case Record():
                 return self.other(cast("MessageType", type_), row=row)
             case Child(cell, lane):
                 start, count = self.span(cell, lane, row, there)
                 self.refuse_if(self.builder.icmp_signed("==", count, constant(0)), ABSENT)
                 return self.other(cast("MessageType", type_), row=start)
-            case Pairs():
-                raise AssertionError("a map has no type here")
 
     def entry(self, entry: Entry, row: ir.Value) -> ir.Value:
         """What a field is read as: its default where it is absent."""
@@ -172,10 +170,7 @@ class _Fields(AttributeTemplate):
         entry = type_.record.entries.get(name)
         if entry is None:
             return None
-        found = type_of(type_.family, entry.node)
-        if found is None:
-            raise TypingError(f"`{name}` of `{type_.record.struct}` is a map: compiled code cannot read it")
-        return found
+        return type_of(type_.family, entry.node)
 
 
 @lower_getattr_generic(MessageType)

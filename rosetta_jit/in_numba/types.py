@@ -2,6 +2,7 @@
 
     Message  = meminfo, taken, state, row             a row of a lane, or a part of one
     Sequence = meminfo, taken, state, start, count    elements of a lane
+    Map      = meminfo, taken, state, start, count    pairs of a lane
 
 ``state`` is where the holder's state lies, ``taken`` the object that compiled code asks for help with it (`taking.Taken`), ``meminfo`` what
 numba counts references with, to keep that object alive. Nothing else is remembered: lanes are looked up in the state whenever a field is
@@ -10,7 +11,7 @@ read, so that a value stays safe to use when lanes grow.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from numba import types
 from numba.core.errors import NumbaTypeError
@@ -31,6 +32,12 @@ COMMON = (
     ("taken", types.voidptr),
     ("state", types.CPointer(types.int64)),
 )
+ROWS = types.Array(types.int64, 1, "C")
+"""The pairs of a map in the order of an iteration."""
+
+Shown: TypeAlias = Literal["keys", "values", "items"]
+"""What an iteration over a map gives."""
+
 PARALLEL = (
     "a holder is for one thread, and the loop of a `prange` runs in several. Before the loop, take the arrays that it reads out of the "
     "holder, as in `position = holder.position`; to decode in parallel, call a function without `prange` in threads, with a holder for "
@@ -86,7 +93,7 @@ class SequenceType(types.IterableType):
         return self.family, self.node
 
     @property
-    def element(self) -> types.Type | None:
+    def element(self) -> types.Type:
         """The type of its elements."""
         return type_of(self.family, self.node.element)
 
@@ -103,8 +110,44 @@ class IteratorType(types.SimpleIteratorType):
         super().__init__(f"iterator over {sequence.name}", sequence.element)
 
 
-def type_of(family: Family, node: Node) -> types.Type | None:
-    """The type that a field is read as; None of maps, which are read in Python alone."""
+class MapType(types.IterableType):
+    """A map in a holder; ``shown`` is what iteration gives of each pair."""
+
+    def __init__(self, family: Family, node: Pairs, shown: Shown = "keys") -> None:
+        self.family, self.node = family, node
+        self.shown: Shown = shown
+        super().__init__(name=f"{shown} of the map in lane {node.lane} of {family.struct.name} ({id(node):x})")
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        return self.family, self.node, self.shown
+
+    def part(self, shown: Shown) -> types.Type:
+        """The type of the key of a pair, of its value, or of both."""
+        key, value = type_of(self.family, self.node.key), type_of(self.family, self.node.value.node)
+        match shown:
+            case "keys":
+                return key
+            case "values":
+                return value
+            case "items":
+                return types.Tuple((key, value))
+
+    @property
+    def iterator_type(self) -> MapIteratorType:
+        return MapIteratorType(self)
+
+
+class MapIteratorType(types.SimpleIteratorType):
+    """An iteration over a map."""
+
+    def __init__(self, table: MapType) -> None:
+        self.table = table
+        super().__init__(f"iterator over {table.name}", table.part(table.shown))
+
+
+def type_of(family: Family, node: Node) -> types.Type:
+    """The type that a field is read as."""
     match node:
         case Scalar(cell):
             return NUMBERS[SCALARS[cell.key & 15]]
@@ -119,7 +162,7 @@ def type_of(family: Family, node: Node) -> types.Type | None:
         case Child(record=record):
             return MessageType(family, record)
         case Pairs():
-            return None
+            return MapType(family, node)
 
 
 def _element(family: Family, lane: int) -> types.Type:
@@ -154,6 +197,18 @@ class _MessageModel(_OfOneThread):
 class _SequenceModel(_OfOneThread):
     def __init__(self, manager: DataModelManager, type_: SequenceType) -> None:
         super().__init__(manager, type_, [*COMMON, ("start", types.int64), ("count", types.int64)])
+
+
+@register_model(MapType)
+class _MapModel(_OfOneThread):
+    def __init__(self, manager: DataModelManager, type_: MapType) -> None:
+        super().__init__(manager, type_, [*COMMON, ("start", types.int64), ("count", types.int64)])
+
+
+@register_model(MapIteratorType)
+class _MapIteratorModel(models.StructModel):
+    def __init__(self, manager: DataModelManager, type_: MapIteratorType) -> None:
+        super().__init__(manager, type_, [("index", types.EphemeralPointer(types.int64)), ("rows", ROWS), ("table", type_.table)])
 
 
 @register_model(IteratorType)

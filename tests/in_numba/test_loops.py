@@ -287,8 +287,6 @@ def test_what_cannot_be_compiled_is_said(decoder, kernel, message):
         fill(message, rj.Decoder.of("t.Inner", schema=SCHEMA).new())
     with pytest.raises(TypingError, match="a message is bytes"):
         fill(np.zeros(3), decoder.new())
-    with pytest.raises(TypingError, match=r"`table` of `t\.M` is a map"):
-        njit(lambda holder: holder.table)(decoder.new())
     with pytest.raises(TypingError, match="has no field 'nothing'"):
         njit(lambda holder: holder.has("nothing"))(decoder.new())
     with pytest.raises(NumbaTypeError, match="hand over the holder"):
