@@ -111,7 +111,18 @@ MAY_IMPORT = {
     "api.cacheable": REPORTS | {"runtime.functions", "runtime.cache", "pipeline.request"},
     "api": COMPILER | API | {"in_numba", "stubs", "pipeline", "pipeline.request"},
     "logs": REPORTS
-    | {"api", "api.options", "file_errors", "recording", "language.imports", "frameworks", "runtime", "runtime.cache", "runtime.code"},
+    | {
+        "api",
+        "api.options",
+        "file_errors",
+        "recording",
+        "language.imports",
+        "frameworks",
+        "model.units",
+        "runtime",
+        "runtime.cache",
+        "runtime.code",
+    },
     "ray": REPORTS | {"logs"},
     "dask": REPORTS | {"logs"},
     "generate": REPORTS

@@ -17,14 +17,14 @@ LABEL = 11
 
 
 def drawn(curve: Curve, span_ns: tuple[int, int], width: int, height: int, *, braille: bool) -> list[str]:
-    """The lines of a picture of a curve: its name, ``height`` lines of dots, and the seconds below them."""
+    """The lines of a picture of a curve: its name and unit, ``height`` lines of dots, and the seconds below them."""
     first, last = span_ns
     columns = max(width - LABEL - 1, 2)
     across, down = (2, 4) if braille else (1, 1)
     finite = np.isfinite(curve.values)
     values, times = curve.values[finite], curve.times_ns[finite]
     if not len(values):
-        return [curve.name, " " * LABEL + "no values"]
+        return [curve.title, " " * LABEL + "no values"]
     least, greatest = float(values.min()), float(values.max())
     extent = greatest - least or 1.0
     x = ((times - first) / max(last - first, 1) * (columns * across - 1)).astype(np.int64)
@@ -36,7 +36,7 @@ def drawn(curve: Curve, span_ns: tuple[int, int], width: int, height: int, *, br
     labels = {0: f"{greatest:.5g}", height - 1: f"{least:.5g}"}
     lines = [f"{labels.get(row, ''):>{LABEL - 1}} {_line(cells[row], braille=braille)}".rstrip() for row in range(height)]
     end = f"{(last - first) / 1e9:.6g} s"
-    return [curve.name, *lines, f"{' ' * LABEL}0 {end:>{columns - 2}}"]
+    return [curve.title, *lines, f"{' ' * LABEL}0 {end:>{columns - 2}}"]
 
 
 def _line(cells: np.ndarray[tuple[int], np.dtype[np.int64]], *, braille: bool) -> str:

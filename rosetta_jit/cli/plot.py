@@ -90,7 +90,7 @@ def _draw(curves: Sequence[Curve], span_ns: tuple[int, int], output: Path, name:
     for place, curve in enumerate(curves):
         axes = figure.add_subplot(len(curves), 1, place + 1)
         axes.plot((curve.times_ns - span_ns[0]) / 1e9, curve.values, linewidth=0.8)
-        axes.set(title=curve.name, xlabel=f"s since {shown(span_ns[0])}" if curve is curves[-1] else "", ylabel="")
+        axes.set(title=curve.name, xlabel=f"s since {shown(span_ns[0])}" if curve is curves[-1] else "", ylabel=printable(curve.unit or ""))
         axes.grid(visible=True, alpha=0.3)
     with named(output):
         figure.savefig(output)

@@ -33,10 +33,8 @@ def _unbox(type_: MessageType, holder: ir.Value, context: UnboxContext) -> Nativ
     taken = _call(context, take, holder)
     slot = cgutils.alloca_once_value(builder, taken)
     with builder.if_then(cgutils.is_not_null(builder, taken)):
-        address, guard = (_word(context, taken, name) for name in ("address", "guard_address"))
         made.taken = builder.bitcast(taken, cgutils.voidptr_t)
-        made.state = builder.inttoptr(address, made.state.type)
-        made.guard = builder.inttoptr(guard, made.guard.type)
+        made.state = builder.inttoptr(_word(context, taken, "address"), made.state.type)
         made.row = ir.Constant(ir.IntType(64), 0)
         made.meminfo = builder.bitcast(
             python.nrt_meminfo_new_from_pyobject(ir.Constant(cgutils.voidptr_t, None), made.taken), made.meminfo.type

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import ctypes
-import platform
-import sys
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from llvmlite import ir
 from numba import njit, types
-from numba.core import cgutils
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
-from rosetta_jit.backends.llvm.frame import I64, POINTER, constant, state_word
+from rosetta_jit.backends.llvm.frame import I64, constant, state_word
 from rosetta_jit.backends.numba.function import BYTES, WORDS, body
-from rosetta_jit.errors import InUse
-from rosetta_jit.in_numba import boxing, sequences
+from rosetta_jit.in_numba import assigning, boxing, maps, sequences
+from rosetta_jit.in_numba.c_call import call_c
 from rosetta_jit.in_numba.reading import Reader
-from rosetta_jit.in_numba.taking import OTHER_THREAD, BrokenMessage, Program, entries
+from rosetta_jit.in_numba.taking import BrokenMessage, Program, entries
 from rosetta_jit.in_numba.types import MessageType
 from rosetta_jit.kernel.state import CLEAN, VALID
 
@@ -34,7 +30,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Kernel
     from rosetta_jit.runtime.holder import Family
 
-REGISTERED = (boxing, sequences)
+REGISTERED = (assigning, boxing, maps, sequences)
 """Modules that tell numba of holders when they are imported."""
 
 OUTSIDE = "begin and end of the message fall, or leave the buffer"
@@ -123,32 +119,14 @@ def _begin_filling(family: Family, program: Program) -> Callable[..., Any]:
 
         def codegen(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: list[ir.Value]) -> ir.Value:
             reader = Reader(context, builder, cast("MessageType", signature.args[0]), arguments[0])
-            _check_thread(reader)
             _set_valid(reader, 0)
             if program.tell is not None:
-                _call(context, builder, entries(program)[0], ir.VoidType(), [reader.value.taken])
+                call_c(context, builder, entries(program)[0], ir.VoidType(), [reader.value.taken])
             return reader.value.state
 
         return WORDS(holder), codegen
 
     return begin_filling
-
-
-def _check_thread(reader: Reader) -> None:
-    """Raise where the holder was handed to another thread, and note it for who cannot see that: numba drops what a ``prange`` raises."""
-    builder, guard = reader.builder, reader.builder.bitcast(reader.value.guard, POINTER)
-    is_other = builder.icmp_signed("!=", _thread(builder), builder.load(guard, typ=I64))
-    with cgutils.if_unlikely(builder, is_other):
-        builder.store(constant(1), state_word(builder, guard, 1))
-    reader.refuse_if(is_other, OTHER_THREAD, InUse)
-
-
-def _thread(builder: ir.IRBuilder) -> ir.Value:
-    """The calling thread, as `threading.get_ident` says it."""
-    if sys.platform == "linux" and platform.machine() == "x86_64":  # as backends/entry/thread_linux_x86_64.ll
-        return builder.load(ir.Constant(ir.PointerType(addrspace=257), None), typ=I64)
-    identify = cgutils.get_or_insert_function(builder.module, ir.FunctionType(I64, []), "PyThread_get_thread_ident")
-    return builder.call(identify, [])
 
 
 def _mend(program: Program) -> Callable[..., Any]:
@@ -158,17 +136,8 @@ def _mend(program: Program) -> Callable[..., Any]:
     def mend(typing: object, holder: types.Type, result: types.Type, begin: types.Type, end: types.Type) -> Implementation:  # noqa: ARG001 - as above
         def codegen(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: list[ir.Value]) -> ir.Value:
             reader = Reader(context, builder, cast("MessageType", signature.args[0]), arguments[0])
-            return _call(context, builder, entries(program)[1], I64, [reader.value.taken, *arguments[1:]])
+            return call_c(context, builder, entries(program)[1], I64, [reader.value.taken, *arguments[1:]])
 
         return types.int64(holder, types.int64, types.int64, types.int64), codegen
 
     return mend
-
-
-def _call(context: BaseContext, builder: ir.IRBuilder, function: Any, result: ir.Type, arguments: list[ir.Value]) -> ir.Value:
-    """Call a C function of this process."""
-    address = cast("int", ctypes.cast(function, ctypes.c_void_p).value)
-    pointer = context.add_dynamic_addr(builder, address, info="a kernel's")
-    given = [builder.bitcast(each, POINTER) if isinstance(each.type, ir.PointerType) else each for each in arguments]
-    function_type = ir.FunctionType(result, [each.type for each in given])
-    return builder.call(builder.bitcast(pointer, function_type.as_pointer()), given)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.errors import NumbaTypeError, TypingError
+from numba.core.errors import TypingError
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, overload_method
@@ -19,7 +19,7 @@ from numba.np.arrayobj import populate_array
 
 from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, constant, state_word
 from rosetta_jit.errors import InvalidHolder
-from rosetta_jit.in_numba.types import NUMBERS, MessageType, SequenceType, type_of
+from rosetta_jit.in_numba.types import NUMBERS, MapType, MessageType, SequenceType, type_of
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, VALID, lane_word
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.record import Bit, Blob, Case, Child, Items, Numbers, Pairs, Record, Scalar, Text
@@ -36,15 +36,19 @@ if TYPE_CHECKING:
 
 INVALID = "the last decode into this holder failed: decode again before you read it"
 BROKEN = "the element that was here is gone"
-PARALLEL = "a holder is for one thread, and `prange` reads fields before its loop: call such functions in threads, `nogil=True` lets them"
-"""Numba takes attributes for what no call changes, and moves them out of parallel loops."""
 ABSENT = "a message that contains its own type is absent here: ask `has` before you read it"
+
+
+def cell_type(cell: Cell) -> ir.Type:
+    """The type of a scalar in memory."""
+    scalar = SCALARS[cell.key & 15]
+    return I8 if scalar == "bool" else LLVM_TYPES[scalar]
 
 
 class Reader:
     """What prints code that reads parts of one value, a message or a sequence."""
 
-    def __init__(self, context: BaseContext, builder: ir.IRBuilder, type_: MessageType | SequenceType, value: ir.Value) -> None:
+    def __init__(self, context: BaseContext, builder: ir.IRBuilder, type_: MessageType | SequenceType | MapType, value: ir.Value) -> None:
         self.context, self.builder, self.type = context, builder, type_
         self.value = cgutils.create_struct_proxy(type_)(context, builder, value=value)
         self.state = builder.bitcast(self.value.state, POINTER)
@@ -64,11 +68,13 @@ class Reader:
 
     def cell(self, cell: Cell, row: ir.Value, further: int = 0) -> ir.Value:
         """A scalar of a row, as it lies in memory."""
-        scalar = SCALARS[cell.key & 15]
-        type_ = I8 if scalar == "bool" else LLVM_TYPES[scalar]
+        return self.builder.load(self.cell_address(cell, row, further), typ=cell_type(cell))
+
+    def cell_address(self, cell: Cell, row: ir.Value, further: int = 0) -> ir.Value:
+        """Where a scalar of a row lies."""
         base = self.builder.load(state_word(self.builder, self.state, lane_word(cell.lane, ADDRESS)), typ=POINTER, align=8)
         index = self.builder.add(self.builder.mul(row, constant(cell.step)), constant(cell.index + further))
-        return self.builder.load(self.builder.gep(base, [index], source_etype=type_), typ=type_)
+        return self.builder.gep(base, [index], source_etype=cell_type(cell))
 
     def number(self, cell: Cell, row: ir.Value) -> ir.Value:
         """A scalar of a row, as a value of numba's."""
@@ -117,7 +123,7 @@ class Reader:
     def other(self, type_: types.Type, **words: ir.Value) -> ir.Value:
         """Another message or sequence of the same holder."""
         made: StructProxy = cgutils.create_struct_proxy(type_)(self.context, self.builder)
-        for name in ("meminfo", "taken", "state", "guard"):
+        for name in ("meminfo", "taken", "state"):
             setattr(made, name, getattr(self.value, name))
         for name, value in words.items():
             setattr(made, name, value)
@@ -132,17 +138,15 @@ class Reader:
                 return self.number(cell, row)
             case Text(cell, lane) | Blob(cell, lane) | Numbers(cell, lane):
                 return self.array(cast("types.Array", type_), lane, *self.span(cell, lane, row, there))
-            case Items(cell, lane):
+            case Items(cell, lane) | Pairs(cell, lane):
                 start, count = self.span(cell, lane, row, there)
-                return self.other(cast("SequenceType", type_), start=start, count=count)
+                return self.other(type_, start=start, count=count)
             case Record():
                 return self.other(cast("MessageType", type_), row=row)
             case Child(cell, lane):
                 start, count = self.span(cell, lane, row, there)
                 self.refuse_if(self.builder.icmp_signed("==", count, constant(0)), ABSENT)
                 return self.other(cast("MessageType", type_), row=start)
-            case Pairs():
-                raise AssertionError("a map has no type here")
 
     def entry(self, entry: Entry, row: ir.Value) -> ir.Value:
         """What a field is read as: its default where it is absent."""
@@ -166,16 +170,11 @@ class _Fields(AttributeTemplate):
         entry = type_.record.entries.get(name)
         if entry is None:
             return None
-        found = type_of(type_.family, entry.node)
-        if found is None:
-            raise TypingError(f"`{name}` of `{type_.record.struct}` is a map: compiled code cannot read it")
-        return found
+        return type_of(type_.family, entry.node)
 
 
 @lower_getattr_generic(MessageType)
 def _read(context: BaseContext, builder: ir.IRBuilder, type_: MessageType, value: ir.Value, name: str) -> ir.Value:
-    if "__numba_parfor" in builder.function.name:
-        raise NumbaTypeError(PARALLEL)
     reader = Reader(context, builder, type_, value)
     reader.check_valid()
     return reader.entry(type_.record.entries[name], reader.value.row)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, cast
 
 from numba import types
 from numba.core import cgutils
-from numba.core.errors import TypingError
 from numba.core.imputils import RefType, impl_ret_new_ref, iternext_impl
 from numba.extending import intrinsic, lower_builtin, overload
 
@@ -35,9 +34,6 @@ def _count(typing: object, sequence: types.Type) -> Implementation:  # noqa: ARG
 
 @intrinsic
 def _element(typing: object, sequence: types.Type, index: types.Type) -> Implementation:  # noqa: ARG001 - as above
-    element = cast("SequenceType", sequence).element
-    if element is None:
-        raise TypingError("maps cannot be read in compiled code")
 
     def codegen(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: list[ir.Value]) -> ir.Value:
         reader = Reader(context, builder, cast("SequenceType", signature.args[0]), arguments[0])
@@ -47,7 +43,7 @@ def _element(typing: object, sequence: types.Type, index: types.Type) -> Impleme
         reader.refuse_if(builder.icmp_unsigned(">=", at, count), "index out of range", IndexError)
         return _read_element(reader, at)
 
-    return element(sequence, types.int64), codegen
+    return cast("SequenceType", sequence).element(sequence, types.int64), codegen
 
 
 def _read_element(reader: Reader, at: ir.Value) -> ir.Value:

@@ -6,12 +6,12 @@ a function has read, or returns, keep all memory alive that the holder had meanw
 
 from __future__ import annotations
 
-from ctypes import CFUNCTYPE, addressof, c_int64, py_object
+from ctypes import CFUNCTYPE, c_int64, py_object
 from functools import cache
-from threading import get_ident, local
+from threading import local
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.errors import DecodeError, InUse, RosettaError
+from rosetta_jit.errors import DecodeError, RosettaError
 from rosetta_jit.kernel.state import GROW, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
 
-OTHER_THREAD = "several threads fill one holder in compiled code, which takes a holder each: call such functions in threads, not `prange`"
-
 _TELL = CFUNCTYPE(None, py_object)
 _MEND = CFUNCTYPE(c_int64, py_object, c_int64, c_int64, c_int64)
 
@@ -34,26 +32,24 @@ class Taken:
 
     Attributes
     ----------
-    memory : list
-        All memory that the holder has had meanwhile.
-    address, guard_address : int
-        Where its state and its guard lie.
-    guard : array of int64
-        The thread that may fill it, and whether another one has tried to.
+    memory : dict
+        All memory that the holder has had meanwhile, by identity.
+    address : int
+        Where its state lies.
     """
 
-    __slots__ = ("address", "guard", "holder", "lanes", "memory")
+    __slots__ = ("address", "holder", "lanes", "memory")
 
     def __init__(self, holder: Holder) -> None:
         self.holder = holder
         self.lanes = lanes = holder.lanes_
         self.address = lanes.address
-        self.guard = (c_int64 * 2)(get_ident(), 0)
-        self.memory: list[Any] = [lanes.arena, *lanes.memory.values()]
+        self.memory: dict[int, Any] = {0: lanes.arena}
+        self.keep_memory()
 
-    @property
-    def guard_address(self) -> int:
-        return addressof(self.guard)
+    def keep_memory(self) -> None:
+        """Keep the memory alive that the holder has now."""
+        self.memory |= {id(each): each for each in self.lanes.memory.values()}
 
 
 def take(holder: Holder) -> Taken:
@@ -76,16 +72,8 @@ def take(holder: Holder) -> Taken:
 
 
 def give_back(taken: Taken) -> None:
-    """Let others use the holder again.
-
-    Raises
-    ------
-    InUse
-        If another thread has tried to fill it: numba drops the errors of the threads of a ``prange``, and these messages are missing.
-    """
+    """Let others use the holder again."""
     taken.lanes.__exit__()
-    if taken.guard[1]:
-        raise InUse(OTHER_THREAD)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +137,7 @@ def entries(program: Program) -> tuple[Any, Any]:
             _LAST.error = error
             program.untell(lanes)
             return 0
-        taken.memory += lanes.memory.values()
+        taken.keep_memory()
         return 1
 
     return _TELL(tell), _MEND(mend)

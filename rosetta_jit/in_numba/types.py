@@ -1,25 +1,27 @@
 """Numba's types of messages and of sequences in them, and how their values lie in registers.
 
-    Message  = meminfo, taken, state, guard, row             a row of a lane, or a part of one
-    Sequence = meminfo, taken, state, guard, start, count    elements of a lane
+    Message  = meminfo, taken, state, row             a row of a lane, or a part of one
+    Sequence = meminfo, taken, state, start, count    elements of a lane
+    Map      = meminfo, taken, state, start, count    pairs of a lane
 
 ``state`` is where the holder's state lies, ``taken`` the object that compiled code asks for help with it (`taking.Taken`), ``meminfo`` what
-numba counts references with, to keep that object alive. ``guard`` are two words of that object: the thread that may fill the holder, and
-whether another one has tried to. Nothing else is remembered: lanes are looked up in the state whenever a field is
+numba counts references with, to keep that object alive. Nothing else is remembered: lanes are looked up in the state whenever a field is
 read, so that a value stays safe to use when lanes grow.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from numba import types
+from numba.core.errors import NumbaTypeError
 from numba.extending import models, register_model
 
 from rosetta_jit.runtime.cells import SCALARS, dtype_of
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 
 if TYPE_CHECKING:
+    from llvmlite import ir
     from numba.core.datamodel import DataModelManager
 
     from rosetta_jit.runtime.holder import Family
@@ -29,7 +31,17 @@ COMMON = (
     ("meminfo", types.MemInfoPointer(types.voidptr)),
     ("taken", types.voidptr),
     ("state", types.CPointer(types.int64)),
-    ("guard", types.CPointer(types.int64)),
+)
+ROWS = types.Array(types.int64, 1, "C")
+"""The pairs of a map in the order of an iteration."""
+
+Shown: TypeAlias = Literal["keys", "values", "items"]
+"""What an iteration over a map gives."""
+
+PARALLEL = (
+    "a holder is for one thread, and the loop of a `prange` runs in several. Before the loop, take the arrays that it reads out of the "
+    "holder, as in `position = holder.position`; to decode in parallel, call a function without `prange` in threads, with a holder for "
+    "each (`nogil=True` lets them run at once)"
 )
 NUMBERS: dict[str, types.Type] = dict(
     zip(
@@ -81,7 +93,7 @@ class SequenceType(types.IterableType):
         return self.family, self.node
 
     @property
-    def element(self) -> types.Type | None:
+    def element(self) -> types.Type:
         """The type of its elements."""
         return type_of(self.family, self.node.element)
 
@@ -98,8 +110,44 @@ class IteratorType(types.SimpleIteratorType):
         super().__init__(f"iterator over {sequence.name}", sequence.element)
 
 
-def type_of(family: Family, node: Node) -> types.Type | None:
-    """The type that a field is read as; None of maps, which are read in Python alone."""
+class MapType(types.IterableType):
+    """A map in a holder; ``shown`` is what iteration gives of each pair."""
+
+    def __init__(self, family: Family, node: Pairs, shown: Shown = "keys") -> None:
+        self.family, self.node = family, node
+        self.shown: Shown = shown
+        super().__init__(name=f"{shown} of the map in lane {node.lane} of {family.struct.name} ({id(node):x})")
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        return self.family, self.node, self.shown
+
+    def part(self, shown: Shown) -> types.Type:
+        """The type of the key of a pair, of its value, or of both."""
+        key, value = type_of(self.family, self.node.key), type_of(self.family, self.node.value.node)
+        match shown:
+            case "keys":
+                return key
+            case "values":
+                return value
+            case "items":
+                return types.Tuple((key, value))
+
+    @property
+    def iterator_type(self) -> MapIteratorType:
+        return MapIteratorType(self)
+
+
+class MapIteratorType(types.SimpleIteratorType):
+    """An iteration over a map."""
+
+    def __init__(self, table: MapType) -> None:
+        self.table = table
+        super().__init__(f"iterator over {table.name}", table.part(table.shown))
+
+
+def type_of(family: Family, node: Node) -> types.Type:
+    """The type that a field is read as."""
     match node:
         case Scalar(cell):
             return NUMBERS[SCALARS[cell.key & 15]]
@@ -114,7 +162,7 @@ def type_of(family: Family, node: Node) -> types.Type | None:
         case Child(record=record):
             return MessageType(family, record)
         case Pairs():
-            return None
+            return MapType(family, node)
 
 
 def _element(family: Family, lane: int) -> types.Type:
@@ -123,16 +171,44 @@ def _element(family: Family, lane: int) -> types.Type:
     return next(type_ for scalar, type_ in NUMBERS.items() if dtype_of(scalar) == dtype)
 
 
+class _OfOneThread(models.StructModel):
+    """A message or a sequence of a holder, which is no argument of the loop that numba makes of a ``prange``."""
+
+    def from_argument(self, builder: ir.IRBuilder, value: object) -> object:
+        """The argument of a function that is being compiled.
+
+        Raises
+        ------
+        NumbaTypeError
+            The function is the body of a loop that runs in several threads.
+        """
+        if "__numba_parfor" in builder.function.name:
+            raise NumbaTypeError(PARALLEL)
+        return super().from_argument(builder, value)
+
+
 @register_model(MessageType)
-class _MessageModel(models.StructModel):
+class _MessageModel(_OfOneThread):
     def __init__(self, manager: DataModelManager, type_: MessageType) -> None:
         super().__init__(manager, type_, [*COMMON, ("row", types.int64)])
 
 
 @register_model(SequenceType)
-class _SequenceModel(models.StructModel):
+class _SequenceModel(_OfOneThread):
     def __init__(self, manager: DataModelManager, type_: SequenceType) -> None:
         super().__init__(manager, type_, [*COMMON, ("start", types.int64), ("count", types.int64)])
+
+
+@register_model(MapType)
+class _MapModel(_OfOneThread):
+    def __init__(self, manager: DataModelManager, type_: MapType) -> None:
+        super().__init__(manager, type_, [*COMMON, ("start", types.int64), ("count", types.int64)])
+
+
+@register_model(MapIteratorType)
+class _MapIteratorModel(models.StructModel):
+    def __init__(self, manager: DataModelManager, type_: MapIteratorType) -> None:
+        super().__init__(manager, type_, [("index", types.EphemeralPointer(types.int64)), ("rows", ROWS), ("table", type_.table)])
 
 
 @register_model(IteratorType)

@@ -11,7 +11,9 @@ import numpy as np
 from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.limits import MAX_LISTED_DEPTH
+from rosetta_jit.model.units import Context
 from rosetta_jit.runtime.columns import Ragged
+from rosetta_jit.runtime.holder.record import Child, Items, Record
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.logs.channel import Channel
     from rosetta_jit.logs.log import Log
     from rosetta_jit.runtime.batch import Batch
-    from rosetta_jit.runtime.holder.record import Record
+    from rosetta_jit.runtime.holder.record import Node
 
     Floats = NDArray[np.float64]
 
@@ -44,11 +46,19 @@ class Curve:
         When the messages were logged, since 1970.
     values : ndarray of float64, shape (n,)
         NaN where a message has no such element.
+    unit
+        What the values are measured in, where the schema says it.
     """
 
     name: str
     times_ns: NDArray[np.int64]
     values: Floats
+    unit: str | None = None
+
+    @property
+    def title(self) -> str:
+        """Its name, and its unit."""
+        return self.name if self.unit is None else f"{self.name}, {self.unit}"
 
 
 def curve_of(log: Log, name: str, target: str | None, start: int | None = None, end: int | None = None) -> Curve:
@@ -70,6 +80,7 @@ def curve_of(log: Log, name: str, target: str | None, start: int | None = None, 
             values = _numbers(part.batch, steps)
         except (KeyError, TypeError):
             raise LogError((words.unknown_field(log.name, topic, name[len(topic) + 1 :], list(numbers_in(channel))),)) from None
+        curve.unit = unit_of(part.batch.family_.tree.root, steps)
         curve.times_ns = np.concatenate([curve.times_ns, part.log_ns])
         curve.values = np.concatenate([curve.values, values])
         while len(curve.values) > POINTS:
@@ -113,6 +124,20 @@ def _no_number() -> Any:
     raise TypeError("no number")
 
 
+def unit_of(record: Record, steps: list[str | int]) -> str | None:
+    """In what the number at the end of some steps is measured, where the schema says it."""
+    context, node = Context(), cast("Node", record)
+    for step in steps:
+        if isinstance(step, int):
+            context, node = context.element(step), node.element if isinstance(node, Items) else node
+            continue
+        around = node.record if isinstance(node, Child) else node
+        assert isinstance(around, Record)
+        entry = around.entries[step]
+        context, node = context.member(entry.field), entry.node
+    return context.unit
+
+
 def _thin(curve: Curve) -> None:
     """Of each four neighbours keep the least and the greatest, in their order."""
     whole = len(curve.values) // 4 * 4
@@ -127,13 +152,12 @@ def _thin(curve: Curve) -> None:
 def numbers_in(channel: Channel) -> Iterator[str]:
     """The fields of a channel that are numbers, with dots those of nested messages."""
     from rosetta_jit.runtime.holder.record import Bit, Numbers, Scalar
-    from rosetta_jit.runtime.holder.record import Record as Inner
 
     def inside(record: Record, before: str, depth: int) -> Iterator[str]:
         for name, entry in record.entries.items():
             node: Any = entry.node
             match node:
-                case Inner() if depth < MAX_LISTED_DEPTH:
+                case Record() if depth < MAX_LISTED_DEPTH:
                     yield from inside(node, f"{before}{name}.", depth + 1)
                 case Scalar() | Bit():
                     yield before + name

@@ -8,13 +8,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.writer import Writer
 
 import rosetta_jit as rj
+from rosetta_jit.api.programs import Encoder
 from rosetta_jit.cli import main
 from rosetta_jit.cli.drawing import drawn
 from rosetta_jit.logs import curves
 from rosetta_jit.logs.curves import Curve, curve_of
 
+ARM = f"""Joint[] joints
+float64[2] pair # both [m]
+float64 plain
+{"=" * 80}
+MSG: t/Joint
+float64 angle # of the joint [rad]
+"""
 DRIVE = Path(rj.__file__).parent / "demo" / "recordings" / "drive.bag"
 
 
@@ -51,6 +60,37 @@ def test_pictures(tmp_path, capsys, suffix):
     assert path.read_bytes()[:5] in (b"\x89PNG\r", b"<?xml")
     assert "2 curves" in capsys.readouterr().out
     assert main(["plot", str(DRIVE), "/imu.orientation.w", "-o", "a.gif"]) == 2
+
+
+@pytest.fixture
+def arms(tmp_path):
+    """A log of one message whose definition says units."""
+    encode = Encoder.of("t/msg/Arm", encoding="cdr", schema=ARM)
+    path = tmp_path / "arms.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channel = writer.register_channel("/arm", "cdr", writer.register_schema("t/msg/Arm", "ros2msg", ARM.encode()))
+        message = encode({"joints": [{"angle": 1.0}, {"angle": 2.0}], "pair": [1.0, 2.0], "plain": 3.0})
+        writer.add_message(channel, log_time=1, publish_time=1, data=message)
+        writer.finish()
+    return path
+
+
+UNITS = {"joints[1].angle": "rad", "pair[1]": "m", "plain": None}
+
+
+@pytest.mark.parametrize(("field", "unit"), UNITS.items())
+def test_units_are_shown_where_the_schema_says_them(arms, field, unit, capsys):
+    name = f"/arm.{field}"
+    assert main(["plot", str(arms), name]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == (name if unit is None else f"{name}, {unit}")
+
+
+def test_the_axis_of_a_picture_shows_the_unit(arms, tmp_path):
+    path = tmp_path / "a.svg"
+    assert main(["plot", str(arms), "/arm.joints[1].angle", "-o", str(path)]) == 0
+    assert "<!-- rad -->" in path.read_text()
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,8 @@ from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.limits import MAX_UNIT_PROBLEMS
 from rosetta_jit.language.scope import Message, members_of
 from rosetta_jit.language.units.dimensions import conversion, is_unit, known_units
-from rosetta_jit.language.units.places import Context
 from rosetta_jit.model.types import Array, Float, Int, Struct, Union, name_parts
-from rosetta_jit.model.units import MAX_PARTS
+from rosetta_jit.model.units import MAX_PARTS, Context
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Message, Scope
     from rosetta_jit.language.typed import Assignment, Change, Expr, Place
-    from rosetta_jit.language.units.places import Context
     from rosetta_jit.model.types import Field, Type
+    from rosetta_jit.model.units import Context
 
 
 def change_within(value: Expr, place: Place, scope: Scope) -> Change | None:

@@ -146,6 +146,7 @@ class _Walk:
             "truncated",
             MESSAGE,
             "the message ends here",
+            at=self.at,
         )
         writer.expect(Compare("eq", self.at, END), "trailing", MESSAGE, "bytes are left over", at=self.at)
         self.fields.set_span(self.fields.find(("changes",)), index(0), writer.let("changes", Used(self.changes.lane)))
@@ -182,7 +183,7 @@ class _Walk:
             bounded = Binary("and", *self.between(self.size, MAX_SCALAR))
             writer.expect(bounded, "length", MESSAGE, "the holder is damaged")  # true anyway; said for the proof
             self.values()
-            writer.expect(Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=self.at)
+            writer.expect(Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=END)
             differs = Binary("and", has_code, Compare("ne", self.there, self.code))
             with writer.nested() as noted:
                 self.note(self.at, self.there)
