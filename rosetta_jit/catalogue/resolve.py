@@ -8,7 +8,7 @@ from rosetta_jit.catalogue.mapping import error, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Member
@@ -122,9 +122,27 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
         span,
         "not known here",
         notes=_there_are("known", known),
-        help_=_did_you_mean(name, known)
-        or f"a field begins with a dot: `.{shorten(name)}`; an enum constant is written with its full name",
+        help_=_did_you_mean(name, known) or _how_named(name, known),
     )
+
+
+def _how_named(name: str, known: Collection[str]) -> str:
+    """How what may be meant is written."""
+    ends = tuple(f"{mark}{name}" for mark in (".", "::"))
+    declared = next((each for each in sorted(known) if each.endswith(ends)), None)
+    if declared is not None:
+        return f"a constant is written with the type that declares it: `{declared}`"
+    if "/" in name:
+        return "a constant is written as `package/msg/Type.NAME`; to divide, put blanks around `/`"
+    return f"a field begins with a dot: `.{shorten(name)}`; a constant is written with the type that declares it: `Type.NAME`"
+
+
+def ambiguous_name(span: Span | None, name: str, several: Sequence[str]) -> Diagnostic:
+    """A name that stands for constants of several values."""
+    shown = ", ".join(f"`{shorten(each)}`" for each in several[:MAX_NAMES])
+    message = f"`{shorten(name)}` is the name of several constants"
+    help_ = f"write `{shorten(several[0])}`, or another of them"
+    return error("ambiguous-name", message, span, "which one?", notes=(f"they are: {shown}",), help_=help_)
 
 
 def undotted_field(span: Span | None, name: str) -> Diagnostic:

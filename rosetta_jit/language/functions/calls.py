@@ -45,7 +45,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     """The typed form of a call; ``type_expr`` types its arguments."""
     target = named_type(expr.function, scope.enums)
     if target is not None:
-        scope.named_enums.update({expr.function} & scope.enums.keys())
+        scope.named.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
     if expr.function in ARGUMENTS:
         scope.problems.append(layouts.out_of_place(expr.span))
