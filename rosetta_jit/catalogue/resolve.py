@@ -25,12 +25,14 @@ def nearest(name: str, known: Collection[str]) -> str | None:
     return closest(name[:100], candidates)
 
 
-def _did_you_mean(name: str, known: Collection[str]) -> str:
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """The known name that may be meant, as a help; empty where none is near."""
     found = nearest(name, known)
     return f"did you mean `{found}`?" if found else ""
 
 
-def _there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
+def there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
+    """What there is to choose from, as a note."""
     names = [shorten(name) for name in sorted(known)[:MAX_NAMES]]
     more = ", ..." if len(known) > MAX_NAMES else ""
     return (f"{what}: {', '.join(names)}{more}",) if names else (f"{what}: none",)
@@ -43,8 +45,8 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
         f"no import declares a type `{shorten(name)}`",
         span,
         "not declared",
-        notes=_there_are("declared", known),
-        help_=_did_you_mean(name, known),
+        notes=there_are("declared", known),
+        help_=did_you_mean(name, known),
     )
 
 
@@ -60,8 +62,8 @@ def unknown_field(step: Member, side: str, owner: str, known: Collection[str], e
         f"`{shorten(owner)}` has no field `{shorten(step.name)}`",
         step.span,
         f"looked up on the {side} side",
-        notes=_there_are("its fields", known),
-        help_=_did_you_mean(step.name, known) or elsewhere,
+        notes=there_are("its fields", known),
+        help_=did_you_mean(step.name, known) or elsewhere,
     )
 
 
@@ -121,8 +123,8 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
         f"there is no loop variable or constant `{shorten(name)}`",
         span,
         "not known here",
-        notes=_there_are("known", known),
-        help_=_did_you_mean(name, known) or _how_named(name, known),
+        notes=there_are("known", known),
+        help_=did_you_mean(name, known) or _how_named(name, known),
     )
 
 
@@ -157,8 +159,8 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
         "unknown-function",
         f"there is no function `{shorten(name)}`",
         span,
-        notes=_there_are("functions", known),
-        help_=_did_you_mean(name, known),
+        notes=there_are("functions", known),
+        help_=did_you_mean(name, known),
     )
 
 
