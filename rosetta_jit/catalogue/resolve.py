@@ -8,7 +8,7 @@ from rosetta_jit.catalogue.mapping import error, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Member
@@ -25,12 +25,14 @@ def nearest(name: str, known: Collection[str]) -> str | None:
     return closest(name[:100], candidates)
 
 
-def _did_you_mean(name: str, known: Collection[str]) -> str:
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """The known name that may be meant, as a help; empty where none is near."""
     found = nearest(name, known)
     return f"did you mean `{found}`?" if found else ""
 
 
-def _there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
+def there_are(what: str, known: Collection[str]) -> tuple[str, ...]:
+    """What there is to choose from, as a note."""
     names = [shorten(name) for name in sorted(known)[:MAX_NAMES]]
     more = ", ..." if len(known) > MAX_NAMES else ""
     return (f"{what}: {', '.join(names)}{more}",) if names else (f"{what}: none",)
@@ -43,8 +45,8 @@ def unknown_type(span: Span | None, name: str, known: Collection[str]) -> Diagno
         f"no import declares a type `{shorten(name)}`",
         span,
         "not declared",
-        notes=_there_are("declared", known),
-        help_=_did_you_mean(name, known),
+        notes=there_are("declared", known),
+        help_=did_you_mean(name, known),
     )
 
 
@@ -60,8 +62,8 @@ def unknown_field(step: Member, side: str, owner: str, known: Collection[str], e
         f"`{shorten(owner)}` has no field `{shorten(step.name)}`",
         step.span,
         f"looked up on the {side} side",
-        notes=_there_are("its fields", known),
-        help_=_did_you_mean(step.name, known) or elsewhere,
+        notes=there_are("its fields", known),
+        help_=did_you_mean(step.name, known) or elsewhere,
     )
 
 
@@ -121,10 +123,28 @@ def unknown_name(span: Span | None, name: str, known: Collection[str]) -> Diagno
         f"there is no loop variable or constant `{shorten(name)}`",
         span,
         "not known here",
-        notes=_there_are("known", known),
-        help_=_did_you_mean(name, known)
-        or f"a field begins with a dot: `.{shorten(name)}`; an enum constant is written with its full name",
+        notes=there_are("known", known),
+        help_=did_you_mean(name, known) or _how_named(name, known),
     )
+
+
+def _how_named(name: str, known: Collection[str]) -> str:
+    """How what may be meant is written."""
+    ends = tuple(f"{mark}{name}" for mark in (".", "::"))
+    declared = next((each for each in sorted(known) if each.endswith(ends)), None)
+    if declared is not None:
+        return f"a constant is written with the type that declares it: `{declared}`"
+    if "/" in name:
+        return "a constant is written as `package/msg/Type.NAME`; to divide, put blanks around `/`"
+    return f"a field begins with a dot: `.{shorten(name)}`; a constant is written with the type that declares it: `Type.NAME`"
+
+
+def ambiguous_name(span: Span | None, name: str, several: Sequence[str]) -> Diagnostic:
+    """A name that stands for constants of several values."""
+    shown = ", ".join(f"`{shorten(each)}`" for each in several[:MAX_NAMES])
+    message = f"`{shorten(name)}` is the name of several constants"
+    help_ = f"write `{shorten(several[0])}`, or another of them"
+    return error("ambiguous-name", message, span, "which one?", notes=(f"they are: {shown}",), help_=help_)
 
 
 def undotted_field(span: Span | None, name: str) -> Diagnostic:
@@ -139,8 +159,8 @@ def unknown_function(span: Span | None, name: str, known: Collection[str]) -> Di
         "unknown-function",
         f"there is no function `{shorten(name)}`",
         span,
-        notes=_there_are("functions", known),
-        help_=_did_you_mean(name, known),
+        notes=there_are("functions", known),
+        help_=did_you_mean(name, known),
     )
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
-from rosetta_jit.catalogue.resolve import nearest
+from rosetta_jit.catalogue.resolve import did_you_mean, nearest, there_are
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
@@ -41,6 +41,13 @@ def text_needed(span: Span | None, function: str, found: str) -> Diagnostic:
         else "name a text, bytes, or an array of 8-bit integers"
     )
     return error("text-needed", f"`{function}` takes a text, not {shorten(found)}", span, f"this is {shorten(found)}", help_=hint)
+
+
+def no_constant(span: Span | None, name: str, enum: str, known: Collection[str]) -> Diagnostic:
+    """A name in quotes that no constant of an enum has."""
+    message = f"enum {shorten(enum)} has no constant `{shorten(name)}`"
+    notes = there_are("its constants", known)
+    return error("unknown-name", message, span, "names none", notes=notes, help_=did_you_mean(name, known))
 
 
 def texts_needed(span: Span | None, function: str, found: str) -> Diagnostic:

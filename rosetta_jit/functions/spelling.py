@@ -1,4 +1,4 @@
-"""Numbers that texts spell, and texts as bytes of an encoding."""
+"""Numbers that texts spell, names of constants, and texts as bytes of an encoding."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
+from rosetta_jit.functions.enum_names import NAMES, lower_name, read_name
 from rosetta_jit.functions.forms import if_same_constants, loses, of_texts, row, undone_by
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64, describe
 from rosetta_jit.language.function import Texts, untyped
-from rosetta_jit.language.functions.texts import BYTES, TEXT, argument, is_textual
+from rosetta_jit.language.functions.texts import BYTES, NAMED, TEXT, argument, is_textual, name_of
 from rosetta_jit.language.limits import MAX_DECIMALS
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.texts.encodings import Recoded, from_latin, from_utf16, is_ascii, to_latin, to_utf16
@@ -20,7 +21,7 @@ from rosetta_jit.lowering.texts.number_reading import read_float, read_integer
 from rosetta_jit.lowering.texts.number_writing import is_special, written_float, written_integer
 from rosetta_jit.lowering.texts.values import checked, expect, placed_of, quoted
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Bool, Float, Int, String
+from rosetta_jit.model.types import Bool, Enum, Float, Int, String
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
@@ -42,8 +43,10 @@ SPELLING = "a number is written in one way, however it was spelt"
 
 
 def _type_text(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
-    """What a number is written as, or bytes read as text."""
+    """What a number is written as, the name of a constant, or bytes read as text."""
     match arguments:
+        case [constant] if isinstance(constant.type, Enum):
+            return name_of(constant, call.span)
         case [number] if isinstance(number.type, Bool | Int | Float):
             return typed.Call("text", (number,), TEXT, call.span)
         case [number, typed.Const(value=int(decimals), type=Int())] if isinstance(number.type, Float) and 0 <= decimals <= MAX_DECIMALS:
@@ -54,7 +57,9 @@ def _type_text(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> t
         case [_] | [_, _]:
             scope.problems.append(words.not_written(call.span, [describe(each.type) for each in arguments], MAX_DECIMALS))
         case _:
-            scope.problems.append(resolve.arguments(call.span, "text", "a number, or bytes and their encoding", len(arguments)))
+            scope.problems.append(
+                resolve.arguments(call.span, "text", "a number, a constant of an enum, or bytes and their encoding", len(arguments))
+            )
     return None
 
 
@@ -62,6 +67,8 @@ def _lower_text(call: typed.Call, values: Evaluation) -> View:
     number, *rest = call.arguments
     if is_textual(number.type):
         return _read_as_text(call, values)
+    if isinstance(number.type, Enum):
+        return lower_name(call, values)
     value = values.of(number)
     if not isinstance(number.type, Float):
         return written_integer(values.writer, value)
@@ -101,7 +108,9 @@ def _text_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Exp
 
 
 def _number_of(arguments: tuple[model.Expr, ...], type_: Type | None, span: Span | None) -> model.Expr:
-    """The number that a text spells."""
+    """The number that a text spells, or the constant that it names."""
+    if isinstance(type_, Enum):
+        return model.Call(type_.name, arguments, span)
     return model.Call("number" if type_ is None or isinstance(type_, Float) else "integer", arguments, span)
 
 
@@ -177,8 +186,8 @@ FUNCTIONS = (
         _type_text,
         _lower_text,
         _text_of,
-        undone_by(integer=_read_integer, number=_read_float, bytes=if_same_constants),
-        (*ENCODED, *DECIMAL, *DECIMALS),
+        undone_by(integer=_read_integer, number=_read_float, bytes=if_same_constants, **{NAMED: read_name}),
+        (*ENCODED, *DECIMAL, *DECIMALS, *NAMES),
         typed_inverse=_number_of,
     ),
     of_texts("bytes", Texts(("text", "encoding"), BYTES), _lower_bytes, _bytes_of, undone_by(text=if_same_constants), ENCODED),

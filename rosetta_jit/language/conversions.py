@@ -199,9 +199,10 @@ def other_way(source: Type, target: Type) -> str:
             return f"`{call}` is the integer that a text spells"
         case String(), Float(bits):
             return f"`{'number(...)' if bits == 64 else 'float32(number(...))'}` is the number that a text spells"
-        case (String(), Enum(name=name, values=((first, _), *_))) | (Enum(name=name, values=((first, _), *_)), String()):
-            pairs = f'"..." = {name}.{first}' if isinstance(target, Enum) else f'{name}.{first} = "..."'
-            return f"a table says which text is which constant: `table(...) {{ {pairs}, ... }}`"
+        case String(), Enum(name=name, values=((first, _), *_)):
+            return f'`{name}(...)` is the constant that a text names; for other texts, `table(...) {{ "..." = {name}.{first}, ... }}`'
+        case Enum(name=name, values=((first, _), *_)), String():
+            return f'`text(...)` is the name of a constant; for another text, `table(...) {{ {name}.{first} = "...", ... }}`'
         case _:
             return ""
 

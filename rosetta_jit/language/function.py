@@ -46,7 +46,21 @@ if TYPE_CHECKING:
 GROUP = "rosetta_jit.functions"
 """The entry-point group in which packages offer functions of their own: a `Function` each."""
 
-OURS = ("angles", "numbers", "division", "counting", "clock", "joining", "texts", "comparing", "spelling", "moments", "octets", "images")
+OURS = (
+    "angles",
+    "numbers",
+    "division",
+    "counting",
+    "clock",
+    "joining",
+    "texts",
+    "comparing",
+    "enum_names",
+    "spelling",
+    "moments",
+    "octets",
+    "images",
+)
 """Modules of `rosetta_jit.functions` with a tuple `FUNCTIONS`, in the order of the reference."""
 
 

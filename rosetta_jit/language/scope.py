@@ -1,4 +1,4 @@
-"""What the rules of a mapping can name: the two messages, enum constants, loop variables."""
+"""What the rules of a mapping can name: the two messages, constants, loop variables."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.constants import Constants
     from rosetta_jit.language.typed import Expr, Step
     from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Expr as Untyped
@@ -40,7 +41,7 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The names that are known at one point of a mapping; where problems go, and the enums that were named.
+    """The names that are known at one point of a mapping; where problems go, and the declarations that were ``named``.
 
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
     ``suffix`` tells its loop variables from those around. ``nearest`` is the type of `model.expr.NEAREST`, where that is one.
@@ -48,11 +49,11 @@ class Scope:
 
     messages: Mapping[Side, Message]
     enums: Mapping[str, Enum]
-    constants: Mapping[str, tuple[Enum, int]]
+    constants: Constants
     target: Side
     locals: tuple[str, ...]
     problems: list[Diagnostic]
-    named_enums: set[str]
+    named: set[str]
     functions: Mapping[str, Signature]
     others: Others
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
@@ -75,21 +76,6 @@ class Scope:
 def enums_of(*schemas: Schema) -> dict[str, Enum]:
     """All enums by qualified name."""
     return {name: found for schema in schemas for name, found in schema.types.items() if isinstance(found, Enum)}
-
-
-def constants_of(enums: Mapping[str, Enum]) -> dict[str, tuple[Enum, int]]:
-    """Enum constants by qualified name: within their enum and, as protobuf and OMG IDL scope them, beside it."""
-    beside = {_scope(name) + value: (enum, number) for name, enum in enums.items() for value, number in enum.values}
-    scoped = {f"{name}::{value}": (enum, number) for name, enum in enums.items() if "::" in name for value, number in enum.values}
-    within = {f"{name}.{value}": (enum, number) for name, enum in enums.items() for value, number in enum.values}
-    return beside | scoped | within
-
-
-def _scope(name: str) -> str:
-    """What stands before the name of an enum, and before its constants beside it."""
-    between = "::" if "::" in name else "."
-    outer = name.rpartition(between)[0]
-    return f"{outer}{between}" if outer else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,9 @@ class Relations(Scalars):
         if not self.is_counted:
             forms += [self.arrays, self.lists, self.structs, *(partial(form, self) for form in self.more_arrays)]
         if self.holder.constant:
-            forms += [self.enums, self.enums]
+            forms += [self.enums, self.enums, self.enum_names]
+        if self.wire.constant:
+            forms.append(self.named_enums)
         if self.wire.has_optional and self.holder.has_optional:
             forms.append(self.optional)
         return self.rng.choice(forms)(name)

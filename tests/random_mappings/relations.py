@@ -296,6 +296,30 @@ class Scalars:
             wires=lambda rng: {name: keys[rng.choice(order)]},
         )
 
+    def enum_names(self, name: str) -> Part:
+        """Names of constants that are constants on the holder's side."""
+        enum = self.constant(CONSTANTS[0])[: -len(CONSTANTS[0])].rstrip(".:")
+
+        def unpack(fields: Values) -> Values:
+            if fields[name] not in CONSTANTS:
+                raise Refused("range", f".{name}")
+            return {name: fields[name]}
+
+        relation = f".{name} <-> {enum}(.{name})\n"
+        return Part({name: Scalar("string")}, {name: Enum()}, relation, unpack, wires=lambda rng: {name: rng.choice(CONSTANTS)})
+
+    def named_enums(self, name: str) -> Part:
+        """Constants that are their names on the holder's side."""
+        begin = self.rng.choice(["", "is "])
+        relation = f'.{name} <-> "{begin}" + text(.{name})\n' if begin else f".{name} <-> text(.{name})\n"
+        return Part(
+            {name: Enum()},
+            {name: Scalar("string")},
+            relation,
+            lambda fields: {name: begin + fields[name]},
+            holders=lambda rng: {name: begin + rng.choice([*CONSTANTS, *TEXTS])},
+        )
+
 
 def below_all(parts: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """All entries of some dicts."""

@@ -45,7 +45,7 @@ Lengths = dict[Path, "Expr"]
 
 def elementwise(rules: tuple[Rule, ...], scope: Scope, broken: list[tuple[str, ...]]) -> tuple[Rule, ...]:
     """The rules of a block with loops in place of those about many elements; what fails is reported, and its field is ``broken``."""
-    names = frozenset(_names(rules)) | {*scope.constants, *scope.locals}
+    names = frozenset(_names(rules)) | {*scope.constants.full, *scope.locals}
     return _Expansion(scope, broken, names, count(1)).block(rules, {}, 0)
 
 

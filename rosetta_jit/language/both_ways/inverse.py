@@ -136,7 +136,7 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return operand, Unary(operator, value, span)
         case Binary():
             return _operation(expr, value)
-        case Call(function, (argument, *_)) if function in CONVERSIONS or "." in function:
+        case Call(function, (argument, *_)) if function in CONVERSIONS or is_qualified(function):
             return argument, value
         case Call(function, (array, *_)) if function in ARGUMENTS:
             return array, put_back(expr, value)
@@ -150,6 +150,11 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
             return _table(expr, value)
         case _:
             raise NoInverseError(expr, "it has no field")
+
+
+def is_qualified(function: str) -> bool:
+    """Whether a call is named as a type with a package is: a conversion to an enum."""
+    return "." in function or "::" in function
 
 
 def _undone(call: Call, value: Expr, function: Function) -> tuple[Expr, Expr]:

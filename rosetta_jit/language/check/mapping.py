@@ -183,14 +183,14 @@ def _silent_losses(mapping: Mapping, resolved: Resolved, blocks: tuple[Block, Bl
 
 
 def _unused(imported: list[Imported], resolved: Resolved) -> list[Diagnostic]:
-    used = {*reached(resolved.holder.root, resolved.holder.schema), *reached(resolved.wire.root, resolved.wire.schema), *resolved.enums}
+    used = {*reached(resolved.holder.root, resolved.holder.schema), *reached(resolved.wire.root, resolved.wire.schema), *resolved.named}
     known = {name_parts(name) for name in resolved.holder.schema.types}
     return [words.import_unused(one.statement.span, one.statement.path) for one in imported if not _is_used(one, used, known)]
 
 
 def _is_used(one: Imported, used: set[str], known: set[tuple[str, ...]]) -> bool:
     measured = any(name_parts(each.text) in known for file in one.units for each in file.types)
-    return measured or bool(used & one.schema.types.keys())
+    return measured or bool(used & {*one.schema.types, *one.schema.constants})
 
 
 def _sorted(problems: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -2,7 +2,7 @@
 
 int8 … uint64 (x [, saturate | wrap])      of an integer, a bool or an enum
 int8 … uint64 (x [, round | truncate | saturate])     of a float
-float32 float64 (x [, exact])   bool (x)   enum.name (x)
+float32 float64 (x [, exact])   bool (x)   enum.name (x)        of a text: the constant of that name
 
 Functions have a record each (`language.function`), which says what they take. `has` and `index` stand in `language.resolve.expressions`.
 """
@@ -19,7 +19,7 @@ from rosetta_jit.language import conversions
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, wrap
 from rosetta_jit.language.function import Numbers, Texts, names, written
-from rosetta_jit.language.functions.texts import type_texts
+from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
 from rosetta_jit.language.typed import Call, Const, Convert
 from rosetta_jit.language.units.conversion import check_arguments
 from rosetta_jit.model.expr import Name
@@ -45,7 +45,7 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
     """The typed form of a call; ``type_expr`` types its arguments."""
     target = named_type(expr.function, scope.enums)
     if target is not None:
-        scope.named_enums.update({expr.function} & scope.enums.keys())
+        scope.named.update({expr.function} & scope.enums.keys())
         return _conversion(expr, target, scope, type_expr)
     if expr.function in ARGUMENTS:
         scope.problems.append(layouts.out_of_place(expr.span))
@@ -88,12 +88,22 @@ def _conversion(expr: model.Call, target: Type, scope: Scope, type_expr: TypeExp
     value = type_expr(expr.arguments[0], scope)
     if value is None:
         return None
+    if isinstance(target, Enum) and is_textual(value.type):
+        return _named(value, target, expr, scope)
     rules = rules_between(value.type, target)
     if not rules:
         scope.problems.append(words.type_clash(value.span, describe(value.type), describe(target)))
         return None
     rule = _rule(expr, rules, scope)
     return None if rule is None else _converted(value, target, rule, expr, scope)
+
+
+def _named(value: Expr, target: Enum, expr: model.Call, scope: Scope) -> Expr | None:
+    """The constant that a text names."""
+    if len(expr.arguments) > 1:
+        scope.problems.append(words.arguments(expr.span, expr.function, "a text alone", len(expr.arguments)))
+        return None
+    return constant_named(value, target, expr.span, scope)
 
 
 def rules_between(source: Type, target: Type) -> tuple[ConversionRule, ...]:

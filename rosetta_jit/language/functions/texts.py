@@ -12,7 +12,7 @@ from rosetta_jit.catalogue import resolve
 from rosetta_jit.catalogue import texts as words
 from rosetta_jit.language.conversions import FLOAT64, as_int64, convert, describe
 from rosetta_jit.language.function import Texts
-from rosetta_jit.language.limits import MAX_PADDED, MAX_PATTERN, MAX_WRITTEN
+from rosetta_jit.language.limits import MAX_COMPARED, MAX_PADDED, MAX_PATTERN, MAX_WRITTEN
 from rosetta_jit.language.typed import BOOL, INT64, Access, Binary, Call, Const, Convert, Given
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, String
 
@@ -45,6 +45,35 @@ def is_textual(type_: Type) -> bool:
 def is_bytes(type_: Type) -> bool:
     """Whether a value is bytes, or an array of them."""
     return isinstance(type_, Bytes) or (isinstance(type_, Array) and isinstance(type_.element, Int) and type_.element.bits == 8)
+
+
+NAMED = "Enum(s)"
+"""The function from the name of a constant to the constant, in typed calls. No mapping can write it: there it is a conversion."""
+
+
+def name_of(constant: Expr, span: Span | None) -> Expr:
+    """The name of an enum's constant."""
+    match constant:
+        case Const(value=value, type=Enum(values=values)) if value in (known := {number: name for name, number in reversed(values)}):
+            return Const(known[int(value)], TEXT, span)
+        case _:
+            return Call("text", (constant,), TEXT, span)
+
+
+def constant_named(name: Expr, enum: Enum, span: Span | None, scope: Scope) -> Expr | None:
+    """The constant of an enum that a text names; None, and reported, where the text is known and names none."""
+    known = dict(enum.values)
+    long = next((each for each in known if len(each.encode()) > MAX_COMPARED), None)
+    if long is not None:
+        scope.problems.append(resolve.long_text(span, MAX_COMPARED))
+        return None
+    quoted = _quoted(name)
+    if quoted is None:
+        return Call(NAMED, (name,), enum, span)
+    if quoted not in known:
+        scope.problems.append(words.no_constant(name.span, quoted, enum.name, known))
+        return None
+    return Const(known[quoted], enum, span)
 
 
 def type_texts(expr: model.Call, arguments: list[Expr], scope: Scope, signature: Texts) -> Expr | None:

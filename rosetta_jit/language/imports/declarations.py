@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.imports.search import Reading, SearchPath
     from rosetta_jit.language.parse.unit_file import UnitFile
     from rosetta_jit.model.mapping import Import, Mapping
-    from rosetta_jit.model.types import Declaration, Type
+    from rosetta_jit.model.types import Declaration, NamedConstant, Type
     from rosetta_jit.parsing.idl import FrontEnds
     from rosetta_jit.source import Source
 
@@ -89,15 +89,17 @@ def read_imports(mapping: Mapping, imports: Imports, problems: list[Diagnostic])
 
 
 def merge(imported: list[Imported], problems: list[Diagnostic]) -> Schema:
-    """The types of all imports; two of one name are reported."""
+    """The types and constants of all imports; two of one name are reported."""
     types: dict[str, Declaration] = {}
+    constants: dict[str, NamedConstant] = {}
     owners: dict[str, str] = {}
     for one in imported:
-        for name, declaration in one.schema.types.items():
-            if types.setdefault(name, declaration) != declaration:
-                problems.append(words.conflicting_type(one.statement.span, name, owners[name], one.statement.path))
+        differing = [name for name, each in one.schema.types.items() if types.setdefault(name, each) != each]
+        differing += [name for name, each in one.schema.constants.items() if constants.setdefault(name, each) != each]
+        problems += [words.conflicting_type(one.statement.span, name, owners[name], one.statement.path) for name in differing]
+        for name in (*one.schema.types, *one.schema.constants):
             owners.setdefault(name, one.statement.path)
-    return Schema(types, tuple(dict.fromkeys(source for one in imported for source in one.schema.sources)))
+    return Schema(types, tuple(dict.fromkeys(source for one in imported for source in one.schema.sources)), constants)
 
 
 def reached(root: Struct, schema: Schema) -> set[str]:

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.both_ways.typed_inverse import for_type
-from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, holds, in_single, is_single
+from rosetta_jit.language.constants import constant_of
+from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single
 from rosetta_jit.language.function import for_field
 from rosetta_jit.language.functions.calls import type_call
 from rosetta_jit.language.functions.decisions import type_choice, type_comparison, type_logic, type_not
@@ -27,9 +28,10 @@ from rosetta_jit.language.scope import Broken, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
 from rosetta_jit.model import expr as model
-from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Optional, String, Union
+from rosetta_jit.model.types import Array, Bytes, Float, Int, Map, Optional, String, Union
 
 if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Expr
     from rosetta_jit.source import Span
@@ -45,7 +47,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
     """The typed form of an expression, or None where it has none; the problems are in the scope."""
     match expr:
         case model.Literal():
-            return _literal(expr)
+            return constant_of(expr.value, expr.type, expr.span)
         case model.Name():
             return _name(expr, scope)
         case model.Path():
@@ -103,19 +105,6 @@ def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
     return type_integer(expr, scope, "an index")
 
 
-def _literal(expr: model.Literal) -> Const:
-    match expr.value:
-        case bool():
-            return Const(expr.value, Bool(), expr.span)
-        case int():
-            return Const(expr.value, Int(64, signed=holds(INT64, expr.value)), expr.span, declared=expr.type is not None)
-        case float():
-            is_float32 = expr.type is not None and is_single(expr.type)
-            return Const(expr.value, Float(32) if is_float32 else FLOAT64, expr.span, declared=expr.type is not None)
-        case str():
-            return Const(expr.value, String(), expr.span)
-
-
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
         return Local(expr.name + scope.suffix, INT64, expr.span)
@@ -123,15 +112,22 @@ def _name(expr: model.Name, scope: Scope) -> Expr | None:
         return Local(expr.name, scope.nearest, expr.span)
     if expr.name in CONSTANTS:
         return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
-    if expr.name in scope.constants:
-        enum, number = scope.constants[expr.name]
-        scope.named_enums.add(enum.name)
-        return Const(number, enum, expr.span)
-    known = {*scope.locals, *CONSTANTS, *scope.constants}
-    origin = scope.messages[scope.origin]
-    undotted = expr.name in members_of(origin.root, origin.schema)
-    scope.problems.append(words.undotted_field(expr.span, expr.name) if undotted else words.unknown_name(expr.span, expr.name, known))
+    found = scope.constants.find(expr.name)
+    if len(found) == 1:
+        scope.named.add(found[0].home)
+        return found[0].typed(expr.span)
+    scope.problems.append(_unnamed(expr, [each.name for each in found], scope))
     return None
+
+
+def _unnamed(expr: model.Name, several: list[str], scope: Scope) -> Diagnostic:
+    """What is wrong with a name that stands for nothing, or for ``several`` constants."""
+    if several:
+        return words.ambiguous_name(expr.span, expr.name, several)
+    origin = scope.messages[scope.origin]
+    if expr.name in members_of(origin.root, origin.schema):
+        return words.undotted_field(expr.span, expr.name)
+    return words.unknown_name(expr.span, expr.name, {*scope.locals, *CONSTANTS, *scope.constants.full})
 
 
 def _length(expr: model.Len, scope: Scope) -> Expr | None:

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.conversions import convert
 from rosetta_jit.language.functions.calls import rules_between
+from rosetta_jit.language.functions.texts import is_textual, name_of
 from rosetta_jit.language.scope import Broken, resolve_path
 from rosetta_jit.language.typed import Binary, Convert, Local, Nearest
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.model.expr import NEAREST, Held, Path
 from rosetta_jit.model.expr import Binary as Operation
-from rosetta_jit.model.types import Float, Int
+from rosetta_jit.model.types import Enum, Float, Int
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,7 +51,9 @@ def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr
 
 
 def fitted(value: Expr, target: Type) -> Expr:
-    """A number as the type of its place, by a check where it may not fit."""
+    """A value as the type of its place, by a check where it may not fit: a number as another one, a constant as its name."""
+    if isinstance(value.type, Enum) and is_textual(target):
+        return name_of(value, value.span)
     free = convert(value, target)
     if free is not None:
         return replace(free, span=value.span)

@@ -15,6 +15,7 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.both_ways.typed_inverse import for_type
+from rosetta_jit.language.constants import constants_of
 from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
@@ -29,7 +30,7 @@ from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.nested import nest
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rule_for, unlike
-from rosetta_jit.language.scope import Broken, Message, Scope, constants_of, enums_of, resolve_path
+from rosetta_jit.language.scope import Broken, Message, Scope, enums_of, resolve_path
 from rosetta_jit.language.typed import (
     Assign,
     Choice,
@@ -71,13 +72,13 @@ class TypedRules:
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """Both directions, None where the mapping has no block; the enums that they name; what is wrong with names and types."""
+    """Both directions, None where the mapping has no block; the declarations that they name; what is wrong with names and types."""
 
     holder: Message
     wire: Message
     unpack: TypedRules | None
     pack: TypedRules | None
-    enums: frozenset[str]
+    named: frozenset[str]
     problems: tuple[Diagnostic, ...]
     functions: Mapping[str, Signature]
 
@@ -93,10 +94,11 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
     if holder_type is None or wire_type is None:
         return tuple(problems)
     enums = enums_of(holder, wire)
+    constants = constants_of(*((holder,) if holder is wire else (holder, wire)))
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
     functions = signatures((mapping, *others.mappings()), problems)
-    scope = Scope(messages, enums, constants_of(enums), "holder", (), problems, named, functions, others)
+    scope = Scope(messages, enums, constants, "holder", (), problems, named, functions, others)
     try:
         unpack = _block(mapping.unpack_rules, scope)
         pack = _block(mapping.pack_rules, replace(scope, target="wire"))

@@ -18,9 +18,13 @@ WORDS: tuple[Scalar, ...] = ("u64", "u32", "u16", "u8")
 
 
 def is_text(values: Evaluation, place: typed.Place, text: bytes) -> Expr:
-    """Whether a field holds these bytes. They are looked at only where the length is the same."""
+    """Whether a field holds these bytes."""
+    return are_bytes(values, values.source.count(place, values), values.source.address(place, values), text)
+
+
+def are_bytes(values: Evaluation, count: Expr, address: Address, text: bytes) -> Expr:
+    """Whether so many bytes at an address are these. They are looked at only where there are as many."""
     writer = values.writer
-    count, address = values.source.count(place, values), values.source.address(place, values)
     if not text:
         return Compare("eq", count, index(0))
     found = writer.var("is_text", Const("bool", value=False))

@@ -49,7 +49,7 @@ def _view(address: Address, size: Expr, values: Evaluation) -> View:
 
 def _chosen(choice: typed.Choice, values: Evaluation) -> View:
     """Only the text that is chosen is made, behind the others of the hidden lane."""
-    writer, lane = values.writer, lane_of(values.writer)
+    writer = values.writer
     first, size, undecided = writer.var("first", index(0)), writer.var("size", index(0)), writer.var("undecided", TRUE)
 
     def choose(value: typed.Expr) -> None:
@@ -71,12 +71,12 @@ def _chosen(choice: typed.Choice, values: Evaluation) -> View:
         with values.source.forgetting(), writer.nested() as other:
             choose(choice.otherwise)
         writer.emit(If(undecided, block(other)))
-    return _found(lane, first, size, values)
+    return chosen_text(first, size, values)
 
 
 def _listed(listed: typed.Listed, values: Evaluation) -> View:
     """Only the text that is chosen is made, as above."""
-    writer, lane = values.writer, lane_of(values.writer)
+    writer = values.writer
     first, size = writer.var("first", index(0)), writer.var("size", index(0))
 
     def choose(value: typed.Expr) -> None:
@@ -85,12 +85,12 @@ def _listed(listed: typed.Listed, values: Evaluation) -> View:
         writer.assign(size, made.size)
 
     values.switch(listed, choose)
-    return _found(lane, first, size, values)
+    return chosen_text(first, size, values)
 
 
-def _found(lane: int, first: Local, size: Local, values: Evaluation) -> View:
-    """A text that one of several ways has made."""
-    writer = values.writer
+def chosen_text(first: Local, size: Local, values: Evaluation) -> View:
+    """A text of the hidden lane that one of several ways has made."""
+    writer, lane = values.writer, lane_of(values.writer)
     for known in (Compare("ge", first, index(0)), Compare("ge", size, index(0)), Compare("le", size, Used(lane))):
         writer.expect(known, "length", values.where, LOST)
     writer.expect(Compare("le", first, Binary("sub", Used(lane), size)), "length", values.where, LOST)
