@@ -27,12 +27,12 @@ MAX_REPORTED = 50
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One mistake in a text.
+    """One mistake in a text; as a note, something that the text leaves to the compiler, and what that did.
 
     ``code`` is the stable name of the mistake (``unknown-field``), ``label`` the words at the caret, ``help`` what to do.
     """
 
-    severity: Literal["error", "warning"]
+    severity: Literal["error", "warning", "note"]
     code: str
     message: str
     span: Span | None = None

@@ -284,6 +284,11 @@ def warning(code: str, message: str, span: Span | None, label: str = "", *, help
     return Diagnostic("warning", code, message, span, label, (), help_)
 
 
+def note(code: str, message: str, span: Span | None, label: str = "", *, notes: tuple[str, ...] = (), help_: str = "") -> Diagnostic:
+    """The same for what the text leaves open, and what is made of it."""
+    return Diagnostic("note", code, message, span, label, notes, help_)
+
+
 def _listed(names: list[str]) -> str:
     if len(names) < 2:
         return "".join(names) or "nothing more"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue.mapping import error, shorten, warning
+from rosetta_jit.catalogue.mapping import error, note, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 MAX_NAMES = 20
 MAX_CANDIDATES = 500
 MAX_QUOTED = 40
+MAX_REST = 200
 
 
 def nearest(name: str, known: Collection[str]) -> str | None:
@@ -333,6 +334,24 @@ def rules_behind_reject(span: Span | None) -> Diagnostic:
 def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:
     """`same names` where there are none left."""
     return error("no-same-names", f"`{shorten(target)}` and `{shorten(origin)}` have no other names in common", span, help_="remove it")
+
+
+def rest(span: Span | None, word: str, direction: str, fields: Sequence[str]) -> Diagnostic:
+    """Which fields `ignore rest` and `default rest` stand for."""
+    what = "read" if word == "ignore" else "set"
+    message = f"{direction} {what}s every field: nothing is left for `{word} rest`"
+    if not fields:
+        return note("rest", message, span, help_="leave it in for fields that the schema may get")
+    shown = ", ".join(f"`{shorten(each)}`" for each in fields[:MAX_REST])
+    more = f" and {len(fields) - MAX_REST} more" if len(fields) > MAX_REST else ""
+    count = "1 field" if len(fields) == 1 else f"{len(fields)} fields"
+    return note("rest", f"{direction} does not {what} {count}", span, f"`{word}` of each", notes=(f"they are: {shown}{more}",))
+
+
+def rest_in_block(span: Span | None, word: str) -> Diagnostic:
+    """`ignore rest` in a block that does not always run."""
+    help_ = "write it beside the `when` or the loop: it is about all rules of the mapping"
+    return error("rest", f"`{word} rest` stands within no other block", span, "in a block", help_=help_)
 
 
 def no_default(span: Span | None, found: str) -> Diagnostic:

@@ -55,6 +55,7 @@ def _diagnostics(mapping: str) -> tuple[Diagnostic, ...]:
     import rosetta_jit
 
     try:
-        return tuple(rosetta_jit.check(mapping))
+        checked = rosetta_jit.check(mapping)
     except ReportError as error:
         return error.diagnostics
+    return (*checked.warnings, *checked.notes)

@@ -19,11 +19,11 @@ from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language import typed
-from rosetta_jit.language.check.left_out import unread, unset
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.imports.search import SearchPath
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.places import rules_within, shown_fields, shown_names
+from rosetta_jit.language.untouched import unread, unset
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.startup.dataclass import dataclass

@@ -2,7 +2,7 @@
 
     Mapping = Import*, Function*, Parameter*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = those of `model.rules`, with Path and Expr; an Assign is `by` a Via, or "checked"
-            | Relation(Path | Len, Expr, Via) | SameNames(Path*) | Arranged(place, flag, {constant: Expr})
+            | Relation(Path | Len, Expr, Via) | Rest | SameNames(Renamed*, Path*) | Arranged(place, flag, {constant: Expr})
 
 In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's. Relations and loops of them stand in the rules for
 both directions alone, with the place on the holder's side.
@@ -84,15 +84,33 @@ class Relation:
 
 
 @dataclass(frozen=True, slots=True)
-class SameNames:
-    """``same names except .a, .b``: a field that no other rule sets has the value of the field of its name.
+class Rest:
+    """``ignore rest``: it is meant that no rule reads what none reads; ``default rest``, that no rule sets what none sets."""
 
-    ``both`` is whether it was written for both directions.
+    word: OneOf["ignore", "default"]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Renamed:
+    """``.new = .old``, ``.new <-> .old``: a field that is called otherwise on the other side."""
+
+    place: Path
+    value: Path
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SameNames:
+    """``same names with .new = .old except .a, .b``: a field that no other rule sets has the value of the field of its name.
+
+    ``renames`` are mapped as if they had one name. ``both`` is whether it was written for both directions.
     """
 
     but: tuple[Path, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
     both: bool = False
+    renames: tuple[Renamed, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +137,7 @@ Rule: TypeAlias = (
     | Relation
     | Ignore[Path]
     | Default[Path]
+    | Rest
     | SameNames
     | Arranged
 )

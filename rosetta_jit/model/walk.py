@@ -90,7 +90,7 @@ def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
             return replace(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
         case mapping.Reject(pieces=pieces):
             return replace(rule, pieces=tuple(map(change, pieces)))
-        case mapping.SameNames():
+        case mapping.SameNames() | mapping.Rest():
             return rule
         case _:
             assert_never(rule)

@@ -25,6 +25,11 @@ class CheckedMapping:
         """What is suspect, and not wrong."""
         return self.checked.warnings
 
+    @property
+    def notes(self) -> tuple[Diagnostic, ...]:
+        """What was made of what the mapping leaves open: the fields that `ignore rest` and `default rest` stand for."""
+        return self.checked.notes
+
     @cached_property
     def laws(self) -> Laws | None:
         """What comes back when a message is unpacked and packed, and a holder packed and unpacked; None of a one-way mapping."""

@@ -62,7 +62,7 @@ def library(monkeypatch):
     def check(mapping):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
-        return (DOUBT,) if mapping == "doubtful.mapping" else ()
+        return SimpleNamespace(warnings=(DOUBT,) if mapping == "doubtful.mapping" else (), notes=())
 
     def infer(messages, *, name, encoding):
         calls.inferred = list(messages)

@@ -59,7 +59,7 @@ CATALOGUE = (
     bind_words,
     number_bytes_words,
 )
-MAKERS = ("error", "warning", "placed", "in_one_way")
+MAKERS = ("error", "warning", "note", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
 """What takes files: tests/language/test_search_path.py and tests/parsing/test_budget.py have it."""
 
@@ -99,7 +99,7 @@ def diagnostics(path: Path) -> tuple[Diagnostic, ...]:
         found = check(parse(Source(path.name, path.read_text())), FRONT_ENDS, SearchPath(files=tuple(FILES.items())))
     except MappingError as error:
         return error.diagnostics
-    return found.warnings
+    return (*found.warnings, *found.notes)
 
 
 @pytest.mark.parametrize("path", WRONG, ids=lambda path: path.stem)

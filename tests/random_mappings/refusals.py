@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tests.random_mappings.meaning import COMPARED, INTEGERS, TEXTS, Refused, fits
 from tests.random_mappings.message_types import Array, Kind, Scalar, some
 from tests.random_mappings.relations import Part
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from tests.random_mappings.blocks import Relations
     from tests.random_mappings.relations import Values
 
+FLOATS = ("float32", "float64")
 LONG = Scalar("int64")
 TEXT = Scalar("string")
 
@@ -120,8 +123,11 @@ def within_blocks(relations: Relations, name: str) -> Part:
 
 
 def same(relations: Relations, name: str) -> Part:
-    """A field of one name on both sides, that no rule names; integers may be of other widths."""
+    """A field of one name on both sides, that no rule names; numbers may be of other widths."""
     rng = relations.rng
+    if rng.random() < 0.2:
+        origin, aim = rng.choice([("float32", "float64"), ("float64", "float32")])
+        return Part({name: Scalar(origin)}, {name: Scalar(aim)}, "", lambda values: {name: rounded(values[name], aim)}, is_same=True)
     if rng.random() < 0.5:
         both = [relations.integer_type(relations.wire), relations.integer_type(relations.holder)]
         origin, aim = both if is_within(*both) or is_within(*reversed(both)) else ("int32", "int64")
@@ -130,12 +136,24 @@ def same(relations: Relations, name: str) -> Part:
     return Part({name: kind}, {name: kind}, "", dict, is_same=True)
 
 
+def rounded(value: float, type_: str) -> np.floating:
+    """A float as another type has it."""
+    with np.errstate(over="ignore"):
+        return np.float32(value) if type_ == "float32" else np.float64(value)
+
+
 def is_within(narrow: str, wide: str) -> bool:
     return INTEGERS[wide][0] <= INTEGERS[narrow][0] and INTEGERS[narrow][1] <= INTEGERS[wide][1]
 
 
 def same_arrays(relations: Relations, name: str) -> Part:
-    """An array of one name on both sides."""
+    """An array of one name on both sides; floats may be of other widths."""
+    if relations.rng.random() < 0.3 and all(each in side.scalars for side in (relations.wire, relations.holder) for each in FLOATS):
+        origin, aim = relations.rng.choice([FLOATS, FLOATS[::-1]])
+        kinds = Array(Scalar(origin)), Array(Scalar(aim))
+        return Part(
+            {name: kinds[0]}, {name: kinds[1]}, "", lambda values: {name: [rounded(each, aim) for each in values[name]]}, is_same=True
+        )
     types = [each for each in ("int8", "int16", "int32", "int64", "uint32", "float64") if each in relations.wire.scalars]
     kind = Array(Scalar(relations.rng.choice([each for each in types if each in relations.holder.scalars])))
     if relations.rng.random() < 0.3:

@@ -24,7 +24,7 @@ from rosetta_jit.language.folding import FALSE, TRUE, folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, SameNames, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, Rest, SameNames, SetLength, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -109,8 +109,11 @@ class Packing:
                 return (Ignore(place, span),)
             case Arranged():
                 return self.arranged(rule, loops)
-            case SameNames(but, span):
-                return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True),)
+            case Rest(word, span):
+                return (Rest("default" if word == "ignore" else "ignore", span),)
+            case SameNames(but, span, renames=renames):
+                turned = tuple(replace(each, place=each.value, value=each.place) for each in renames)
+                return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True, renames=turned),)
             case Assign() | SetLength():
                 raise AssertionError(rule)
 

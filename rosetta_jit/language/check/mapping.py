@@ -49,7 +49,8 @@ if TYPE_CHECKING:
 class Checked:
     """A mapping without errors. None as rules means that the direction has no block, ``()`` that it is empty.
 
-    ``holder`` and ``wire`` are the message types with the schema of all imports; ``uses`` are those of other mappings.
+    ``holder`` and ``wire`` are the message types with the schema of all imports; ``uses`` are those of other mappings. ``notes`` say
+    what was made of what the text leaves open.
     """
 
     mapping: Mapping
@@ -60,6 +61,7 @@ class Checked:
     functions: dict[str, Signature]
     warnings: tuple[Diagnostic, ...]
     uses: tuple[Use, ...] = ()
+    notes: tuple[Diagnostic, ...] = ()
 
 
 def check(
@@ -100,7 +102,7 @@ def check(
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
     resolved = resolve(mapping, schema, schema, others) if complete else ()
     if not isinstance(resolved, Resolved):
-        raise MappingError(_sorted([*problems, *(_with_import(each, mapping, imports) for each in resolved)]))
+        raise _error([*problems, *(_with_import(each, mapping, imports) for each in resolved)])
     problems += resolved.problems
     packs = not _errors(underived) and not unclear(resolved.problems, relations)
     problems = causes(problems, relations) + _directions(mapping, resolved, _blocks(written), packs=packs)
@@ -108,11 +110,17 @@ def check(
     problems += _unused(imported, resolved)
     problems += misnamed(mapping, schema)
     if _errors(problems):
-        raise MappingError(_sorted(problems))
+        raise _error(problems)
     problems += _silent_losses(mapping, resolved, _blocks(written))
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     functions, uses = dict(resolved.functions), tuple(others.uses)
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(problems), uses)
+    notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(warnings), uses, _sorted(notes))
+
+
+def _error(problems: Sequence[Diagnostic]) -> MappingError:
+    """All that is wrong; what would have been made of the rest does not matter then."""
+    return MappingError(_sorted([each for each in problems if each.severity != "note"]))
 
 
 def _with_import(problem: Diagnostic, mapping: Mapping, imports: Imports) -> Diagnostic:

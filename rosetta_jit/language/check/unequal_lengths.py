@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
-from rosetta_jit.language.check.left_out import places_read
 from rosetta_jit.language.places import shown_shape
 from rosetta_jit.language.typed import Assign, Binary, Const, FieldStep, For, IndexStep, LenOf, Local, Reject, SetLength, When
+from rosetta_jit.language.untouched import places_read
 from rosetta_jit.model.types import Array, Bytes
 
 if TYPE_CHECKING:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.language.algebra.equality import given_back, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
-from rosetta_jit.language.check.left_out import untouched
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
 from rosetta_jit.language.laws.roundtrip import Result, Trip
 from rosetta_jit.language.laws.ways import UnfollowedError, Way, ways
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
 from rosetta_jit.language.typed import Access, Const, For, IndexStep, LenOf, Local, When
+from rosetta_jit.language.untouched import untouched
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -36,8 +36,8 @@ NESTING = frozenset(
 """Rules of the grammar that one of their kind can stand in."""
 
 
-ONLY_BEHIND = {"NAMES": "_SAME", "LIST": "COLON", "OF": "LIST"}
-"""Words that are words behind another token alone."""
+ONLY_BEHIND = {"NAMES": ("_SAME",), "LIST": ("COLON",), "OF": ("LIST",), "WITH": ("NAMES",), "REST": ("IGNORE", "DEFAULT")}
+"""Words that are words behind some tokens alone."""
 
 RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "_SAME")
 """Tokens that a rule begins with."""
@@ -71,7 +71,7 @@ def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
         kind = token.type
         if kind == "WHEN" and kinds == ("REJECT", "STRING"):
             kind = "GUARD"
-        if kind in ONLY_BEHIND and kinds[1] != ONLY_BEHIND[kind]:
+        if kind in ONLY_BEHIND and kinds[1] not in ONLY_BEHIND[kind]:
             kind = "NAME"
         kinds = kinds[1], kind
         yield token if kind == token.type else token.of_kind(kind)

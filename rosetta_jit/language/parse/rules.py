@@ -30,7 +30,22 @@ from rosetta_jit.model.expr import (
     Slice,
     Unary,
 )
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Parameter, Reject, Relation, SameNames, SetLength, Via, When
+from rosetta_jit.model.mapping import (
+    Arranged,
+    Assign,
+    Default,
+    For,
+    Ignore,
+    Parameter,
+    Reject,
+    Relation,
+    Renamed,
+    Rest,
+    SameNames,
+    SetLength,
+    Via,
+    When,
+)
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
@@ -81,12 +96,10 @@ def read_rule(tree: Tree, context: Context) -> Rule:
         case "when" | "when_of_both":
             condition, *body = _trees(tree)
             return _when(_expr(condition, context), body, context, span)
-        case "ignore":
-            return Ignore(_path(_trees(tree)[0], context.origin, context), span)
-        case "default":
-            return Default(_path(_trees(tree)[0], context.target, context), span)
-        case "same":
-            return SameNames(tuple(_path(each, context.target, context) for each in _trees(tree)), span)
+        case "ignore" | "default":
+            return _left_alone(tree, context, span)
+        case "same" | "same_of_both":
+            return _same_names(tree, context, span)
         case "reject":
             return _reject(tree, context, span)
         case _:
@@ -94,6 +107,23 @@ def read_rule(tree: Tree, context: Context) -> Rule:
             variable = str(_tokens(tree)[0])
             rules = tuple(read_rule(rule, context) for rule in body)
             return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+
+
+def _left_alone(tree: Tree, context: Context, span: Span) -> Ignore | Default | Rest:
+    is_ignored = tree.data == "ignore"
+    paths = [_path(each, context.origin if is_ignored else context.target, context) for each in _trees(tree)]
+    if not paths:
+        return Rest("ignore" if is_ignored else "default", span)
+    return Ignore(paths[0], span) if is_ignored else Default(paths[0], span)
+
+
+def _same_names(tree: Tree, context: Context, span: Span) -> SameNames:
+    renamed, but = ([each for each in _trees(tree) if (each.data == "path") == is_path] for is_path in (False, True))
+    pairs = [(_trees(each), context.span(each)) for each in renamed]
+    renames = tuple(
+        Renamed(_path(place, context.target, context), _path(value, context.origin, context), where) for (place, value), where in pairs
+    )
+    return SameNames(tuple(_path(each, context.target, context) for each in but), span, renames=renames)
 
 
 def _arranged(tree: Tree, context: Context, span: Span) -> Arranged:

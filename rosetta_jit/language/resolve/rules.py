@@ -29,7 +29,8 @@ from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.nested import nest
-from rosetta_jit.language.resolve.same_names import OF_TYPES, rule_for, unlike
+from rosetta_jit.language.resolve.rest import defaulted, ignored
+from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
 from rosetta_jit.language.scope import Broken, Message, Scope, enums_of, resolve_path
 from rosetta_jit.language.typed import (
     Assign,
@@ -128,7 +129,15 @@ class _Block:
 
     def whole(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
         """All rules of one mapping for a direction."""
-        return self.rules(elementwise(numbered(rules, scope), scope, self.broken), scope)
+        written = tuple(rule for rule in rules if not isinstance(rule, model.Rest))
+        found = self.rules(elementwise(numbered(written, scope), scope, self.broken), scope)
+        return (*found, *(made for rule in rules if isinstance(rule, model.Rest) for made in self.rest(rule, found, scope)))
+
+    def rest(self, rule: model.Rest, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
+        """What the fields that no other rule reads, or sets, are said to be."""
+        if rule.word == "ignore":
+            return [*ignored(rule, others, scope)]
+        return [made for each in defaulted(rule, others, self.broken, scope) for made in self.made(each, scope) if made is not None]
 
     def rules(self, rules: tuple[model.Rule, ...], scope: Scope) -> tuple[Rule, ...]:
         for rule, behind in pairwise(rules):
@@ -148,19 +157,20 @@ class _Block:
         set_already = [field_names(place) for place in (*places_in(others), *excepted) if not isinstance(place, Broken)]
         around = len(field_names(scope.base(scope.target)))
         taken = {fields[around] for fields in (*set_already, *self.broken) if len(fields) > around}
+        taken |= {step.name for each in rule.renames for step in each.place.steps[:1] if isinstance(step, expr.Member)}
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
-        if not wanted:
+        if not wanted and not rule.renames:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
-        return [each for name in wanted for each in self.same_name(name, rule, scope)]
+        return [each for made in rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
 
-    def same_name(self, name: str, rule: model.SameNames, scope: Scope) -> list[Rule]:
+    def same_name(self, rule: model.Assign, names: model.SameNames, scope: Scope) -> list[Rule]:
         """The rules for one field; what is wrong with them is said once, of the field."""
         problems: list[Diagnostic] = []
         tried = replace(scope, problems=problems)
-        rules = elementwise((rule_for(name, rule, scope),), tried, self.broken)
+        rules = elementwise((rule,), tried, self.broken)
         found = [made for each in rules for made in self.made(each, tried)]
         if any(problem.code in OF_TYPES for problem in problems):
-            problem = unlike(name, rule, scope)
+            problem = unlike(rule, names, scope)
             scope.problems.extend([] if problem is None else [problem])
             return []
         scope.problems.extend(problems)
@@ -199,6 +209,9 @@ class _Block:
                 return self.left_alone(rule, path, scope)
             case model.SameNames():
                 return None  # when all other rules of the block are known
+            case model.Rest():
+                scope.problems.append(words.rest_in_block(rule.span, rule.word))
+                return None
             case model.Relation() | model.Arranged():
                 raise AssertionError(rule)
             case _:

@@ -1,0 +1,65 @@
+"""``ignore rest`` and ``default rest``: the fields that no rule reads, or sets, as rules that say so.
+
+A note says which fields they are, so that a field which a schema gets later is not overlooked.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.language.places import field_names, shown_names, value_inside
+from rosetta_jit.language.typed import FieldStep, Ignore, Place
+from rosetta_jit.language.untouched import never_set, unread
+from rosetta_jit.model.expr import Member, Path
+from rosetta_jit.model.mapping import Default, Rest
+from rosetta_jit.model.types import Array, Struct, Union
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.scope import Message, Scope
+    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.untouched import Names
+    from rosetta_jit.source import Span
+
+
+def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore]:
+    """That nothing reads each field which the rules do not read."""
+    side = scope.origin
+    source, within = scope.messages[side], field_names(scope.base(side))
+    found = unread(rules, source, within)
+    _note(rest, found, within, scope)
+    return [Ignore(_place(names[len(within) :], scope.base(side), source, rest.span), rest.span) for names in found]
+
+
+def defaulted(rest: Rest, rules: tuple[Rule, ...], broken: list[Names], scope: Scope) -> list[Default]:
+    """That each field which the rules do not set has its default; what is within the elements of an array has to be set."""
+    side = scope.target
+    target, within = scope.messages[side], field_names(scope.base(side))
+    unset = (names for names in never_set(rules, target, within) if not any(names[: len(each)] == each for each in broken))
+    found = [names for names in unset if not _is_in_array(names[len(within) :], target)]
+    _note(rest, found, within, scope)
+    return [Default(Path(side, tuple(Member(name) for name in names[len(within) :]), rest.span), rest.span) for names in found]
+
+
+def _note(rest: Rest, found: list[Names], within: Names, scope: Scope) -> None:
+    side = scope.origin if rest.word == "ignore" else scope.target
+    shown = [shown_names(names[len(within) :], scope.messages[side]) for names in found]
+    scope.problems.append(words.rest(rest.span, rest.word, "unpacking" if scope.target == "holder" else "packing", shown))
+
+
+def _place(names: Names, base: Place, message: Message, span: Span | None) -> Place:
+    """A field of a message that lies at ``base``; of the elements of an array, any one."""
+    steps, type_ = [*base.steps], message.value_type(message.root)
+    for name in names:
+        assert isinstance(type_, Struct | Union)
+        field = next(each for each in (type_.fields if isinstance(type_, Struct) else type_.cases) if each.name == name)
+        steps.append(FieldStep(field))
+        type_ = value_inside(message, field.type)
+    return Place(base.side, tuple(steps), type_, span)
+
+
+def _is_in_array(names: Names, message: Message) -> bool:
+    """Whether a field is one of an array's elements."""
+    around = [_place(names[:count], Place(side="wire", steps=(), type=message.root), message, None) for count in range(1, len(names))]
+    fields = (place.steps[-1] for place in around)
+    return any(isinstance(step, FieldStep) and isinstance(message.value_type(step.field.type), Array) for step in fields)
