@@ -109,7 +109,7 @@ def read_rule(tree: Tree, context: Context) -> Rule:
             return For(variable, _expr(start, context), _expr(stop, context), rules, span)
 
 
-def _left_alone(tree: Tree, context: Context, span: Span) -> Ignore | Default | Rest:
+def _left_alone(tree: Tree, context: Context, span: Span) -> Rule:
     is_ignored = tree.data == "ignore"
     paths = [_path(each, context.origin if is_ignored else context.target, context) for each in _trees(tree)]
     if not paths:

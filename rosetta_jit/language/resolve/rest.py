@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 
-def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore]:
+def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore[Place]]:
     """That nothing reads each field which the rules do not read."""
     side = scope.origin
     source, within = scope.messages[side], field_names(scope.base(side))
@@ -31,7 +31,7 @@ def ignored(rest: Rest, rules: tuple[Rule, ...], scope: Scope) -> list[Ignore]:
     return [Ignore(_place(names[len(within) :], scope.base(side), source, rest.span), rest.span) for names in found]
 
 
-def defaulted(rest: Rest, rules: tuple[Rule, ...], broken: list[Names], scope: Scope) -> list[Default]:
+def defaulted(rest: Rest, rules: tuple[Rule, ...], broken: list[Names], scope: Scope) -> list[Default[Path]]:
     """That each field which the rules do not set has its default; what is within the elements of an array has to be set."""
     side = scope.target
     target, within = scope.messages[side], field_names(scope.base(side))

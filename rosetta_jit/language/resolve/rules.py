@@ -163,7 +163,7 @@ class _Block:
             scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
         return [each for made in rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
 
-    def same_name(self, rule: model.Assign, names: model.SameNames, scope: Scope) -> list[Rule]:
+    def same_name(self, rule: model.Assignment, names: model.SameNames, scope: Scope) -> list[Rule]:
         """The rules for one field; what is wrong with them is said once, of the field."""
         problems: list[Diagnostic] = []
         tried = replace(scope, problems=problems)
