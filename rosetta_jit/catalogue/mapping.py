@@ -152,6 +152,11 @@ def picked(span: Span | None) -> Diagnostic:
     )
 
 
+def rounding_type(span: Span, name: str) -> Diagnostic:
+    """`rounding:` to a type that nothing is rounded to."""
+    return error("rounding", f"nothing is rounded to {shorten(name)}", span, "not a type to round to", help_="write `rounding: float32`")
+
+
 def limit_too_large(span: Span, most: int) -> Diagnostic:
     """Bytes that no machine has."""
     return error("number", f"a limit is at most {most} bytes", span, "too large", help_="write how many bytes a field may have in a holder")

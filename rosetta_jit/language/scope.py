@@ -45,6 +45,7 @@ class Scope:
 
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
     ``suffix`` tells its loop variables from those around. ``nearest`` is the type of `model.expr.NEAREST`, where that is one.
+    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set.
     """
 
     messages: Mapping[Side, Message]
@@ -59,6 +60,7 @@ class Scope:
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
     nearest: Int | None = None
+    rounds: bool = False
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))

@@ -147,7 +147,8 @@ Rule: TypeAlias = (
 class Mapping:
     """What a mapping file says. None as rules means that the block is missing, ``()`` that it is empty.
 
-    ``limit`` is how many bytes of a holder's lane a message may ask for whatever its own size, where the mapping says so.
+    ``limit`` is how many bytes of a holder's lane a message may ask for whatever its own size, where the mapping says so. ``rounds`` is
+    whether float64 becomes float32 without a word in each rule.
     """
 
     source: Source
@@ -162,3 +163,4 @@ class Mapping:
     functions: tuple[Function, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     limit: int | None = None
+    rounds: bool = False

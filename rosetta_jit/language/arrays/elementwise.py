@@ -16,7 +16,7 @@ from rosetta_jit.language.arrays.counts import LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, PADDED, view_of
 from rosetta_jit.language.arrays.parts import has_each, is_many, sources_in, substituted
-from rosetta_jit.language.conversions import same, widens
+from rosetta_jit.language.conversions import is_single, same, widens
 from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
 from rosetta_jit.language.typed import FieldStep
@@ -188,7 +188,8 @@ class _Expansion:
         """Whether two places are arrays of different numbers, which become each other one by one: freely, or where each ``fits``."""
         match self.type_of(one), self.type_of(other):
             case Array((Int() | Float()) as wanted, length), Array((Int() | Float()) as element, other_length):
-                return not same(element, wanted) and (fits or (widens(element, wanted) and length == other_length))
+                is_rounded = self.scope.rounds and is_single(wanted) and isinstance(element, Float)
+                return not same(element, wanted) and (fits or is_rounded or (widens(element, wanted) and length == other_length))
             case _:
                 return False
 

@@ -186,7 +186,7 @@ def _silent_losses(mapping: Mapping, resolved: Resolved, blocks: tuple[Block, Bl
     for block, (source, read_at), (target, set_at), where in ((resolved.unpack, wire, holder, unpack), (resolved.pack, holder, wire, pack)):
         if block is not None and block.rules:
             warnings += left_out(block.rules, source, target, (read_at, set_at), where)
-            warnings += [*other_lengths(block.rules), *rounded(block.rules)]
+            warnings += [*other_lengths(block.rules), *([] if mapping.rounds else rounded(block.rules))]
     return warnings
 
 

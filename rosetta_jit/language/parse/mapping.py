@@ -71,6 +71,8 @@ def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
         kind = token.type
         if kind == "WHEN" and kinds == ("REJECT", "STRING"):
             kind = "GUARD"
+        if kind == "ROUNDING" and kinds[1] == "PARAMETER":
+            kind = "NAME"
         if kind in ONLY_BEHIND and kinds[1] not in ONLY_BEHIND[kind]:
             kind = "NAME"
         kinds = kinds[1], kind
@@ -78,7 +80,19 @@ def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
 
 
 def _recovery() -> Recovery:
-    statements = ("IMPORT", "PARAMETER", "FUNCTION", "DATA_HOLDER", "WIRE_SCHEMA", "LIMIT", "RULES", "UNPACK_RULES", "PACK_RULES", "END")
+    statements = (
+        "IMPORT",
+        "PARAMETER",
+        "FUNCTION",
+        "DATA_HOLDER",
+        "WIRE_SCHEMA",
+        "LIMIT",
+        "ROUNDING",
+        "RULES",
+        "UNPACK_RULES",
+        "PACK_RULES",
+        "END",
+    )
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
     return Recovery(starts, frozenset(RULES) - {"FOR"}, opens=frozenset({"FOR", "WHEN"}), closes="END")
 
@@ -134,6 +148,7 @@ class _Reader:
                 if child.data == "parameter"
             ),
             self._limit(statements),
+            self._rounds(statements),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
@@ -179,6 +194,16 @@ class _Reader:
             self.problems.append(words.limit_too_large(self._token_span(token), MAX_LIMIT))
             return None
         return int(token, 0)
+
+    def _rounds(self, statements: list[Tree]) -> bool:
+        """Whether the mapping says that what is set to float32 is rounded."""
+        found = self._only(statements, "rounding", "rounding")
+        if found is None:
+            return False
+        type_ = next(child for child in found.children if isinstance(child, Token) and child.type == "NAME")
+        if type_ != "float32":
+            self.problems.append(words.rounding_type(self._token_span(type_), str(type_)))
+        return True
 
     def _rules(self, statements: list[Tree], direction: str, context: Context) -> tuple[Rule, ...] | None:
         block = self._only(statements, f"{direction}_rules".lstrip("_"), f"{direction}-rules".lstrip("-"))

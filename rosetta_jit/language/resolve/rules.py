@@ -16,7 +16,7 @@ from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.constants import constants_of
-from rosetta_jit.language.conversions import describe
+from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
 from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.functions.user_functions import signatures
@@ -36,6 +36,7 @@ from rosetta_jit.language.typed import (
     Assign,
     Choice,
     Const,
+    Convert,
     Default,
     For,
     Ignore,
@@ -99,7 +100,7 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
     messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
     named: set[str] = set()
     functions = signatures((mapping, *others.mappings()), problems)
-    scope = Scope(messages, enums, constants, "holder", (), problems, named, functions, others)
+    scope = Scope(messages, enums, constants, "holder", (), problems, named, functions, others, rounds=mapping.rounds)
     try:
         unpack = _block(mapping.unpack_rules, scope)
         pack = _block(mapping.pack_rules, replace(scope, target="wire"))
@@ -249,6 +250,8 @@ class _Block:
             value = in_unit(value, place, scope)
         if value is not None and rule.by == "checked":
             value = fitted(value, place.type)
+        elif value is not None and scope.rounds and is_single(place.type) and same(value.type, FLOAT64):
+            value = Convert(value, place.type, "nearest", value.span)
         fitting = None if value is None else fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
