@@ -69,6 +69,13 @@ LANGUAGES = (
         borrows=True,
         low_byte_first=True,
     ),
+    Language(
+        "lisp",
+        "Common Lisp: an ASDF system of structures, for SBCL",
+        "rosetta_jit.generate.lisp.language:files",
+        borrows=True,
+        low_byte_first=True,
+    ),
 )
 
 

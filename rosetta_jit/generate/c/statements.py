@@ -235,12 +235,12 @@ def _failed(function: Function, site: str, at: str, indices: tuple[Expr, ...], a
     function.scope.takes("failure")
     for number, each in enumerate(indices if not function.is_routine else ()):
         function.line(f"failure->indices[{number}] = {bare(expression(function.scope, each))};")
-    said = "" if about is None else f" {comment(_about(about))}"
+    said = "" if about is None else f" {comment(about(about))}"
     name = "fail_here" if function.is_routine else "fail"
     function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
 
 
-def _about(site: Site) -> str:
+def about(site: Site) -> str:
     path = f" {site.path}" if site.path else ""
     line = f" ({site.line})" if site.line else ""
     return f"{site.kind}{path}: {site.detail}{line}"

@@ -1,0 +1,55 @@
+;; == decode
+(defun decode (octets &key (end (length octets)) (codec (make-codec)) before)
+  "The object of a message: bytes 0 to END of a vector. BEFORE is an object that is filled instead of a new one.
+
+Signals DECODE-ERROR. With a codec and an object that are used again, numbers are read without allocating memory."
+  (declare (type codec codec) (type (or null $type) before))
+  (let ((data (if (typep octets 'octets) octets (coerce octets 'octets))))
+    (declare (type octets data))
+    (check-type end (integer 0))
+    (assert (<= end (length data)) (end))
+    (setf (codec-state-most codec) (+ 1048576 (* 64 end)))
+    $tell
+    (unless ($begin (attempts codec #'decode-kernel data end $attempts))
+      (signal-failure codec *decode-sites* end))
+    (take-message codec data 0 before)))
+;; == encode
+(defun collect-message (codec object)
+  "Bring an object into the rows of a codec."
+  (declare (type codec codec))
+  (setf (codec-state-most codec) most-positive-fixnum$empty)
+  (fill (codec.message codec) 0)
+  (handler-case (put-message codec 0 object)
+    (type-error (condition)
+      (error 'encode-error :kind :range :path "" :detail (remove #\Newline (princ-to-string condition)))))
+  $tell)
+
+(defun size-of-rows (codec)
+  (or ($begin (attempts codec #'size-kernel (no-octets) (ash 1 60) 1))
+      (signal-failure codec *size-sites* nil)))
+
+(defun encode-rows (codec data)
+  (declare (type octets data))
+  (or ($begin (attempts codec #'encode-kernel data (length data) $attempts))
+      (signal-failure codec *encode-sites* nil)))
+
+(defun message-size (object &key (codec (make-codec)))
+  "How many bytes the message of an object has. Signals ENCODE-ERROR."
+  (collect-message codec object)
+  (size-of-rows codec))
+
+(defun encode-into (octets object &key (codec (make-codec)))
+  "Write the message of an object to a vector from its byte 0 on; gives where it ends. Signals ENCODE-ERROR.
+
+With a codec that is used again, numbers are written without allocating memory."
+  (check-type octets octets)
+  (collect-message codec object)
+  (encode-rows codec octets))
+
+(defun encode (object &key (codec (make-codec)))
+  "The message of an object, a vector of octets. Signals ENCODE-ERROR."
+  (collect-message codec object)
+  (let* ((size (size-of-rows codec))
+         (octets (make-array size :element-type 'u8))
+         (written (encode-rows codec octets)))
+    (if (= written size) octets (subseq octets 0 written))))

@@ -1,0 +1,162 @@
+"""A unit as Common Lisp: an ASDF system of two files, the runtime and what is the unit's own."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import generate as words
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.lisp.functions import About, computes_with_floats, print_kernel
+from rosetta_jit.generate.lisp.lanes import lanes_of
+from rosetta_jit.generate.lisp.lines import Lines
+from rosetta_jit.generate.lisp.objects import Put, Take
+from rosetta_jit.generate.lisp.structs import all_symbols, definitions, structures_of
+from rosetta_jit.generate.lisp.texts import comment, literal
+from rosetta_jit.generate.lisp.words import RUNTIME, package_of
+from rosetta_jit.kernel.shape import is_told
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.generate.lisp.functions import Printed
+    from rosetta_jit.generate.unit import Role, Unit
+    from rosetta_jit.kernel.ir import Kernel, Part, Site
+
+API = Path(__file__).with_name("api.lisp")
+NO_MEMORY = "the message asks for more memory than its size allows"
+SYSTEM = """\
+(asdf:defsystem "$package"
+  :description $description
+  :components ((:file "$package-runtime")
+               (:file "$package" :depends-on ("$package-runtime"))))
+"""
+NAMES: dict[Role, str] = {"borrow": "decode", "encode": "encode", "size": "size"}
+"""What the functions of a kernel begin with."""
+
+
+def files(unit: Unit) -> dict[str, str]:
+    """The texts of the system's files by their names."""
+    if unit.holder not in ("", "own"):
+        raise SchemaError((words.unknown_holder(unit.holder, (("own", "structures"),)),))
+    package = package_of(unit.name)
+    made = _Source(unit)
+    return {
+        f"{package}.asd": made.head() + Template(SYSTEM).substitute(package=package, description=literal(f"Messages: {unit.made_from[0]}")),
+        f"{package}-runtime.lisp": runtime(package),
+        f"{package}.lisp": made.text(package),
+    }
+
+
+def runtime(package: str) -> str:
+    """What all units have, in a package."""
+    return RUNTIME.read_text("utf-8").replace("$package", package)
+
+
+class _Source:
+    """Prints the unit's own file."""
+
+    def __init__(self, unit: Unit) -> None:
+        self.unit, self.structures = unit, structures_of(unit)
+        self.functions = all_symbols(self.structures, [each.name for each in unit.functions])
+        longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
+        c = named_parts(unit, frozenset())(longest.strides)
+        self.lanes = lanes_of(c.all, c.own)
+        self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
+        self.printed: dict[Role, Printed] = {role: self._kernel(role, kernel) for role, kernel in unit.kernels.items()}
+
+    def _kernel(self, role: Role, kernel: Kernel) -> Printed:
+        about = About(self.unit.origins.get(role, ()), self.paths, self.functions)
+        return print_kernel(kernel, self.lanes, NAMES[role], about)
+
+    def head(self) -> str:
+        """What the file was made from."""
+        said = ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
+        return "".join(f";;; {'  ' * line.startswith(' ')}{comment(line)}\n" for line in said) + "\n"
+
+    def text(self, package: str) -> str:
+        """All of it."""
+        walks = self._walks()  # which name what the constants must have
+        parts = [
+            self._package(package),
+            definitions(self.structures),
+            self._constants(),
+            self._codec(),
+            *(text for role in self.unit.kernels for text in (self._sites(role), self.printed[role].text)),
+            *walks,
+            *self._functions_of_the_header(),
+        ]
+        return self.head() + "\n".join(part.rstrip("\n") + "\n" for part in parts)
+
+    def _package(self, package: str) -> str:
+        lines = Lines()
+        lines.line(f"(in-package #:{package})")
+        lines.line("")
+        lines.line("(declaim (sb-ext:muffle-conditions sb-ext:compiler-note))")
+        lines.line("")
+        names = [*self.structures.exported(), *self.functions.values()]
+        lines.line(f"(export '({' '.join(names)}))")
+        return lines.text()
+
+    def _constants(self) -> str:
+        """The bytes of rows where fields lie."""
+        return "".join(f"(defconstant {name} {offset})\n" for name, offset in self.lanes.offsets.items())
+
+    def _codec(self) -> str:
+        """A vector for each lane, and how many of its rows are in use."""
+        lines = Lines()
+        with lines.form("(defstruct (codec (:include codec-state) (:conc-name codec.) (:copier nil) (:predicate nil))"):
+            lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')
+            for lane in range(len(self.lanes.all)):
+                size = self.lanes.stride(0) if lane == 0 else 0
+                lines.line(f"({self.lanes.rows(lane)} (make-array {size} :element-type 'u8) :type octets)")
+                if lane:
+                    lines.line(f"({self.lanes.used(lane)} 0 :type fixnum)")
+        return lines.text()
+
+    def _sites(self, role: Role) -> str:
+        """What can be wrong: the sites that the kernel's function names."""
+        sites = self.unit.kernels[role].sites
+        lines = Lines()
+        with lines.form(f"(defparameter *{NAMES[role]}-sites*"), lines.form("(vector"):
+            lines.line(f'(site :count "" {literal(NO_MEMORY)} "")')
+            for number in self.printed[role].sites[1:]:
+                lines.line(self._site(sites[number]))
+        return lines.text()
+
+    def _site(self, site: Site) -> str:
+        parts = f" :parts '({' '.join(map(_part, site.parts))})" if site.parts else ""
+        scratch = "" if site.detail_lane is None else f" :scratch #'codec.{self.lanes.rows(site.detail_lane)}"
+        return f"(site :{site.kind} {literal(site.path)} {literal(site.detail)} {literal(site.line)}{parts}{scratch})"
+
+    def _walks(self) -> list[str]:
+        found: list[str] = []
+        if "borrow" in self.unit.kernels:
+            found.append(Take(self.structures, self.lanes, "take").printed())
+        if "encode" in self.unit.kernels:
+            found.append(Put(self.structures, self.lanes, "put").printed())
+        return found
+
+    def _functions_of_the_header(self) -> Iterator[str]:
+        """Those that a program calls."""
+        sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
+        told = is_told(self.unit.kernels.values())
+        given = {
+            "type": self.structures.types[self.unit.type],
+            "tell": "(tell codec)" if told else "",
+            "empty": "".join(f"\n        {self.lanes.place_of_used(lane)} 0" for lane in range(1, self.lanes.own)),
+        }
+        for role, kernel in self.unit.kernels.items():
+            if role == "size":
+                continue
+            floats = computes_with_floats(kernel) or (role == "encode" and computes_with_floats(self.unit.kernels["size"]))
+            around = {"begin": "with-floats" if floats else "progn", "attempts": str(self.printed[role].attempts)}
+            yield re.sub(r"\n +(?=\n)|\n +(?=\))", "", Template(sections[NAMES[role]]).substitute(given, **around))
+
+
+def _part(part: Part) -> str:
+    """A stretch of bytes that a site stands for."""
+    return f"({part.offset} {part.size} {part.step} {literal(part.path)})"

@@ -1,0 +1,60 @@
+"""Lines of Lisp: forms that are opened and closed, each with a comment where one belongs to it."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import field
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.lisp.texts import broken, comment
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+MAX_LINE = 140
+
+
+@dataclass(slots=True)
+class Line:
+    """A line at a column, and what is said of it."""
+
+    column: int
+    text: str
+    said: str = ""
+
+
+@dataclass(slots=True)
+class Lines:
+    """Source text in the making, at the current column."""
+
+    lines: list[Line] = field(default_factory=list[Line])
+    column: int = 0
+
+    def line(self, form: str, said: str = "") -> None:
+        """A form, which is broken where it is too long, with a comment behind it or, where that is too long, above it."""
+        first, *others = broken(form, self.column)
+        text = comment(said) if said else ""
+        if text and (others or self.column + len(first) + len(text) > MAX_LINE):
+            self.lines.append(Line(self.column, f";; {text}"))
+            text = ""
+        self.lines.append(Line(self.column, first, text))
+        self.lines += [Line(0, each) for each in others]
+
+    def close(self, many: int = 1) -> None:
+        """End forms."""
+        self.lines[-1].text += ")" * many
+
+    @contextmanager
+    def form(self, head: str, by: int = 2) -> Generator[None]:
+        """A form whose body is what is written until the end of the `with`."""
+        self.line(f"{head})")
+        self.lines[-1].text = self.lines[-1].text[:-1]
+        self.column += by
+        yield
+        self.column -= by
+        self.close()
+
+    def text(self) -> str:
+        """All of it."""
+        return "".join(f"{' ' * each.column}{each.text}{f'  ; {each.said}' if each.said else ''}\n" for each in self.lines)

@@ -1,0 +1,333 @@
+"""Kernel statements as forms, one a line. What a message cannot be ends an attempt with what `fail` gives."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import field
+from typing import TYPE_CHECKING, assert_never
+
+from rosetta_jit.generate.c.statements import about
+from rosetta_jit.generate.lisp.expressions import access, expression, got, location, zero
+from rosetta_jit.generate.lisp.lines import Lines
+from rosetta_jit.generate.lisp.texts import literal
+from rosetta_jit.generate.lisp.words import LISP_TYPES, hyphenated
+from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.kernel.ir import (
+    Advance,
+    Assign,
+    Block,
+    Call,
+    Const,
+    Copy,
+    Expect,
+    Expr,
+    Failure,
+    Fill,
+    For,
+    HostCall,
+    If,
+    Let,
+    Require,
+    Reserve,
+    Return,
+    SetField,
+    Stmt,
+    Store,
+    Switch,
+    Unary,
+    Var,
+    While,
+)
+from rosetta_jit.kernel.passes.fold import FALSE, folded
+from rosetta_jit.kernel.terms import END, add, type_of
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+
+    from rosetta_jit.generate.lisp.expressions import Scope
+    from rosetta_jit.generate.origins import Origin
+    from rosetta_jit.kernel.ir import Effect, Local, Site
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A name that is bound, its type in Lisp, and its first value."""
+
+    name: str
+    type: str
+    value: str = ""
+
+
+@dataclass(slots=True)
+class Function:
+    """One function being printed: its name, and what it shares with others.
+
+    ``read`` are the locals whose values anything needs. ``is_routine``: it gives the number of its own site that failed, or 0.
+    ``routines`` are the functions of routines by name. ``numbers`` are the rows of the table that sites of the kernel have got, ``paths``
+    the fields that lanes belong to, ``functions`` those of the mapping by name.
+    """
+
+    name: str
+    scope: Scope
+    sites: Sequence[Site]
+    routines: Mapping[str, str]
+    numbers: dict[int, int]
+    paths: Sequence[str]
+    functions: Mapping[str, str]
+    origins: Sequence[Origin] = ()
+    read: frozenset[str] = frozenset()
+    is_routine: bool = False
+    lines: Lines = field(default_factory=Lines)
+
+    def line(self, form: str, said: str = "") -> None:
+        self.lines.line(form, said)
+
+    def form(self, expr: Expr) -> str:
+        return expression(self.scope, expr)
+
+    def leave(self, value: str) -> str:
+        """The form that ends the function with a value."""
+        return f"(return-from {self.name} {value})"
+
+    def site(self, number: int) -> int:
+        """The row of a site in the table, which has those alone that a function names."""
+        return number if self.is_routine else self.numbers.setdefault(number, len(self.numbers))
+
+
+def print_block(function: Function, block: Block, finish: Callable[[], None] | None = None, lanes: Sequence[Variable] = ()) -> None:
+    """The statements of a block, and what finishes it, within variables for lanes and those that it binds."""
+    block = tuple(stmt for stmt in block if not (isinstance(stmt, Let | Var | Assign) and stmt.name not in function.read))
+    first = next((number for number, stmt in enumerate(block) if not isinstance(stmt, Let | Var)), len(block))
+    found = [each for number, stmt in enumerate(block) for each in _bound_by(function, stmt, first=number < first)]
+    with bound(function.lines, [*lanes, *found]):
+        for stmt in block[first:]:
+            _statement(function, stmt)
+        if finish is not None:
+            finish()
+
+
+def _bound_by(function: Function, stmt: Stmt, *, first: bool) -> Iterator[Variable]:
+    """The variables of a statement: those before the first other statement have their own values, others have zero until they are set."""
+    match stmt:
+        case Let(name, value) | Var(name, value):
+            type_ = type_of(value)
+            yield Variable(function.scope.locals.symbol(name), LISP_TYPES[type_], function.form(value) if first else zero(type_))
+        case Call(_, _, results):
+            for each in results:
+                if each.name in function.read:
+                    yield _unset(function, each)
+        case HostCall(_, _, result):
+            yield _unset(function, result)
+        case _:
+            return
+
+
+def _unset(function: Function, local: Local) -> Variable:
+    return Variable(function.scope.locals.symbol(local.name), LISP_TYPES[local.type], zero(local.type))
+
+
+@contextmanager
+def bound(lines: Lines, variables: Sequence[Variable]) -> Generator[None]:
+    """A `let*` of variables, if there are any, around what is written until the end of the `with`."""
+    if not variables:
+        yield
+        return
+    start = len(lines.lines)
+    lines.column += 7
+    for each in variables:
+        lines.line(f"({each.name} {each.value})")
+    lines.close()
+    lines.column -= 5
+    lines.lines[start].column -= 7
+    lines.lines[start].text = f"(let* ({lines.lines[start].text}"
+    lines.line(declaration(variables))
+    yield
+    lines.column -= 2
+    lines.close()
+
+
+def declaration(variables: Sequence[Variable]) -> str:
+    """The types of variables, each of which may be of no use."""
+    names: dict[str, list[str]] = {}
+    for each in variables:
+        names.setdefault(each.type, []).append(each.name)
+    declared = " ".join(f"(type {type_} {' '.join(some)})" for type_, some in names.items())
+    return f"(declare {declared} (ignorable {' '.join(each.name for each in variables)}))"
+
+
+def _statement(function: Function, stmt: Stmt) -> None:
+    match stmt:
+        case Require(at, size, failure):
+            with function.lines.form(f"(when {_lacks(function, at, size)}"):
+                _fail(function, failure)
+        case Expect(condition, failure):
+            if condition == FALSE:
+                _fail(function, failure)
+            else:
+                _fail_unless(function, condition, failure)
+        case Let(name, value) | Var(name, value) | Assign(name, value):
+            function.line(f"(setf {function.scope.locals.symbol(name)} {function.form(value)})", _origin(function, stmt))
+        case Store() | SetField() | Copy() | Fill():
+            function.line(_effect(function.scope, stmt), _origin(function, stmt))
+        case Reserve() | Advance():
+            _rows(function, stmt)
+        case Return(position):
+            function.line(function.leave(function.form(position)))
+        case For() | While() | If() | Switch():
+            _nested(function, stmt)
+        case Call():
+            _call(function, stmt)
+        case HostCall():
+            _host_call(function, stmt)
+        case _:
+            assert_never(stmt)
+
+
+def _origin(function: Function, stmt: Stmt) -> str:
+    """The line of the mapping that a statement comes from."""
+    return (origin_of(stmt, function.origins) or "") if function.origins else ""
+
+
+def _lacks(function: Function, at: Expr, size: Expr) -> str:
+    """Whether bytes are missing."""
+    match at, size:
+        case Const(_, start), Const(_, length) if start >= 0 and length >= 0:
+            return f"(< {function.form(END)} {function.form(add(at, size))})"
+        case _:
+            return f"(lacks {function.form(at)} {function.form(size)} end)"
+
+
+def _fail_unless(function: Function, condition: Expr, failure: Failure) -> None:
+    otherwise = folded(Unary("not", condition))
+    bare = isinstance(otherwise, Unary) and otherwise.function == "not"
+    with function.lines.form(f"(unless {function.form(condition)}" if bare else f"(when {function.form(otherwise)}"):
+        _fail(function, failure)
+
+
+def _fail(function: Function, failure: Failure) -> None:
+    site, at = function.site(failure.site), function.form(failure.at)
+    said = about(function.sites[failure.site])
+    if function.is_routine:
+        function.line(function.leave(f"(fail-here codec {site} {at})"), said)
+        return
+    indices = "".join(f" {function.form(each)}" for each in failure.indices)
+    function.line(function.leave(f"(fail codec {site} {at}{indices})"), said)
+
+
+def _effect(scope: Scope, stmt: Effect) -> str:
+    match stmt:
+        case Store(at, value, order):
+            return f"(setf ({access(type_of(value), order)} data {expression(scope, at)}) {expression(scope, value)})"
+        case SetField(place, value):
+            return f"(setf {got(scope, type_of(value), place)} {expression(scope, value)})"
+        case Copy(target, source, size):
+            (to, first), (of, begin) = location(scope, target), location(scope, source)
+            return f"(copy-octets {to} {first} {of} {begin} {expression(scope, size)})"
+        case Fill(target, size, byte):
+            to, first = location(scope, target)
+            return f"(fill-octets {to} {first} {expression(scope, size)} {byte})"
+        case _:
+            assert_never(stmt)
+
+
+def _rows(function: Function, stmt: Reserve | Advance) -> None:
+    scope, lane, count = function.scope, stmt.lane, function.form(stmt.count)
+    used = scope.used(lane)
+    if isinstance(stmt, Advance):
+        function.line(f"(setf {used} (i64+ {used} {count}))")
+        return
+    path = literal(function.paths[lane]) if lane < len(function.paths) else '""'
+    full = function.leave(f"(full codec {path})")
+    rows, place, stride = scope.rows(lane), scope.lanes.place(lane), scope.lanes.stride(lane)
+    function.line(f"(reserve ({rows} {place} {stride}) {used} {count} codec {full})")
+
+
+def _nested(function: Function, stmt: For | While | If | Switch) -> None:
+    match stmt:
+        case For(variable, count, body):
+            with function.lines.form(f"(for ({function.scope.locals.symbol(variable)} {function.form(count)})"):
+                print_block(function, body)
+        case While(condition, body):
+            with function.lines.form(f"(while {function.form(condition)}"):
+                print_block(function, body)
+        case If(condition, then, otherwise):
+            _if(function, condition, then, otherwise)
+        case Switch(value, cases, default):
+            with function.lines.form(f"(case {function.form(value)}"):
+                for number, body in cases:
+                    with function.lines.form(f"({number}", by=1):
+                        print_block(function, body)
+                with function.lines.form("(t", by=1):
+                    print_block(function, default)
+        case _:
+            assert_never(stmt)
+
+
+def _if(function: Function, condition: Expr, then: Block, otherwise: Block) -> None:
+    if not (then and otherwise):
+        with function.lines.form(f"({'when' if then else 'unless'} {function.form(condition)}"):
+            print_block(function, then or otherwise)
+        return
+    with function.lines.form("(cond"):
+        with function.lines.form(f"({function.form(condition)}", by=1):
+            print_block(function, then)
+        while len(otherwise) == 1 and isinstance(otherwise[0], If) and otherwise[0].then:
+            inner = otherwise[0]
+            with function.lines.form(f"({function.form(inner.condition)}", by=1):
+                print_block(function, inner.then)
+            otherwise = inner.otherwise
+        if otherwise:
+            with function.lines.form("(t", by=1):
+                print_block(function, otherwise)
+
+
+def _call(function: Function, call: Call) -> None:
+    """What a routine gives is the number of its own site that failed, or 0; its results are left in the codec, where no number is boxed."""
+    called = f"({function.routines[call.routine]}{''.join(f' {function.form(each)}' for each in call.arguments)})"
+    problem = function.scope.locals.symbol(f"{call.routine} problem")
+    if not call.sites:
+        function.line(called)
+    else:
+        _call_that_fails(function, call, called, problem)
+    for result, register in zip(call.results, registers(call.results), strict=True):
+        if result.name in function.read:
+            function.line(f"(setf {function.scope.locals.symbol(result.name)} {register})")
+
+
+def _call_that_fails(function: Function, call: Call, called: str, problem: str) -> None:
+    with function.lines.form(f"(let (({problem} {called}))"):
+        function.line(f"(declare (type fixnum {problem}))")
+        with function.lines.form(f"(when (/= {problem} 0)"):
+            function.line(function.leave(_passed_on(function, problem, call)))
+
+
+def _passed_on(function: Function, problem: str, call: Call) -> str:
+    """The caller's site for that of a routine."""
+    sites = tuple(map(function.site, call.sites))
+    site = str(sites[-1]) if len(set(sites)) == 1 else f"(svref #({' '.join(map(str, sites))}) (1- {problem}))"
+    if function.is_routine:
+        return site
+    indices = "".join(f" {function.form(each)}" for each in call.indices)
+    return f"(fail-there codec {site}{indices})"
+
+
+def registers(results: Sequence[Local]) -> list[str]:
+    """Where a routine leaves its results: slots of the codec, by their types."""
+    counts: dict[str, int] = {}
+    found: list[str] = []
+    for each in results:
+        counts[each.type] = counts.get(each.type, 0) + 1
+        found.append(f"(codec-state-{each.type}-result-{counts[each.type]} codec)")
+    return found
+
+
+def _host_call(function: Function, call: HostCall) -> None:
+    """A function that the program has which this becomes part of."""
+    scope, site = function.scope, function.site(call.failure.site)
+    indices = "".join(f" {function.form(each)}" for each in call.failure.indices)
+    refused = function.leave(f"(fail codec {site} {function.form(call.failure.at)}{indices})")
+    given = "".join(f" {function.form(each)}" for each in call.arguments)
+    name = function.functions.get(call.function, hyphenated(call.function))
+    found = f"(call-function ({name} {LISP_TYPES[call.result.type]}) {refused}{given})"
+    function.line(f"(setf {scope.locals.symbol(call.result.name)} {found})")

@@ -1,0 +1,98 @@
+"""Names of Lisp: in lower case, of letters, digits and hyphens, none a symbol of the language or of the runtime."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import field
+from functools import cache
+from pathlib import Path
+
+from rosetta_jit.startup.dataclass import dataclass
+
+HERE = Path(__file__).parent
+RUNTIME = HERE / "runtime.lisp"
+MAX_NAME = 60
+CONSTANT = re.compile(r"t|nil|pi|(most|least|boole|internal)-.*|.*-(limit|epsilon|keywords)")
+"""Symbols of the language that no variable may be called."""
+
+LISP_TYPES = {
+    "bool": "boolean",
+    **{f"{kind}{bits}": f"{kind}{bits}" for kind in "iu" for bits in (8, 16, 32, 64)},
+    "f32": "f32",
+    "f64": "f64",
+}
+"""By the kernel's names; the runtime defines those of numbers."""
+
+PACKAGES = frozenset({"cl", "cl-user", "common-lisp", "common-lisp-user", "keyword", "asdf", "uiop", "sequence"})
+
+
+@cache
+def symbols() -> frozenset[str]:
+    """The external symbols of the package `common-lisp` (ANSI INCITS 226, 1.9)."""
+    return frozenset((HERE / "symbols.txt").read_text("utf-8").split())
+
+
+@cache
+def constants() -> frozenset[str]:
+    """Those of them that are constants, which nothing can bind."""
+    return frozenset(each for each in symbols() if CONSTANT.fullmatch(each))
+
+
+@cache
+def runtime_names() -> frozenset[str]:
+    """What the runtime defines, exports, or makes out of the names of numbers."""
+    text = RUNTIME.read_text("utf-8")
+    defined = re.findall(r"\((?:def[a-z-]+|:constructor) \(?(?:setf )?([^\s()]+)", text) + re.findall(r"#:([a-z0-9*+/-]+)", text)
+    numbers = [name for name in LISP_TYPES if name != "bool"]
+    made = {f"{first}{name}{last}" for name in numbers for first, last in (("", "s"), ("append-", "s"))}
+    accessors = {f"{struct}-{slot}" for struct in ("codec-state", "failure", "site", "counter") for slot in _slots(struct)}
+    return frozenset((*defined, *numbers, *made, *accessors))
+
+
+@cache
+def codec_slots() -> frozenset[str]:
+    """What the codecs of all units have."""
+    return frozenset(_slots("codec-state"))
+
+
+def _slots(struct: str) -> list[str]:
+    found = re.search(rf"\(defstruct \({struct}\b.*?\n\n", RUNTIME.read_text("utf-8"), re.DOTALL)
+    assert found is not None, struct
+    return re.findall(r"^  \(([a-z0-9-]+) ", found.group(), re.MULTILINE)
+
+
+@dataclass(slots=True)
+class Names:
+    """Symbols for names that come from schemas: of each name another, none that is reserved."""
+
+    reserved: frozenset[str]
+    found: dict[str, str] = field(default_factory=dict[str, str])
+    taken: set[str] = field(default_factory=set[str])
+
+    def symbol(self, key: str, *derived: str, wanted: str = "") -> str:
+        """The symbol of a name, always the same one. ``derived`` are formats, as ``make-{}``: the symbols of these are no others' either."""
+        if key not in self.found:
+            start = hyphenated(wanted or key)
+            candidate, number = start, 2
+            while not self._are_free(every := [each.format(candidate) for each in derived or ("{}",)]):
+                candidate = f"{start}-{number}"
+                number += 1
+            self.found[key] = candidate
+            self.taken.update(every)
+        return self.found[key]
+
+    def _are_free(self, some: list[str]) -> bool:
+        return not any(each in self.taken or each in self.reserved for each in some)
+
+
+def hyphenated(name: str) -> str:
+    """``JointState`` and ``joint_state`` as ``joint-state``; what is no letter or digit of ASCII becomes a hyphen."""
+    apart = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name)
+    plain = re.sub(r"[^a-z0-9]+", "-", apart.lower())[:MAX_NAME].strip("-")
+    return plain if plain[:1].isalpha() else f"v{plain}"
+
+
+def package_of(name: str) -> str:
+    """The package of a unit."""
+    wanted = hyphenated(name)
+    return f"{wanted}-messages" if wanted in PACKAGES or wanted.startswith("sb-") else wanted
