@@ -52,7 +52,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: str, about: About) -> Print
     attempts = [names.symbol(f"{role}-{number}") for number in range(1, len(kernel.bodies) + 1)]
     lines = Lines()
     with lines.form(f"(defun {role}-kernel (codec data end attempt)"):
-        lines.line(f"(declare {PROVEN} (type codec codec) (type octets data) (type i64 end) (type fixnum attempt) (ignorable data end))")
+        lines.line(f"(declare {PROVEN} (type codec codec) (type octets data) (type i64 end) (type fixnum attempt) (ignorable codec data end attempt))")
         with lines.form("(labels"):
             first = len(lines.lines)
             lines.column += 3

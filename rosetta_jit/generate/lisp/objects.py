@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Walk:
-    """Functions that are printed for one direction; ``verb`` begins their names, ``done`` are those that are needed, by lane and offset."""
+    """Functions that are printed for one direction; ``verb`` begins their names, ``done`` are those that are needed, by lane, offset and struct."""
 
     structures: Structures
     lanes: Lanes
     verb: str
-    done: dict[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
+    done: dict[tuple[int, int, str], str] = field(default_factory=dict[tuple[int, int, str], str])
     pending: list[tuple[Struct, Row, int, str]] = field(default_factory=list[tuple[Struct, Row, int, str]])
     lines: Lines = field(default_factory=Lines)
     depth: int = 0
@@ -46,11 +46,11 @@ class Walk:
 
     def function(self, struct: Struct, slot: Row, lane: int, path: str) -> str:
         """The function for the structs at a slot of a lane's rows."""
-        if (lane, slot.offset) not in self.done:
-            name = self.structures.names.symbol(f"{self.verb}\0{lane}\0{slot.offset}", wanted=f"{self.verb}-{path}")
-            self.done[lane, slot.offset] = name
-            self.pending.append((struct, slot, lane, name))
-        return self.done[lane, slot.offset]
+        key = lane, slot.offset, struct.name
+        if key not in self.done:
+            self.done[key] = self.structures.names.symbol("\0".join(map(str, (self.verb, *key))), wanted=f"{self.verb}-{path}")
+            self.pending.append((struct, slot, lane, self.done[key]))
+        return self.done[key]
 
     def at(self, lane: int, offset: int, scalar: str, row: str) -> str:
         """The byte of a scalar."""
@@ -89,7 +89,7 @@ class Take(Walk):
     def one(self, struct: Struct, slot: Row, lane: int, name: str) -> None:
         type_, row = self.structures.types[struct.name], "row" if lane else "0"
         with self.lines.form(f"(defun {name} (codec data row before)"):
-            self.lines.line("(declare (type codec codec) (type octets data) (type fixnum row) (ignorable data row))")
+            self.lines.line("(declare (type codec codec) (type octets data) (type fixnum row) (ignorable codec data row))")
             with self.lines.form(f"(let ((object (if (typep before '{type_}) before (make-{type_}))))"):
                 for each, member in zip(struct.fields, slot.members, strict=True):
                     place = self.structures.accessor(struct, each.name)

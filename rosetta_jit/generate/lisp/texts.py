@@ -47,13 +47,14 @@ def broken(form: str, depth: int) -> list[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Quoted:
-    """A form behind a quote."""
+class Prefixed:
+    """A form behind a quote, or behind the sign of a vector."""
 
+    sign: str
     tree: Tree
 
 
-Tree = str | Quoted | list["Tree"]
+Tree = str | Prefixed | list["Tree"]
 
 
 def _parsed(form: str) -> Tree:
@@ -64,9 +65,8 @@ def _parsed(form: str) -> Tree:
                 stack.append([])
             case ")":
                 done: Tree = stack.pop()
-                if stack[-1][-1:] == ["'"]:
-                    stack[-1].pop()
-                    done = Quoted(done)
+                if stack[-1][-1:] in (["'"], ["#"]):
+                    done = Prefixed(str(stack[-1].pop()), done)
                 stack[-1].append(done)
             case _:
                 stack[-1].append(token)
@@ -77,8 +77,8 @@ def _flat(tree: Tree) -> str:
     match tree:
         case str():
             return tree
-        case Quoted(inner):
-            return f"'{_flat(inner)}"
+        case Prefixed(sign, inner):
+            return f"{sign}{_flat(inner)}"
         case list():
             return f"({' '.join(map(_flat, tree))})"
 
@@ -86,9 +86,9 @@ def _flat(tree: Tree) -> str:
 def _lines(tree: Tree, depth: int) -> list[str]:
     """Operator and first operand stay together where that fits; the others stand below the first, or within the body two columns in."""
     flat = _flat(tree)
-    if isinstance(tree, Quoted):
+    if isinstance(tree, Prefixed):
         first, *others = _lines(tree.tree, depth + 1)
-        return [f"'{first}", *others]
+        return [f"{tree.sign}{first}", *others]
     if isinstance(tree, str) or depth + len(flat) <= WIDTH or len(tree) < 2:  # noqa: PLR2004 - an operator and an operand
         return [flat]
     head = tree[0]

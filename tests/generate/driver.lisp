@@ -1,0 +1,106 @@
+;;; A program around generated units: it decodes messages, writes them again, and says what is wrong with those that are broken.
+;;;
+;;; All units of a process share the runtime of the first, in whose symbols the packages of the others have a part.
+
+(defvar *runtime* nil "The package of the runtime.")
+
+(defun load-source (path)
+  "A file that the compiler has nothing to say about."
+  (multiple-value-bind (fasl warned) (let ((*standard-output* *error-output*)) (compile-file path))
+    (when warned
+      (format *error-output* "~A is not clean~%" path)
+      (sb-ext:exit :code 1))
+    (load fasl)))
+
+(defparameter *own* '("DECODE" "ENCODE" "ENCODE-INTO" "MESSAGE-SIZE" "CODEC" "MAKE-CODEC") "What each unit defines itself.")
+
+(defun is-defined (symbol)
+  (or (fboundp symbol) (boundp symbol) (find-class symbol nil) (sb-int:info :type :expander symbol)))
+
+(defun share (package)
+  "A package in which the names that the runtime defines are those of the runtime."
+  (let ((made (make-package package :use '(#:common-lisp))))
+    (do-symbols (symbol *runtime*)
+      (cond ((not (eq (symbol-package symbol) *runtime*)))
+            ((member (symbol-name symbol) *own* :test #'string=) (export (list (intern (symbol-name symbol) made)) made))
+            ((is-defined symbol) (import (list symbol) made))))))
+
+(defun runtime (path)
+  (load-source path)
+  (setf *runtime* (find-package "RUNTIME")))
+
+(defun unit (folder package)
+  (share (string-upcase package))
+  (load-source (merge-pathnames (format nil "~A.lisp" package) folder)))
+
+(declaim (ftype function show-bits show-all))
+
+(defun show (value stream)
+  "A value in a form that does not depend on the language."
+  (typecase value
+    ((or null (eql t) (eql :absent) integer) (format stream "~(~A~)" value))
+    (double-float (show-bits stream (= value value) (ldb (byte 64 0) (sb-kernel:double-float-bits value))))
+    (single-float (show-bits stream (= value value) (ldb (byte 32 0) (sb-kernel:single-float-bits value))))
+    (string (format stream "\"~{~D~^.~}\"" (map 'list #'char-code value)))
+    (vector (write-char #\[ stream) (show-all (coerce value 'list) stream) (write-char #\] stream))
+    (hash-table
+     (let ((entries (loop for key being the hash-keys of value using (hash-value mapped)
+                          collect (with-output-to-string (text) (show key text) (write-char #\: text) (show mapped text)))))
+       (format stream "{~{~A~^ ~}}" (sort entries #'string<))))
+    (cons (format stream "<~(~A~) " (car value)) (show (cdr value) stream) (write-char #\> stream))
+    (structure-object
+     (write-char #\( stream)
+     (show-all (loop for slot in (sb-mop:class-slots (class-of value))
+                     unless (string= (sb-mop:slot-definition-name slot) "UNKNOWN-FIELDS")
+                       collect (slot-value value (sb-mop:slot-definition-name slot)))
+               stream)
+     (write-char #\) stream))))
+
+(defun show-bits (stream is-number bits)
+  (if is-number (format stream "#~(~X~)" bits) (write-string "nan" stream)))
+
+(defun show-all (values stream)
+  (loop for value in values
+        for first = t then nil
+        do (unless first (write-char #\Space stream))
+           (show value stream)))
+
+(defun hexadecimal (octets stream)
+  (loop for octet across octets do (format stream "~(~2,'0X~)" octet)))
+
+(defun named (name package)
+  (find-symbol (string-upcase name) (string-upcase package)))
+
+(defun answer (package octets stream)
+  (flet ((call (name &rest arguments)
+           (apply (named name package) arguments))
+         (of (name condition)
+           (funcall (find-symbol name *runtime*) condition)))
+    (handler-case
+        (sb-int:with-float-traps-masked (:invalid :overflow :divide-by-zero)
+          (let* ((object (call "decode" octets)) (value (with-output-to-string (text) (show object text))))
+            (write-string "ok " stream)
+            (hexadecimal (call "encode" object) stream)
+            (format stream " ~A" value)))
+      (error (condition)
+        (if (typep condition (find-symbol "MESSAGE-ERROR" *runtime*))
+            (format stream "~&~(~A~)~@[ ~D~] [~A] ~A~@[ (~A)~]"
+                    (of "MESSAGE-ERROR-KIND" condition) (of "MESSAGE-ERROR-OFFSET" condition) (of "MESSAGE-ERROR-PATH" condition)
+                    (of "MESSAGE-ERROR-DETAIL" condition)
+                    (let ((line (of "MESSAGE-ERROR-LINE" condition))) (and (plusp (length line)) line)))
+            (format stream "~&CRASH ~A" condition))))
+    (terpri stream)))
+
+(defun answers (package path)
+  "Say of each message of a file, whose size stands before it, what a unit says."
+  (let ((stream (sb-sys:make-fd-stream 1 :output t :external-format :utf-8 :buffering :full)))
+    (with-open-file (file path :element-type '(unsigned-byte 8))
+      (loop for size = (loop for shift below 32 by 8
+                             for octet = (read-byte file nil)
+                             while octet sum (ash octet shift) into sum
+                             finally (return (and (= shift 32) sum)))
+            while size
+            do (let ((octets (make-array size :element-type '(unsigned-byte 8))))
+                 (read-sequence octets file)
+                 (answer package octets stream))))
+    (finish-output stream)))
