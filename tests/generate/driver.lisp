@@ -104,3 +104,38 @@
                  (read-sequence octets file)
                  (answer package octets stream))))
     (finish-output stream)))
+
+;;; Kernels without a unit: their rows come and go as hexadecimal text.
+
+(defun octets-of (text)
+  (let ((octets (make-array (floor (length text) 2) :element-type '(unsigned-byte 8))))
+    (dotimes (number (length octets) octets)
+      (setf (aref octets number) (parse-integer text :start (* 2 number) :end (* 2 (1+ number)) :radix 16)))))
+
+(defun kernel (package path)
+  (share (string-upcase package))
+  (load-source path)
+  (format t "ready~%")
+  (finish-output))
+
+(defun run-kernel (package attempts most lanes message)
+  "Run a kernel on a message and on lanes, which are names and sizes; print its result, the failure, and the lanes."
+  (let* ((codec (funcall (named "make-codec" package)))
+         (octets (octets-of message))
+         (failure (slot-value codec (find-symbol "FARTHEST" *runtime*))))
+    (flet ((of (name)
+             (slot-value failure (find-symbol name *runtime*))))
+      (setf (slot-value codec (find-symbol "MOST" *runtime*)) most)
+      (loop for (name size) in lanes
+            do (setf (slot-value codec (named name package)) (make-array size :element-type '(unsigned-byte 8) :initial-element 0)))
+      (let ((result (sb-int:with-float-traps-masked (:invalid :overflow :divide-by-zero)
+                      (funcall (find-symbol "ATTEMPTS" *runtime*) codec (symbol-function (named "decode-kernel" package))
+                               octets (length octets) attempts))))
+        (if result
+            (format t "ok~{ ~A~}~%"
+                    (loop for (name) in lanes
+                          collect (with-output-to-string (text)
+                                    (hexadecimal (slot-value codec (named name package)) text))))
+            (format t "failed ~D ~D ~D ~D ~D ~D ~A~%" (of "SITE") (of "AT") (of "INDEX-1") (of "INDEX-2") (of "INDEX-3") (of "INDEX-4")
+                    (of "PATH")))
+        (finish-output)))))

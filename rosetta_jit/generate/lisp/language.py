@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.generate.lisp.functions import Printed
+    from rosetta_jit.generate.lisp.lanes import Lanes
     from rosetta_jit.generate.unit import Role, Unit
     from rosetta_jit.kernel.ir import Kernel, Part, Site
 
@@ -84,7 +85,7 @@ class _Source:
             self._package(package),
             definitions(self.structures),
             self._constants(),
-            self._codec(),
+            codec(self.lanes),
             *(text for role in self.unit.kernels for text in (self._sites(role), self.printed[role].text)),
             *walks,
             *self._functions_of_the_header(),
@@ -104,18 +105,6 @@ class _Source:
     def _constants(self) -> str:
         """The bytes of rows where fields lie."""
         return "".join(f"(defconstant {name} {offset})\n" for name, offset in self.lanes.offsets.items())
-
-    def _codec(self) -> str:
-        """A vector for each lane, and how many of its rows are in use."""
-        lines = Lines()
-        with lines.form("(defstruct (codec (:include codec-state) (:conc-name codec.) (:copier nil) (:predicate nil))"):
-            lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')
-            for lane in range(len(self.lanes.all)):
-                size = self.lanes.stride(0) if lane == 0 else 0
-                lines.line(f"({self.lanes.rows(lane)} (make-array {size} :element-type 'u8) :type octets)")
-                if lane:
-                    lines.line(f"({self.lanes.used(lane)} 0 :type fixnum)")
-        return lines.text()
 
     def _sites(self, role: Role) -> str:
         """What can be wrong: the sites that the kernel's function names."""
@@ -155,6 +144,19 @@ class _Source:
             floats = computes_with_floats(kernel) or (role == "encode" and computes_with_floats(self.unit.kernels["size"]))
             around = {"begin": "with-floats" if floats else "progn", "attempts": str(self.printed[role].attempts)}
             yield re.sub(r"\n +(?=\n)|\n +(?=\))", "", Template(sections[NAMES[role]]).substitute(given, **around))
+
+
+def codec(lanes: Lanes) -> str:
+    """The structure with a vector for each lane, and how many of its rows are in use."""
+    lines = Lines()
+    with lines.form("(defstruct (codec (:include codec-state) (:conc-name codec.) (:copier nil) (:predicate nil))"):
+        lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')
+        for lane in range(len(lanes.all)):
+            size = lanes.stride(0) if lane == 0 else 0
+            lines.line(f"({lanes.rows(lane)} (make-array {size} :element-type 'u8) :type octets)")
+            if lane:
+                lines.line(f"({lanes.used(lane)} 0 :type fixnum)")
+    return lines.text()
 
 
 def _part(part: Part) -> str:

@@ -866,11 +866,41 @@
   "The digits of a number rounded to so many decimals, of which the low 64 bits count; 0 for what is not finite."
   (if (finite-p value) (wrap-u64 (rounded-ratio (abs value) places)) 0))
 
+(defun decimal-exponent (value)
+  "The power of ten of the first digit of a positive rational."
+  (let ((exponent (floor (* (- (integer-length (numerator value)) (integer-length (denominator value))) 0.30103d0))))
+    (loop while (>= value (expt 10 (1+ exponent))) do (incf exponent))
+    (loop while (< value (expt 10 exponent)) do (decf exponent))
+    exponent))
+
+(defun significant (value count)
+  "The first COUNT digits of a positive rational, rounded half to even, and the power of ten by which they are it."
+  (let* ((power (- (decimal-exponent value) (1- count))) (digits (round (/ value (expt 10 power)))))
+    (if (= digits (expt 10 count))
+        (values (expt 10 (1- count)) (1+ power))
+        (values digits power))))
+
+(defun reads-back-p (digits power value)
+  (let ((read (nearest-f64 (* digits (expt 10 power)))))
+    (= value (if (typep value 'single-float) (f32-of-f64 read) read))))
+
 (defun shortest (value)
-  "The fewest digits that read back as the number, and the power of ten by which they are it."
+  "The fewest digits that read back as the number, and the power of ten by which they are it; 0 for what is not finite.
+
+Of a normal number they are not fewer than those that any float keeps: 15, or 6 of singles. Above a power of two the nearest digits
+may not be among those that read back."
   (if (and (finite-p value) (/= value 0))
-      (multiple-value-bind (point digits) (sb-impl::flonum-to-digits (abs value))
-        (values (parse-integer digits) (- point (length digits))))
+      (let* ((double (typep value 'double-float))
+             (size (abs value))
+             (normal (>= size (if double 2.2250738585072014d-308 1.17549435f-38)))
+             (first (cond ((not normal) 1) (double 15) (t 6)))
+             (last (if double 17 9))
+             (is-power (= 1 (logcount (integer-decode-float size)))))
+        (loop for count from first
+              do (multiple-value-bind (digits power) (significant (rational size) count)
+                   (loop for found from digits to (if is-power (1+ digits) digits)
+                         do (when (or (= count last) (reads-back-p found power size))
+                              (return-from shortest (values found power)))))))
       (values 0 0)))
 
 (defun shortest-digits (value)
