@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import re
+import struct
+
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.errors import SchemaError
+from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.lisp.texts import broken, literal
+from rosetta_jit.generate.lisp.words import Names, hyphenated, package_of, symbols
 from tests.generate import lisp
 from tests.generate.corpora import corpora
 from tests.generate.driver import harmed
-from tests.generate.test_c import SUBJECTS
+from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
+from tests.generate.test_cpp import OUTER
+from tests.golden import GOLDEN, check_golden
+
+BOTH = ("decode", "encode")
 
 FEW = ("lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf", "protobuf rj.Tree")
 
@@ -32,9 +44,7 @@ def subject(name):
 def test_lisp_answers_as_the_library_does(tmp_path):
     """Values, bytes, and what is wrong with messages that are broken: of a mapping, of types, and of peers' messages."""
     asked = [subject(name) for name in SUBJECTS]
-    asked += [
-        (each.request, each.programs(), harmed(list(each.messages[:4]), 4, each.name)) for each in corpora() if each.name in FEW
-    ]
+    asked += [(each.request, each.programs(), harmed(list(each.messages[:4]), 4, each.name)) for each in corpora() if each.name in FEW]
     found = lisp.answers(tmp_path, [(request, messages) for request, _, messages in asked])
     for lines, (request, programs, messages) in zip(found, asked, strict=True):
         compare(lines, lisp.expected(request, *programs, messages), messages)
@@ -49,3 +59,152 @@ def test_all_messages_of_peers(framework, tmp_path):
     found = lisp.answers(tmp_path, [(each.request, some) for each, some in zip(chosen, messages, strict=True)])
     for lines, each, some in zip(found, chosen, messages, strict=True):
         compare(lines, lisp.expected(each.request, *each.programs(), some), some)
+
+
+def test_the_text_is_the_same_every_time():
+    texts = generated(TORSO, "lisp", BOTH, "torso_state")
+    assert list(texts) == ["torso-state.asd", "torso-state-runtime.lisp", "torso-state.lisp"]
+    for name in ("torso-state.asd", "torso-state.lisp"):
+        check_golden(GOLDEN / "generate" / name, texts[name])
+
+
+def test_names_of_lisp():
+    assert [hyphenated(name) for name in ("JointState", "frame_id", "HTTPHeader", "x", "_1", "été")] == [
+        "joint-state",
+        "frame-id",
+        "http-header",
+        "x",
+        "v1",
+        "t",
+    ]
+    names = Names(symbols())
+    assert [names.symbol(name) for name in ("List", "a", "A", "a_", "T")] == ["list-2", "a", "a-2", "a-3", "t-2"]
+    assert names.symbol("Multiple", "{}", "{}-value-bind") == "multiple-2"
+    assert package_of("common_lisp") == "common-lisp-messages"
+
+
+def test_texts_in_lisp():
+    assert literal('a "b" \\') == '"a \\"b\\" \\\\"'
+    assert literal("caf\u00e9\n)") == '(text "caf" 233 10 ")")'
+    long = f'(setf (a-b object) (text-of (a-b object) "{")" * 60}" (codec.rows codec) (i64-at message 0) \'(1 #(2)) data))'
+    assert re.sub(r"\s+", " ", " ".join(broken(long, 40))) == long
+    assert all(len(line) <= 120 for line in broken(long, 20))
+
+
+SYMBOLS = """t nil pi list position array_rank_limit most_positive_fixnum function quote lambda declare setf let object codec row data before value
+end count first index number char_code_limit string car class type condition print_object loop"""
+TYPES = "=" * 80 + "\nMSG: evil/Multiple\nint8 value_bind\n" + "=" * 80 + "\nMSG: evil/List\nint8 t\nint8 T\nint8 t_\nMultiple[] length\n"
+
+
+@lisp.needs_sbcl
+def test_a_hostile_schema_stays_in_its_place(tmp_path):
+    """Its names are words of Lisp and of the runtime, and its comments end strings and forms; SBCL has nothing to say."""
+    fields = "".join(f'int8 {name} # ") (sb-ext:exit :code 7) |# ;\n' for name in SYMBOLS.split())
+    mine = type_request("decode", "evil/Defun", {"encoding": "ros1", "schema": f"{fields}List lists\nMultiple[2] array\n{TYPES}"})
+    theirs = type_request("decode", "evil/Outer", {"encoding": "ros1", "schema": HOSTILE + OUTER})
+    count = len(SYMBOLS.split())
+    message = bytes(range(count)) + bytes([1, 2, 3]) + struct.pack("<I", 2) + bytes([4, 5]) + bytes([6, 7])
+    inner = struct.pack("<If", 1, 2.5) + struct.pack("<I", 2) + b"ab" + bytes([7]) + struct.pack("<2q", -1, 1) + struct.pack("<I", 1) + b"x"
+    outer = struct.pack("<id", 5, 0.5) + struct.pack("<I", 3) + b'*/"' + bytes([1, 0, 1, 1]) + struct.pack("<I", 2) + b"\0\1"
+    both = [(mine, [message]), (theirs, [outer + inner + bytes(4)])]
+    (one,), (other,) = lisp.answers(tmp_path, both)
+    assert one == f"ok {message.hex()} ({' '.join(map(str, range(count)))} (1 2 3 [(4) (5)]) [(6) (7)])"
+    assert other.startswith(f"ok {(outer + inner + bytes(4)).hex()} ")
+
+
+def test_structures_are_the_systems_own():
+    with pytest.raises(SchemaError, match="unknown-holder"):
+        generated(TORSO, "lisp", BOTH, "torso", Wishes(holder="protobuf"))
+
+
+WIDE = """syntax = "proto3"; package w; message Part { double x = 1; uint64 y = 2; }
+message Wide { uint64 a = 1; sint64 b = 2; double c = 3; repeated uint64 d = 4; repeated Part parts = 5; string name = 6; }"""
+WIDE_MESSAGE = (
+    "08ffffffffffffffffff01" "10ffffffffffffffffff01" "190000000000000440" "2214ffffffffffffffffff01feffffffffffffffff01"
+    "2a140900000000000008c010ffffffffffffffffff01" "3203c3a978"
+)  # fmt: skip
+
+LOOP = """(flet ((consed (name run)
+                     (funcall run)
+                     (let ((before (sb-ext:get-bytes-consed)))
+                       (dotimes (i 1000)
+                         (funcall run))
+                       (format t "~A ~A~%" name (- (sb-ext:get-bytes-consed) before)))))
+             %s)"""
+
+
+@lisp.needs_sbcl
+def test_numbers_are_read_and_written_without_allocating(tmp_path):
+    """With a codec and an object that are used again: doubles, 64-bit integers with the high bit, repeated structs, texts that stay."""
+    asked = [
+        (TORSO, [struct.pack("<ii3d", 266, 3, 10, 20, 30)]),
+        SUBJECTS["joints"],
+        (type_request("decode", "w.Wide", {"encoding": "protobuf", "schema": {"w.proto": WIDE}}), [bytes.fromhex(WIDE_MESSAGE)]),
+    ]
+    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")']
+    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    for number, (request, messages) in enumerate(asked):
+        unit = lisp.write(tmp_path, generated(request, "lisp", BOTH, f"unit_{number}"))
+        longest = max(messages, key=len)
+        forms += [f'(unit "{tmp_path}/" "{unit}")', f'(defvar *octets-{number}* (octets-of "{longest.hex()}"))']
+        forms += [f"(defvar *object-{number}* ({unit}:decode *octets-{number}*))", f"(defvar *codec-{number}* ({unit}:make-codec))"]
+        read = f'(consed "{unit}" (lambda () ({unit}:decode *octets-{number}* :codec *codec-{number}* :before *object-{number}*)))'
+        write = f'(consed "{unit}" (lambda () ({unit}:encode-into *octets-{number}* *object-{number}* :codec *codec-{number}*)))'
+        forms += [LOOP.replace("%s", read), LOOP.replace("%s", write)]
+    assert lisp.run(*forms, cwd=tmp_path).splitlines() == [f"unit-{number} 0" for number in (0, 0, 1, 1, 2, 2)]
+
+
+@lisp.needs_sbcl
+def test_functions_of_the_mapping_and_what_the_host_tells(tmp_path):
+    (tmp_path / "calling.mapping").write_text(CALLING)
+    calling = request_of("decode", {"encoding": "yarp3"}, mapping=str(tmp_path / "calling.mapping"))
+    schema = {
+        "a.bottle-schema": '"a" (("value" :int))',
+        "b.proto": 'syntax = "proto3"; package b; message Number { int32 value = 1; int64 now = 2; }',
+        "m.mapping": 'import "a.bottle-schema"\nimport "b.proto"\ndata-holder: b.Number\nwire-schema: a\nunpack-rules:\n'
+        "  .value = int32(counter() + .value)\n  .now = now()\n",
+    }
+    telling = request_of("decode", {"schema": schema, "encoding": "yarp3"}, mapping="m.mapping")
+    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")']
+    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    for name, request in (("calling", calling), ("telling", telling)):
+        lisp.write(tmp_path, generated(request, "lisp", ("decode",), name))
+        forms.append(f'(unit "{tmp_path}/" "{name}")')
+    good, bad = (struct.pack("<ii3d", 266, 3, yaw, 0.0, 0.0).hex() for yaw in (90.0, -90.0))
+    number = struct.pack("<iii", 257, 1, 40).hex()
+    forms += [
+        "(defun calling:halved (number) (if (minusp number) (error 'runtime:refused) (/ number 2)))",
+        f'(print (calling:joint-angles-angles (calling:decode (octets-of "{good}"))))',
+        f'(handler-case (calling:decode (octets-of "{bad}")) (runtime:decode-error (found) (print (runtime:message-error-kind found))))',
+        "(setf runtime:*now* (constantly 17))",
+        f'(dotimes (i 3) (let ((found (telling:decode (octets-of "{number}")))) (print (telling:number-message-value found)) '
+        "(princ (telling:number-message-now found))))",
+    ]
+    assert lisp.run(*forms, cwd=tmp_path).split() == ["#(0.7853982)", ":REJECTED", "40", "17", "41", "17", "42", "17"]
+
+
+@lisp.needs_sbcl
+def test_objects_that_cannot_be_written(tmp_path):
+    """Slots take no number that their field cannot hold; what is in vectors, and how long these are, is said when they are written."""
+    unit = lisp.write(tmp_path, generated(SUBJECTS["joints"][0], "lisp", BOTH, "joints"))
+    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")', f'(unit "{tmp_path}/" "{unit}")']
+    forms += [
+        "(handler-case (joints:make-header :seq -1) (type-error () (print :type-error)))",
+        "(handler-case (joints:encode (joints:make-joint-state :name (vector 1))) "
+        "(runtime:encode-error (found) (print (runtime:message-error-kind found))))",
+        "(handler-case (joints:encode (joints:make-joint-state :name (vector (string (code-char #xd800))))) "
+        "(runtime:encode-error (found) (print (princ-to-string found))))",
+        "(print (length (joints:encode (joints:make-joint-state))))",
+        "(print (joints:message-size (joints:make-joint-state)))",
+        "(handler-case (joints:encode-into (octets-of \"0000\") (joints:make-joint-state)) "
+        "(runtime:encode-error (found) (print (princ-to-string found))))",
+    ]
+    assert lisp.run(*forms, cwd=tmp_path).splitlines()[1:] == [
+        ":TYPE-ERROR ",
+        ":RANGE ",
+        '"range: U+D800 is no character" ',
+        "32 ",
+        "32 ",
+        '"length at .header.seq: no room for the message" ',
+    ]

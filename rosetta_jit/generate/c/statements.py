@@ -235,12 +235,13 @@ def _failed(function: Function, site: str, at: str, indices: tuple[Expr, ...], a
     function.scope.takes("failure")
     for number, each in enumerate(indices if not function.is_routine else ()):
         function.line(f"failure->indices[{number}] = {bare(expression(function.scope, each))};")
-    said = "" if about is None else f" {comment(about(about))}"
+    said = "" if about is None else f" {comment(described(about))}"
     name = "fail_here" if function.is_routine else "fail"
     function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
 
 
-def about(site: Site) -> str:
+def described(site: Site) -> str:
+    """What a site says, for a comment."""
     path = f" {site.path}" if site.path else ""
     line = f" ({site.line})" if site.line else ""
     return f"{site.kind}{path}: {site.detail}{line}"

@@ -44,6 +44,7 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
 With a codec that is used again, numbers are written without allocating memory."
   (check-type octets octets)
   (collect-message codec object)
+  $measure
   (encode-rows codec octets))
 
 (defun encode (object &key (codec (make-codec)))

@@ -1,8 +1,10 @@
 """Kernel expressions as forms of exactly their type: integers are declared to have their width, bools are t and nil.
 
-    (u32-at message +header.seq+)                   a field of the message's row
-    (f64-at points (row 24 i +points.x+))           one of another lane
-    (f64-be-at data (i64+ at 8))                    a number of the message, its high byte first
+(u32-at message +header.seq+)                   a field of the message's row
+(f64-at points (row 24 i +points.x+))           one of another lane
+(f64-be-at data (i64+ at 8))                    a number of the message, its high byte first
+
+Arithmetic that the proof knows to stay within its type is declared to do so, and compiles to single instructions.
 """
 
 from __future__ import annotations
@@ -140,7 +142,7 @@ def constant(type_: Scalar, value: float) -> str:
         number = np.float32(value) if type_ == "f32" else np.float64(value)
     single = type_ == "f32"
     size = abs(float(number))
-    plain = size == 0 or (1e-37 < size < 1e38 if single else LEAST < size < GREATEST)  # noqa: PLR2004 - of singles
+    plain = size == 0 or (1e-37 < size < 1e38 if single else LEAST < size < GREATEST)
     if not math.isfinite(number) or not plain:
         return f"({type_}-of-bits #x{int.from_bytes(to_bytes(type_, number), 'little'):x})"
     mantissa, _, exponent = str(number).partition("e")
@@ -219,7 +221,7 @@ def _holds(target: Scalar, source: Scalar) -> bool:
 def _bits(target: Scalar, source: Scalar, value: str) -> str:
     if target == source:
         return value
-    unsigned: Scalar = "u64" if WIDTH[source] == 8 else "u32"  # noqa: PLR2004 - bytes
+    unsigned: Scalar = "u64" if WIDTH[source] == 8 else "u32"
     if source in FLOATS:
         return _convert(target, unsigned, f"(bits-of-{source} {value})")
     if target in FLOATS:

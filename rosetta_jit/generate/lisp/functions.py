@@ -1,6 +1,6 @@
 """A kernel as one function whose attempts and routines are local: numbers pass between these unboxed.
 
-    (decode-kernel codec data end attempt)      where the message ends, or -1 - site
+(decode-kernel codec data end attempt)      where the message ends, or -1 - site
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.kernel.ir import Expr, Kernel, Routine
 
-PROVEN = "(optimize (speed 1) (safety 0) (debug 0))"
+DECLARED = (
+    "(declare (optimize (speed 1) (safety 0) (debug 0)) (type codec codec) (type octets data) (type i64 end) (type fixnum attempt) "
+    "(ignorable codec data end attempt))"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +55,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: str, about: About) -> Print
     attempts = [names.symbol(f"{role}-{number}") for number in range(1, len(kernel.bodies) + 1)]
     lines = Lines()
     with lines.form(f"(defun {role}-kernel (codec data end attempt)"):
-        lines.line(f"(declare {PROVEN} (type codec codec) (type octets data) (type i64 end) (type fixnum attempt) (ignorable codec data end attempt))")
+        lines.line(DECLARED)
         with lines.form("(labels"):
             first = len(lines.lines)
             lines.column += 3

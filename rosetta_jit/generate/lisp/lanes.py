@@ -1,7 +1,9 @@
 """How the lanes of a holder are reached from Lisp: each is a vector of octets, which the codec keeps from one message to the next.
 
-    points              the vector, in a variable       (codec.points codec)        the same where it is kept
-    points-used         how many rows are in use        +points.x+                  the byte of a row where a field lies
+points              the vector, in a variable       (codec.points codec)        the same where it is kept
+points-used         how many rows are in use        +points.x+                  the byte of a row where a field lies
+
+A lane whose element is None has no fields that have names.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from rosetta_jit.generate.lisp.functions import About, computes_with_floats, pri
 from rosetta_jit.generate.lisp.lanes import lanes_of
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.objects import Put, Take
-from rosetta_jit.generate.lisp.structs import all_symbols, definitions, structures_of
+from rosetta_jit.generate.lisp.structs import definitions, function_symbols, structures_of
 from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import RUNTIME, package_of
 from rosetta_jit.kernel.shape import is_told
@@ -62,7 +62,7 @@ class _Source:
 
     def __init__(self, unit: Unit) -> None:
         self.unit, self.structures = unit, structures_of(unit)
-        self.functions = all_symbols(self.structures, [each.name for each in unit.functions])
+        self.functions = function_symbols(self.structures, [each.name for each in unit.functions])
         longest = max(unit.kernels.values(), key=lambda each: len(each.strides))
         c = named_parts(unit, frozenset())(longest.strides)
         self.lanes = lanes_of(c.all, c.own)
@@ -129,6 +129,11 @@ class _Source:
             found.append(Put(self.structures, self.lanes, "put").printed())
         return found
 
+    def _needs_measures(self) -> bool:
+        """Whether an encoder reads what measuring has left in lanes that the holder does not have, as sizes of messages within others."""
+        hidden = map(self.lanes.place, range(self.lanes.own, len(self.lanes.all)))
+        return "encode" in self.printed and any(place in self.printed["encode"].text for place in hidden)
+
     def _functions_of_the_header(self) -> Iterator[str]:
         """Those that a program calls."""
         sections = dict(part.split("\n", 1) for part in API.read_text("utf-8").split(";; == ")[1:])
@@ -136,6 +141,7 @@ class _Source:
         given = {
             "type": self.structures.types[self.unit.type],
             "tell": "(tell codec)" if told else "",
+            "measure": "(size-of-rows codec)" if self._needs_measures() else "",
             "empty": "".join(f"\n        {self.lanes.place_of_used(lane)} 0" for lane in range(1, self.lanes.own)),
         }
         for role, kernel in self.unit.kernels.items():

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Walk:
-    """Functions that are printed for one direction; ``verb`` begins their names, ``done`` are those that are needed, by lane, offset and struct."""
+    """Functions that are printed for one direction: ``verb`` begins their names, ``done`` are those by lane, offset and struct."""
 
     structures: Structures
     lanes: Lanes
@@ -79,7 +79,7 @@ class Walk:
         raise NotImplementedError
 
     def local(self, what: str) -> str:
-        return what if self.depth < 2 else f"{what}-{self.depth}"  # noqa: PLR2004 - the outermost have no number
+        return what if self.depth < 2 else f"{what}-{self.depth}"
 
 
 @dataclass(slots=True)

@@ -633,13 +633,19 @@
      ,@body))
 
 (defun same-text-p (old octets start end)
-  "Whether a string has the bytes as its characters, all of them ASCII."
+  "Whether a string is what the bytes say."
   (declare #.*proven* (type octets octets) (type fixnum start end))
   (and (typep old '(simple-array character (*)))
-       (= (length old) (- end start))
-       (loop for char across old
-             for at of-type fixnum from start
-             always (and (< (char-code char) 128) (= (char-code char) (aref octets at))))))
+       (let ((at start))
+         (declare (type fixnum at))
+         (and (loop for char across old
+                    always (and (< at end)
+                                (multiple-value-bind (found step)
+                                    (if (< (aref octets at) #x80) (values (code-char (aref octets at)) 1) (character-at octets at end))
+                                  (declare (type fixnum step))
+                                  (incf at step)
+                                  (eq char found))))
+              (= at end)))))
 
 (defun text-of (old lane first count data)
   "The string of some bytes; the one that was there where it is the same."

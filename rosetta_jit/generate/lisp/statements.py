@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.generate.c.statements import about
+from rosetta_jit.generate.c.statements import described
 from rosetta_jit.generate.lisp.expressions import access, expression, got, location, zero
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import literal
@@ -207,7 +207,7 @@ def _fail_unless(function: Function, condition: Expr, failure: Failure) -> None:
 
 def _fail(function: Function, failure: Failure) -> None:
     site, at = function.site(failure.site), function.form(failure.at)
-    said = about(function.sites[failure.site])
+    said = described(function.sites[failure.site])
     if function.is_routine:
         function.line(function.leave(f"(fail-here codec {site} {at})"), said)
         return

@@ -1,4 +1,4 @@
-"""Structures for the types of a schema. They are not classes: `defstruct` alone keeps numbers unboxed, so that setting one allocates nothing."""
+"""Structures for the types of a schema, and not classes: `defstruct` alone keeps numbers unboxed, so that setting one allocates nothing."""
 
 from __future__ import annotations
 
@@ -79,11 +79,12 @@ def _slots(struct: Struct) -> list[str]:
 
 
 def structures_of(unit: Unit) -> Structures:
-    """The symbols of a unit: none is another's, or one of the language, whatever the schema says."""
+    """The symbols of a unit: none is another's, or one of the language, whatever the schema says (`Time` is `time-message`)."""
     names, types = Names(symbols() | runtime_names() | KERNELS), dict[str, str]()
     for name in reached_types(unit):
-        simple = re.split(r"[./:]+", name)[-1]
-        types[name] = names.symbol(name, "{}", "make-{}", wanted=simple)
+        simple = hyphenated(re.split(r"[./:]+", name)[-1])
+        known = {simple, f"make-{simple}"} & names.reserved
+        types[name] = names.symbol(name, "{}", "make-{}", wanted=f"{simple}-message" if known else simple)
     made = Structures(unit, names, types, frozenset(struct for _, struct in unit.layout.recursive))
     made.exported()
     return made
@@ -162,7 +163,7 @@ def default(structures: Structures, type_: Type) -> str:
         case Int() | Enum():
             return "0"
         case Float(bits):
-            return "0d0" if bits == 64 else "0f0"  # noqa: PLR2004 - bits
+            return "0d0" if bits == 64 else "0f0"
         case String():
             return '""'
         case Bytes(_, int(length)):
@@ -179,8 +180,6 @@ def default(structures: Structures, type_: Type) -> str:
             return "nil" if name in structures.recursive else f"(make-{structures.types[name]})"
         case Ref():
             raise AssertionError(type_)
-        case found:
-            assert_never(found)
 
 
 def _vector(structures: Structures, element: Type, length: int) -> str:
@@ -198,6 +197,6 @@ def _element(structures: Structures, element: Type) -> str:
     return f"(make-{structures.types[resolved.name]})" if isinstance(resolved, Struct) else default(structures, element)
 
 
-def all_symbols(structures: Structures, functions: Iterable[str]) -> dict[str, str]:
+def function_symbols(structures: Structures, functions: Iterable[str]) -> dict[str, str]:
     """The symbols of the mapping's functions."""
     return {each: structures.names.symbol(f"function {each}", wanted=each) for each in functions}

@@ -89,7 +89,7 @@ def _lines(tree: Tree, depth: int) -> list[str]:
     if isinstance(tree, Prefixed):
         first, *others = _lines(tree.tree, depth + 1)
         return [f"{tree.sign}{first}", *others]
-    if isinstance(tree, str) or depth + len(flat) <= WIDTH or len(tree) < 2:  # noqa: PLR2004 - an operator and an operand
+    if isinstance(tree, str) or depth + len(flat) <= WIDTH or len(tree) < 2:
         return [flat]
     head = tree[0]
     if not isinstance(head, str):

@@ -70,7 +70,7 @@ class Names:
     taken: set[str] = field(default_factory=set[str])
 
     def symbol(self, key: str, *derived: str, wanted: str = "") -> str:
-        """The symbol of a name, always the same one. ``derived`` are formats, as ``make-{}``: the symbols of these are no others' either."""
+        """The symbol of a name, always the same one. ``derived`` are formats whose symbols are taken, too, as ``make-{}``."""
         if key not in self.found:
             start = hyphenated(wanted or key)
             candidate, number = start, 2
