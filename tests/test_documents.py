@@ -86,6 +86,19 @@ def test_the_example_in_python_runs(tmp_path, monkeypatch):
     assert subprocess.run([sys.executable, "-S", "main.py"], capture_output=True, text=True, check=True).stdout == said
 
 
+@pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL runs the example in Lisp")
+def test_the_example_in_lisp_runs(tmp_path, monkeypatch):
+    from rosetta_jit.cli import main
+
+    text = (ROOT / "docs" / "lisp.md").read_text()
+    (generate, run), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "lisp", "text"))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert main(generate.split()[1:]) == 0
+    Path("main.lisp").write_text(source)
+    assert subprocess.run(run.split(), capture_output=True, text=True, check=True).stdout == said
+
+
 def test_the_documented_mapping_is_the_shipped_one():
     text = (ROOT / "docs" / "mappings.md").read_text()
     shipped = (ROOT / "mappings" / "yarp" / "icub" / "torso_state.mapping").read_text()

@@ -24,7 +24,7 @@ def add(commands: Commands) -> None:
     command = add_command(commands, "generate", "Write a mapping or type as source that needs neither Python nor this library.", run)
     command.add_argument("subject", metavar="MAPPING|TYPE", help="a mapping (*.mapping), or a type by its qualified name")
     command.add_argument(
-        "--language", default="c", metavar="NAME", help="c, cpp, python, or one that an installed package offers (default: c)"
+        "--language", default="c", metavar="NAME", help="c, cpp, lisp, python, or one that an installed package offers (default: c)"
     )
     command.add_argument(
         "--holder", metavar="NAME", help="whose classes are filled, of languages that have several, as protobuf (default: own)"

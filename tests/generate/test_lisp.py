@@ -91,8 +91,10 @@ def test_texts_in_lisp():
     assert all(len(line) <= 120 for line in broken(long, 20))
 
 
-SYMBOLS = """t nil pi list position array_rank_limit most_positive_fixnum function quote lambda declare setf let object codec row data before value
-end count first index number char_code_limit string car class type condition print_object loop"""
+SYMBOLS = """
+t nil pi list position array_rank_limit most_positive_fixnum function quote lambda declare setf let object codec row data before
+value end count first index number char_code_limit string car class type condition print_object loop
+"""
 TYPES = "=" * 80 + "\nMSG: evil/Multiple\nint8 value_bind\n" + "=" * 80 + "\nMSG: evil/List\nint8 t\nint8 T\nint8 t_\nMultiple[] length\n"
 
 
@@ -172,15 +174,21 @@ def test_functions_of_the_mapping_and_what_the_host_tells(tmp_path):
         forms.append(f'(unit "{tmp_path}/" "{name}")')
     good, bad = (struct.pack("<ii3d", 266, 3, yaw, 0.0, 0.0).hex() for yaw in (90.0, -90.0))
     number = struct.pack("<iii", 257, 1, 40).hex()
+    told = "(list (telling:number-message-value found) (telling:number-message-now found))"
     forms += [
         "(defun calling:halved (number) (if (minusp number) (error 'runtime:refused) (/ number 2)))",
         f'(print (calling:joint-angles-angles (calling:decode (octets-of "{good}"))))',
         f'(handler-case (calling:decode (octets-of "{bad}")) (runtime:decode-error (found) (print (runtime:message-error-kind found))))',
         "(setf runtime:*now* (constantly 17))",
-        f'(dotimes (i 3) (let ((found (telling:decode (octets-of "{number}")))) (print (telling:number-message-value found)) '
-        "(princ (telling:number-message-now found))))",
+        f'(defun told () (let ((found (telling:decode (octets-of "{number}")))) {told}))',
+        "(dotimes (i 3) (print (told)))",
     ]
-    assert lisp.run(*forms, cwd=tmp_path).split() == ["#(0.7853982)", ":REJECTED", "40", "17", "41", "17", "42", "17"]
+    assert lisp.run(*forms, cwd=tmp_path).split() == ["#(0.7853982)", ":REJECTED", "(40", "17)", "(41", "17)", "(42", "17)"]
+
+
+def refused(form: str, shown: str = "(princ-to-string found)") -> str:
+    """A form that signals an error of encoding, of which something is printed."""
+    return f"(handler-case {form} (runtime:encode-error (found) (print {shown.replace('(message', '(runtime:message')})))"
 
 
 @lisp.needs_sbcl
@@ -191,14 +199,11 @@ def test_objects_that_cannot_be_written(tmp_path):
     forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")', f'(unit "{tmp_path}/" "{unit}")']
     forms += [
         "(handler-case (joints:make-header :seq -1) (type-error () (print :type-error)))",
-        "(handler-case (joints:encode (joints:make-joint-state :name (vector 1))) "
-        "(runtime:encode-error (found) (print (runtime:message-error-kind found))))",
-        "(handler-case (joints:encode (joints:make-joint-state :name (vector (string (code-char #xd800))))) "
-        "(runtime:encode-error (found) (print (princ-to-string found))))",
+        refused("(joints:encode (joints:make-joint-state :name (vector 1)))", "(message-error-kind found)"),
+        refused("(joints:encode (joints:make-joint-state :name (vector (string (code-char #xd800)))))"),
         "(print (length (joints:encode (joints:make-joint-state))))",
         "(print (joints:message-size (joints:make-joint-state)))",
-        "(handler-case (joints:encode-into (octets-of \"0000\") (joints:make-joint-state)) "
-        "(runtime:encode-error (found) (print (princ-to-string found))))",
+        refused('(joints:encode-into (octets-of "0000") (joints:make-joint-state))'),
     ]
     assert lisp.run(*forms, cwd=tmp_path).splitlines()[1:] == [
         ":TYPE-ERROR ",
