@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import Binary, Const, Copy, Fill, Get, IsText, Nearest, Place, SetField
 from rosetta_jit.kernel.shape import expressions_of, subexpressions
 from rosetta_jit.language import typed
+from rosetta_jit.model import rules as rule_nodes
 from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Stmt
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.source import Span as Stretch
+
+NODES = frozenset({typed.__name__, rule_nodes.__name__})
+"""The modules of the nodes of typed mappings."""
 
 MAX_DEPTH = 50
 """Expressions of rules nest no deeper in practice; what does is not looked into."""
@@ -111,7 +115,7 @@ def _named(node: object, depth: int) -> Iterator[typed.Place]:
     elif isinstance(node, tuple):
         for each in node:  # pyright: ignore[reportUnknownVariableType] - whatever fields of typed nodes hold
             yield from _named(each, depth + 1)  # pyright: ignore[reportUnknownArgumentType]
-    elif is_dataclass(node) and not isinstance(node, type) and type(node).__module__ == typed.__name__ and depth < MAX_DEPTH:
+    elif is_dataclass(node) and not isinstance(node, type) and type(node).__module__ in NODES and depth < MAX_DEPTH:
         for each in fields(node):
             yield from _named(getattr(node, each.name), depth + 1)
 
