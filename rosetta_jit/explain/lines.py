@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.explain.nodes import by_span, names_of, places, span_of
 from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
-from rosetta_jit.language.both_ways.typed_inverse import as_written, for_type
-from rosetta_jit.language.places import rules_within, shown_fields
+from rosetta_jit.language.places import shown_fields
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
@@ -125,7 +124,7 @@ class Lines:
                     yield self.line(rule, _by_type(use), depth, [], use)
                     yield from self.opened(use, depth)
             case Assign(place, value, by=way):
-                text = f"{show_expr(place)} = {_expr(self.made(place, value, rule))}{_by(way)}"
+                text = f"{show_expr(place)} = {_expr(value)}{_by(way)}"
                 yield self.line(rule, self.text(rule.span) or text, depth)
                 yield from self.of_used(rule, depth)
             case SetLength(place, value):
@@ -166,13 +165,6 @@ class Lines:
         text = "" if span is None else " ".join(span.source.text[span.start : span.end].split())
         return "" if "<->" in text and _within(span, self.written.rules) else text
 
-    def made(self, place: Path, value: Expr, rule: Untyped) -> Expr:
-        """A value as it was made for the type of its place, if a typed rule tells that."""
-        names = "".join(f".{step.name}" for step in place.steps if isinstance(step, Member))
-        assigned = (each for each in rules_within(tuple(self.typed.get(span_of(rule.span), ()))) if isinstance(each, typed.Assign))
-        found = next((each.place.type for each in assigned if shown_fields(each.place.steps).endswith(names)), None)
-        return value if found is None else for_type(value, found)
-
     def expr(self, value: Expr) -> str:
         """An expression as it is written, or as it was derived."""
         return _expr(value) if value.span is None or _within(value.span, self.written.rules) else self.text(value.span)
@@ -180,7 +172,7 @@ class Lines:
 
 def _expr(value: Expr) -> str:
     """An expression without brackets around the whole."""
-    text = show_expr(as_written(value))
+    text = show_expr(value)
     return text[1:-1] if text.startswith("(") and _closes_last(text) else text
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.affine_steps import Value
     from rosetta_jit.language.typed import Call
     from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.model.types import Type
 
 EXACT = Row(
     "numbers",
@@ -69,7 +70,7 @@ def _below(call: model.Call) -> int | None:
     return known.value if isinstance(known, model.Literal) and type(known.value) is int and known.value > 0 else None
 
 
-def _joined(call: model.Call, high: model.Expr, low: model.Expr) -> model.Expr:
+def _joined(call: model.Call, high: model.Expr, low: model.Expr, _type: Type | None) -> model.Expr:
     product = model.Binary("*", high, model.Literal(_below(call) or 0, call.span), call.span)
     return model.Binary("+", product, low, call.span)
 

@@ -16,7 +16,7 @@ from rosetta_jit.kernel.terms import add, index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.affine_steps import Error, LostError
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.function import SEVERAL, Function, Texts, Whole, untyped
+from rosetta_jit.language.function import SEVERAL, ByType, Function, Texts, Whole
 from rosetta_jit.language.functions.texts import TEXT, is_textual, type_texts
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.texts.dates import LEAST_SECONDS, MOST_SECONDS, SECOND, read_date, split, written_date
@@ -141,15 +141,16 @@ def _nanoseconds_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, mo
     return (call.arguments[0], model.Call("nanoseconds", (value,), call.span)) if len(call.arguments) == 1 else None
 
 
-def _moment_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Expr] | None:
-    return (call.arguments[0], untyped("nanoseconds", (value,), call.span)) if len(call.arguments) == 1 else None
+def _moment_of(call: model.Call, value: model.Expr, type_: Type | None) -> tuple[model.Expr, model.Expr] | None:
+    return (call.arguments[0], _moment_as(type_, (value,), call.span)) if len(call.arguments) == 1 else None
 
 
-def _moment_of_seconds(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Expr]:
-    return call.arguments[0], untyped("seconds", (value, model.Literal(0, call.span)), call.span)
+def _moment_of_seconds(call: model.Call, value: model.Expr, type_: Type | None) -> tuple[model.Expr, model.Expr]:
+    return call.arguments[0], _moment_as(type_, (value, model.Literal(0, call.span)), call.span)
 
 
-def _moment_as(arguments: tuple[model.Expr, ...], type_: Type | None, span: Span | None) -> model.Expr:
+def _moment_as(type_: Type | None, arguments: tuple[model.Expr, ...], span: Span | None) -> model.Expr:
+    """A moment as a float, or as a text."""
     return model.Call("timestamp" if isinstance(type_, Float) else "iso8601", arguments, span)
 
 
@@ -165,8 +166,8 @@ def _split_number(call: model.Call, value: model.Expr) -> tuple[tuple[model.Expr
     return (seconds, whole), (behind, rest)
 
 
-def _joined(call: model.Call, high: model.Expr, low: model.Expr) -> model.Expr:
-    return untyped("seconds", (high, low), call.span)
+def _joined(call: model.Call, high: model.Expr, low: model.Expr, type_: Type | None) -> model.Expr:
+    return _moment_as(type_, (high, low), call.span)
 
 
 def _below(call: model.Call) -> int | None:
@@ -245,10 +246,9 @@ FUNCTIONS = (
         "seconds",
         OF_MOMENT,
         _lower_seconds,
-        _moment_of_seconds,
+        ByType(_moment_of_seconds),
         undone_by(iso8601=_spelt_again, timestamp=loses("what is behind the point is dropped")),
         (*OF_TEXT, *OF_FLOAT),
-        typed_inverse=_moment_as,
         whole=Whole("fraction", _below, _joined),
     ),
     of_moments("fraction", OF_MOMENT, _lower_fraction, SEVERAL, undone_by(), (*OF_TEXT, *OF_FLOAT)),
@@ -256,10 +256,9 @@ FUNCTIONS = (
         "nanoseconds",
         _type_nanoseconds,
         _lower_nanoseconds,
-        _moment_of,
+        ByType(_moment_of),
         undone_by(iso8601=_spelt_again, timestamp=_timed_again),
         (*ALL_OF_TEXT, *ALL_OF_PAIR, *OF_FLOAT),
         split=_split_number,
-        typed_inverse=_moment_as,
     ),
 )

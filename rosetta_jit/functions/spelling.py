@@ -12,7 +12,7 @@ from rosetta_jit.functions.forms import if_same_constants, loses, of_texts, row,
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64, describe
-from rosetta_jit.language.function import Texts, untyped
+from rosetta_jit.language.function import ByType, Texts
 from rosetta_jit.language.functions.texts import BYTES, NAMED, TEXT, argument, is_textual, name_of
 from rosetta_jit.language.limits import MAX_DECIMALS
 from rosetta_jit.language.typed import INT64
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.texts.number_reading import Read
     from rosetta_jit.lowering.texts.views import View
     from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 LARGEST = 18
 """Digits that a float of so many decimals may have in all."""
@@ -97,21 +96,26 @@ def _read_as_text(call: typed.Call, values: Evaluation) -> View:
     return made.view
 
 
-def _text_of(call: model.Call, value: model.Expr) -> tuple[model.Expr, model.Expr]:
+def _text_of(call: model.Call, value: model.Expr, type_: Type | None) -> tuple[model.Expr, model.Expr]:
+    """The number that a text spells, the constant that it names, or its bytes."""
     match call.arguments:
         case (inner, model.Literal(str()) as encoding):
             return inner, model.Call("bytes", (value, encoding), call.span)
         case (inner, *_):
-            return inner, untyped("text", (value,), call.span)
+            return inner, model.Call(_reading(type_), (value,), call.span)
         case _:
             raise AssertionError(call)
 
 
-def _number_of(arguments: tuple[model.Expr, ...], type_: Type | None, span: Span | None) -> model.Expr:
-    """The number that a text spells, or the constant that it names."""
-    if isinstance(type_, Enum):
-        return model.Call(type_.name, arguments, span)
-    return model.Call("number" if type_ is None or isinstance(type_, Float) else "integer", arguments, span)
+def _reading(type_: Type | None) -> str:
+    """What reads a value of a type from its text: a constant by its name, a number as it is spelt."""
+    match type_:
+        case Enum(name=name):
+            return name
+        case Bool() | Int():
+            return "integer"
+        case _:
+            return "number"
 
 
 def _read_integer(opening: typed.Call, _step: typed.Call, before: Value) -> Value | None:
@@ -185,10 +189,9 @@ FUNCTIONS = (
         "text",
         _type_text,
         _lower_text,
-        _text_of,
+        ByType(_text_of),
         undone_by(integer=_read_integer, number=_read_float, bytes=if_same_constants, **{NAMED: read_name}),
         (*ENCODED, *DECIMAL, *DECIMALS, *NAMES),
-        typed_inverse=_number_of,
     ),
     of_texts("bytes", Texts(("text", "encoding"), BYTES), _lower_bytes, _bytes_of, undone_by(text=if_same_constants), ENCODED),
     of_texts("integer", Texts(("text",), INT64), _lower_integer, _spelt, undone_by(text=loses(SPELLING)), SPELT),

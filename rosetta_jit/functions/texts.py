@@ -9,7 +9,7 @@ from rosetta_jit.functions.forms import loses, of_texts, row, undone_by
 from rosetta_jit.kernel.ir import Binary, Compare, Const, If
 from rosetta_jit.kernel.terms import index
 from rosetta_jit.language import typed
-from rosetta_jit.language.function import SEVERAL, Texts, untyped
+from rosetta_jit.language.function import SEVERAL, ByType, Texts
 from rosetta_jit.lowering.texts.making import padded, replaced, with_case
 from rosetta_jit.lowering.texts.search import find, stripped
 from rosetta_jit.lowering.texts.values import expect, placed_of, quoted
@@ -21,7 +21,6 @@ from rosetta_jit.model.types import Array, Bytes, String
 if TYPE_CHECKING:
     from rosetta_jit.lowering.evaluation import Evaluation
     from rosetta_jit.model.types import Type
-    from rosetta_jit.source import Span
 
 BLANKS = " \t\n\r\v\f"
 BEHIND_NUL = "what is behind the first NUL is dropped"
@@ -73,16 +72,10 @@ def _lower_padded(call: typed.Call, values: Evaluation) -> View:
     return padded(values.writer, view, int(size.value))
 
 
-def _filled(call: Call, value: Expr) -> tuple[Expr, Expr]:
-    return call.arguments[0], untyped("until_nul", (value,), call.span)
-
-
-def _filled_to(arguments: tuple[Expr, ...], type_: Type | None, span: Span | None) -> Expr:
+def _filled(call: Call, value: Expr, type_: Type | None) -> tuple[Expr, Expr]:
     """NULs behind the text, where the field has one size."""
-    if type_ is None:
-        return Call("padded", arguments, span)
     size = type_.length if isinstance(type_, Array | Bytes) else None
-    return Call("padded", (*arguments, Literal(size, span)), span) if isinstance(size, int) else arguments[0]
+    return call.arguments[0], Call("padded", (value, Literal(size, call.span)), call.span) if isinstance(size, int) else value
 
 
 def _until_nul(call: Call, value: Expr) -> tuple[Expr, Expr]:
@@ -106,10 +99,9 @@ FUNCTIONS = (
         "until_nul",
         Texts(("text",), None),
         _lower_until_nul,
-        _filled,
+        ByType(_filled),
         undone_by(padded=loses(BEHIND_NUL)),
         BEFORE_NUL,
-        typed_inverse=_filled_to,
     ),
     of_texts("padded", Texts(("text", "size"), None), _lower_padded, _until_nul, undone_by(until_nul=loses(BEHIND_NUL)), WITH_NULS),
 )

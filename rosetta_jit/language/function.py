@@ -15,7 +15,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 from typing import Literal as OneOf
 
-from rosetta_jit.model.expr import Call
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.entry_points import may_be_offered
 from rosetta_jit.startup.garbage import imported
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr
     from rosetta_jit.model import expr as model
     from rosetta_jit.model.types import Float, Int, Type
-    from rosetta_jit.source import Span
 
     Solved = tuple[model.Expr, model.Expr]
     """An argument of a call, and what it must be."""
@@ -38,7 +36,6 @@ if TYPE_CHECKING:
     """A signature of its own: the typed call of typed arguments; None where there is none, and the problem is in the scope."""
 
     Inverse = Callable[[model.Call, model.Expr], Solved | None]
-    TypedInverse = Callable[[tuple[model.Expr, ...], Type | None, Span | None], model.Expr]
     Split = Callable[[model.Call, model.Expr], tuple[Solved, Solved]]
     Back = Callable[[typed.Call, typed.Call, Value], Value | None]
     """Of a call, the one behind it, and the value before both: the value behind both; None where it is not undone."""
@@ -121,15 +118,26 @@ SEVERAL = "gives the same for several values"
 
 
 @dataclass(frozen=True, slots=True)
+class ByType:
+    """An inverse that depends on the type of the argument that has the field: `text(n)` is undone by `integer` or by `number`.
+
+    Of a call, its value, and the type of its first argument, None where that has none.
+    """
+
+    undo: Callable[[model.Call, model.Expr, Type | None], Solved | None]
+
+
+@dataclass(frozen=True, slots=True)
 class Whole:
-    """A function that gives one part of a number whose ``rest`` another function gives; both together say the number.
+    """A function that gives one part of a value whose ``rest`` another function gives; both together say the value.
 
     ``below`` is the number that the rest of a call is less than: 0 where that goes without saying, None where the call is no such part.
+    ``joined`` is the value whose first part a call gives, and the rest the second: of a type, None where that is unknown.
     """
 
     rest: str
     below: Callable[[model.Call], int | None]
-    joined: Callable[[model.Call, model.Expr, model.Expr], model.Expr]
+    joined: Callable[[model.Call, model.Expr, model.Expr, Type | None], model.Expr]
 
 
 # --- laws ----------------------------------------------------------------------------------------------------------------
@@ -208,8 +216,6 @@ class Function:
     inverse
         Of a call and its value: the argument that holds the field, and what that must be; None where such a call has no inverse. As a text:
         why there is none.
-    typed_inverse
-        Of an inverse that is `untyped`, with its arguments: the expression for a field of a type, or (None) where no field asks for one.
     law
         What comes back of its argument.
     rows
@@ -233,37 +239,16 @@ class Function:
     name: str
     signature: Numbers | Texts | Own
     lower: Callable[..., object]
-    inverse: Inverse | str
+    inverse: Inverse | ByType | str
     law: Law
     rows: tuple[Row, ...]
     operation: Operation = "arithmetic"
     units: Units = Units()
     split: Split | None = None
-    typed_inverse: TypedInverse | None = None
     whole: Whole | None = None
     remark: str = ""
     kept: bool = True
     changes: bool = False
-
-
-# --- inverses that depend on a type --------------------------------------------------------------------------------------
-
-UNTYPED = "inverse of "
-"""What the names of such calls begin with. No mapping can write it."""
-
-
-def untyped(function: str, arguments: tuple[model.Expr, ...], span: Span | None) -> model.Expr:
-    """The inverse of a function, to be chosen when the type of its field is known."""
-    return Call(UNTYPED + function, arguments, span)
-
-
-def for_field(call: model.Call, type_: Type | None) -> model.Expr:
-    """A call for a field of a type, or where no field asks for one; calls that mappings write stay as they are."""
-    if not call.function.startswith(UNTYPED):
-        return call
-    function = functions()[call.function.removeprefix(UNTYPED)]
-    assert function.typed_inverse is not None
-    return function.typed_inverse(call.arguments, type_, call.span)
 
 
 # --- the table -----------------------------------------------------------------------------------------------------------

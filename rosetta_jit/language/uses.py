@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.language.typed import Place
     from rosetta_jit.model import mapping as model
@@ -58,6 +58,11 @@ class Others:
     def named(self, via: Via) -> model.Mapping | None:
         """The mapping of a ``via``; None where it could not be read, which is reported."""
         return self.found.get((self.using[-1], via.mapping))
+
+    def changed(self, change: Callable[[model.Mapping], model.Mapping]) -> Others:
+        """The same with each mapping changed, once."""
+        made = {each.source.name: change(each) for each in self.mappings()}
+        return replace(self, found={key: made[each.source.name] for key, each in self.found.items()})
 
     def copied(self) -> int:
         """How many rules the uses so far have."""

@@ -16,7 +16,7 @@ from typing import Literal as OneOf
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.types import Type
+    from rosetta_jit.model.types import Int, Type
     from rosetta_jit.source import Span
 
 Side = OneOf["holder", "wire"]
@@ -200,16 +200,16 @@ NEAREST = "(nearest)"
 
 @dataclass(frozen=True, slots=True)
 class Nearest:
-    """A relation solved for a field that may be an integer: then the one nearest to ``value``, if the relation gives its place back.
+    """A relation solved for an integer: the one of this ``type`` nearest to ``value``, if the relation gives its place back.
 
-    ``again`` is the relation's expression with `NEAREST` for the field, ``place`` what that must be. ``type`` is the field's, where it is
-    known. No text has one; rules for both directions are made of them.
+    ``again`` is the relation's expression with `NEAREST` for the field, ``place`` what that must be. No text has one; rules for both
+    directions are made of them.
     """
 
     value: Expr
     again: Expr
     place: Expr
-    type: Type | None = None
+    type: Int
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

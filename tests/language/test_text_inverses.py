@@ -117,3 +117,41 @@ def test_nesting_is_bounded():
     with pytest.raises(rj.MappingError) as error:
         rj.Decoder("m.mapping", schema={**SCHEMAS, "m.mapping": f"{HEAD}unpack-rules:\n  .s = {value}\n"}, encoding="yarp4")
     assert error.value.diagnostics[0].code == "nesting"
+
+
+INVERSES = {
+    "w.idl": "struct w { long n; double x; double at; };",
+    "h.proto": 'syntax = "proto2"; message H { required string half = 1; required string whole = 2; required string rest = 3; }',
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("relation", "left", "text", "wire"),
+    [
+        ("text(.n * 0.5)", ".x .at", "1.5", {"n": 3}),
+        ("text(float64(.n))", ".x .at", "3.0", {"n": 3}),
+        ("text(int32(.x))", ".n .at", "-3", {"x": -3.0}),
+        ("text(seconds(.at))", ".n .x", "12", {"at": 12.0}),
+    ],
+)
+def test_the_inverse_is_that_of_the_type_that_the_function_is_given(backend, relation, left, text, wire):
+    """The field may have another one: an integer that is computed with floats is spelt as a float."""
+    ignored = "".join(f"  ignore {name}\n" for name in left.split())
+    rules = f"rules:\n  .half <-> {relation}\n{ignored}  default .whole\n  default .rest\n"
+    files = {**INVERSES, "m.mapping": f'import "w.idl"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\n{rules}'}
+    decode = rj.Decoder("m.mapping", schema=files, encoding="cdr-giop", backend=backend)
+    encode = rj.Encoder("m.mapping", schema=files, encoding="cdr-giop", backend=backend)
+    read = rj.Decoder.of("w", schema=files, imports=["w.idl"], encoding="cdr-giop", backend="interpreter")
+    message = encode(decode.holder_type.from_dict({"half": text}))
+    assert wire.items() <= read(message).to_dict().items()
+    assert decode(message).half == text
+
+
+def test_parts_of_a_float_as_texts():
+    rules = "rules:\n  .whole <-> text(seconds(.at))\n  .rest <-> text(fraction(.at))\n  ignore .n\n  ignore .x\n  default .half\n"
+    files = {**INVERSES, "m.mapping": f'import "w.idl"\nimport "h.proto"\ndata-holder: H\nwire-schema: w\n{rules}'}
+    encode = rj.Encoder("m.mapping", schema=files, encoding="cdr-giop", backend="interpreter")
+    read = rj.Decoder.of("w", schema=files, imports=["w.idl"], encoding="cdr-giop", backend="interpreter")
+    message = encode(encode.holder_type.from_dict({"whole": "12", "rest": "500000000"}))
+    assert read(message).at == 12.5

@@ -17,6 +17,7 @@ from rosetta_jit.model.mapping import Reject, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, rebuilt
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
 
@@ -24,27 +25,28 @@ if TYPE_CHECKING:
 Constants = frozenset["Literal | Name"]
 
 
-def facts_of(condition: Expr, *, holds: bool) -> dict[Field, Expr]:
+def facts_of(condition: Expr, type_of: TypeOf, *, holds: bool) -> dict[Field, Expr]:
     """The fields of the wire that a condition fixes where it holds, or where it does not."""
     match condition:
         case Unary("not", operand):
-            return facts_of(operand, holds=not holds)
+            return facts_of(operand, type_of, holds=not holds)
         case Binary("and" | "or" as operator, left, right):
             both = (operator == "and") == holds
-            return {**facts_of(right, holds=holds), **facts_of(left, holds=holds)} if both else {}
+            return {**facts_of(right, type_of, holds=holds), **facts_of(left, type_of, holds=holds)} if both else {}
         case Binary("==" | "!=" as operator, left, right) if (operator == "==") == holds:
-            return _equal(left, right) if is_constant(right) else _equal(right, left) if is_constant(left) else {}
+            expr, constant = (left, right) if is_constant(right) else (right, left)
+            return _equal(expr, constant, type_of) if is_constant(constant) else {}
         case Path(side="wire"):
             return {condition: Literal(holds, condition.span)}
         case _:
             return {}
 
 
-def _equal(expr: Expr, constant: Expr) -> dict[Field, Expr]:
+def _equal(expr: Expr, constant: Expr, type_of: TypeOf) -> dict[Field, Expr]:
     if len(fields_in(expr)) != 1 or condition_in(expr):
         return {}
     try:
-        solution = solved(expr, folded(constant))
+        solution = solved(expr, folded(constant), type_of)
     except NoInverseError:
         return {}
     return {solution.place: solution.value}

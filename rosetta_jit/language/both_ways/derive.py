@@ -20,13 +20,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model import mapping as model
     from rosetta_jit.model.mapping import Rule
     from rosetta_jit.source import Span
 
 
-def derive(mapping: model.Mapping, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
+def derive(mapping: model.Mapping, type_of: TypeOf, problems: list[Diagnostic], depth: int = 0) -> model.Mapping:
     """The mapping with each direction's rules complete, those of its own block behind those for both.
 
     ``depth`` is how many conditions of its relations have become blocks.
@@ -34,12 +35,12 @@ def derive(mapping: model.Mapping, problems: list[Diagnostic], depth: int = 0) -
     if mapping.rules is None:
         return mapping
     found: list[Diagnostic] = []
-    packing, rules = Packing.of(mapping.pack_rules or (), found), mapping.rules
+    packing, rules = Packing.of(mapping.pack_rules or (), type_of, found), mapping.rules
     pack_rules = packing.block(rules, ())
     conditional = _conditional(rules, packing)
     if conditional and depth < MAX_CONDITIONS:
         split = tuple(_by_blocks(rule, conditional) for rule in rules)
-        return derive(replace(mapping, rules=split), problems, depth + 1)
+        return derive(replace(mapping, rules=split), type_of, problems, depth + 1)
     problems.extend((*found, *(words.too_many_blocks(span, MAX_CONDITIONS) for span in conditional)))
     return replace(
         mapping,

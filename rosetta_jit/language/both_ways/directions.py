@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.model.mapping import Mapping
 
 
-def in_each_direction(mapping: Mapping, problems: list[Diagnostic]) -> Mapping:
+def in_each_direction(mapping: Mapping, type_of: TypeOf, problems: list[Diagnostic]) -> Mapping:
     """The mapping with all rules of each direction in the block of that direction."""
     if mapping.rules is None:
         return mapping
     from rosetta_jit.language.both_ways.derive import derive
 
-    return derive(mapping, problems)
+    return derive(mapping, type_of, problems)

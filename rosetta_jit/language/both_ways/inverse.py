@@ -24,17 +24,21 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
 from rosetta_jit.language.folding import folded, is_constant
-from rosetta_jit.language.function import SEVERAL, Affine, Function, written
+from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Len, Literal, Name, Nearest, Path, Unary
-from rosetta_jit.model.types import String
+from rosetta_jit.model.types import Int, String
 from rosetta_jit.model.walk import parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.types import Type
     from rosetta_jit.model.walk import Field
+
+    TypeOf = Callable[[Expr], Type | None]
+    """The type of an expression, that of each element where it has a `[]`; None where it has none, which is reported elsewhere."""
 
 CONVERSIONS = ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float32", "float64", "bool")
 
@@ -55,7 +59,7 @@ class NoInverseError(Exception):
         self.part, self.why = part, why
 
 
-def solve(expr: Expr, value: Expr) -> Solution:
+def solve(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
     """The field of an expression that has exactly one, so that the expression is ``value``.
 
     Raises
@@ -63,21 +67,24 @@ def solve(expr: Expr, value: Expr) -> Solution:
     NoInverseError
     """
     while not isinstance(expr, Path | Len):
-        expr, value = _step(expr, value)
+        expr, value = _step(expr, value, type_of)
     return Solution(expr, value)
 
 
-def solved(expr: Expr, value: Expr) -> Solution:
+def solved(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
     """The same; an integer field that was computed with floats is the nearest one, if the expression gives the value of it again.
 
     Raises
     ------
     NoInverseError
     """
-    found = solve(expr, value)
+    found = solve(expr, value, type_of)
     if isinstance(found.place, Len) or not _may_round(expr):
         return found
-    return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, span=expr.span))
+    type_ = type_of(found.place)
+    if not isinstance(type_, Int):
+        return found
+    return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, type_, expr.span))
 
 
 def _may_round(expr: Expr) -> bool:
@@ -129,7 +136,7 @@ def _fields(expr: Expr) -> Iterator[Field]:
         yield from _fields(part)
 
 
-def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
+def _step(expr: Expr, value: Expr, type_of: TypeOf) -> tuple[Expr, Expr]:
     """One operation taken from the expression, and its opposite done to the value."""
     match expr:
         case Unary(operator, operand, span):
@@ -141,7 +148,7 @@ def _step(expr: Expr, value: Expr) -> tuple[Expr, Expr]:
         case Call(function, (array, *_)) if function in ARGUMENTS:
             return array, put_back(expr, value)
         case Call(function) if (known := written(function)) is not None:
-            return _undone(expr, value, known)
+            return _undone(expr, value, known, type_of)
         case Call("has"):
             raise NoInverseError(expr, f"`has` {SEVERAL}")
         case Call(function):
@@ -157,11 +164,15 @@ def is_qualified(function: str) -> bool:
     return "." in function or "::" in function
 
 
-def _undone(call: Call, value: Expr, function: Function) -> tuple[Expr, Expr]:
+def _undone(call: Call, value: Expr, function: Function, type_of: TypeOf) -> tuple[Expr, Expr]:
     """The argument of a call that has the field, and what that must be."""
-    if isinstance(function.inverse, str):
-        raise NoInverseError(call, f"`{call.function}` {function.inverse}")
-    found = function.inverse(call, value)
+    match function.inverse:
+        case str() as why:
+            raise NoInverseError(call, f"`{call.function}` {why}")
+        case ByType(undo):
+            found = undo(call, value, type_of(call.arguments[0]))
+        case undo:
+            found = undo(call, value)
     if found is None or any(fields_in(each) for each in call.arguments if each is not found[0]):
         raise NoInverseError(call, f"`{call.function}` {SEVERAL}")
     return found

@@ -30,6 +30,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.function import Function
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.source import Span
@@ -59,40 +60,40 @@ class _Term:
     factor: int
 
 
-def part(expr: Expr, value: Expr) -> Parted:
+def part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
     """The fields of an expression, so that it is ``value``.
 
     Raises
     ------
     NoInverseError
     """
-    found = _part(expr, value)
+    found = _part(expr, value, type_of)
     if len({setting.place for setting in found.settings}) < len(found.settings):
         raise NoInverseError(expr, "a field stands in it twice")
     return found
 
 
-def _part(expr: Expr, value: Expr) -> Parted:
+def _part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
     if len(fields_in(expr)) == 1:
-        return Parted((solve(expr, value),), ())
+        return Parted((solve(expr, value, type_of),), ())
     match expr:
         case Call(function, (_, _)) if (known := written(function)) is not None and known.split is not None:
             (first, its), (second, rest) = known.split(expr, value)
-            return _both(first, its, second, rest)
+            return _both(_part(first, its, type_of), _part(second, rest, type_of))
         case Call(function, (argument, *_)) if function in CONVERSIONS:
-            return _part(argument, value if function != "uint64" else Call("int64", (value,), expr.span))  # parts are computed in int64
+            whole = value if function != "uint64" else Call("int64", (value,), expr.span)  # parts are computed in int64
+            return _part(argument, whole, type_of)
         case Binary("+" | "-"):
-            return _digits(expr, value)
+            return _digits(expr, value, type_of)
         case _:
             raise NoInverseError(expr, "it does not say which part of the value each of its fields is")
 
 
-def _both(first: Expr, its: Expr, second: Expr, rest: Expr) -> Parted:
-    found = _part(first, its), _part(second, rest)
-    return Parted((*found[0].settings, *found[1].settings), (*found[0].digits, *found[1].digits))
+def _both(first: Parted, second: Parted) -> Parted:
+    return Parted((*first.settings, *second.settings), (*first.digits, *second.digits))
 
 
-def _digits(expr: Binary, value: Expr) -> Parted:
+def _digits(expr: Binary, value: Expr, type_of: TypeOf) -> Parted:
     """The terms of a sum as digits, that of the largest factor first."""
     terms: list[_Term] = []
     for each in _summands(expr):
@@ -107,12 +108,13 @@ def _digits(expr: Binary, value: Expr) -> Parted:
     for number, (term, smaller) in enumerate(pairwise(terms)):
         if term.factor == smaller.factor:
             raise NoInverseError(expr, "its fields are added, and nothing says which part of the sum each one is")
-        found = _part(term.value, _quotient(value, term.factor, expr.span))
+        found = _part(term.value, _quotient(value, term.factor, expr.span), type_of)
         settings += found.settings
         digits += [Digit(_sum(terms[number + 1 :], expr.span), term.factor), *found.digits]
         value = _rest(value, term.factor, expr.span)
     last = terms[-1]
-    found = _part(last.value, value if last.factor == 1 else Call("divide", (value, Literal(last.factor, expr.span)), expr.span))
+    digit = value if last.factor == 1 else Call("divide", (value, Literal(last.factor, expr.span)), expr.span)
+    found = _part(last.value, digit, type_of)
     return Parted((*settings, *found.settings), (*found.digits, *reversed(digits)))
 
 
@@ -177,7 +179,7 @@ def plain(call: Call) -> Call:
     return replace(call, arguments=tuple(map(folded, call.arguments)))
 
 
-def put_together(first: Expr, its: Expr, second: Expr, rest: Expr) -> tuple[Solution, Digit | None]:
+def put_together(first: Expr, its: Expr, second: Expr, rest: Expr, type_of: TypeOf) -> tuple[Solution, Digit | None]:
     """The field whose one part is in ``first`` and whose other is in ``second``, so that they have these values.
 
     Raises
@@ -187,23 +189,26 @@ def put_together(first: Expr, its: Expr, second: Expr, rest: Expr) -> tuple[Solu
     call, other = taken_part(first), taken_part(second)
     assert call is not None
     assert other is not None
-    high, low = _until(first, its, call), _until(second, rest, other)
+    high, low = _until(first, its, call, type_of), _until(second, rest, other, type_of)
     function, limit = _whole_of(call), below(call)
     assert function is not None
     assert function.whole is not None
-    return solve(call.arguments[0], function.whole.joined(call, high, low)), Digit(low, limit) if limit else None
+    inner = call.arguments[0]
+    whole = function.whole.joined(call, high, low, type_of(inner))
+    return solve(inner, whole, type_of), Digit(low, limit) if limit else None
 
 
-def _until(expr: Expr, value: Expr, call: Call) -> Expr:
+def _until(expr: Expr, value: Expr, call: Call, type_of: TypeOf) -> Expr:
     """What a call within an expression must be, so that the expression is ``value``."""
     mark = Path("wire", ())
-    return solve(_marked(expr, call, mark), value).value
+    return solve(_marked(expr, call, mark), value, lambda part: type_of(_marked(part, mark, call))).value
 
 
-def _marked(expr: Expr, call: Call, mark: Path) -> Expr:
-    if isinstance(expr, Path | Len):
-        return expr
-    return mark if expr is call else rebuilt(expr, lambda part: _marked(part, call, mark))
+def _marked(expr: Expr, part: Expr, mark: Expr) -> Expr:
+    """An expression with a mark in place of one of its parts."""
+    if expr is part:
+        return mark
+    return expr if isinstance(expr, Path | Len) else rebuilt(expr, lambda each: _marked(each, part, mark))
 
 
 def below(call: Call) -> int | None:

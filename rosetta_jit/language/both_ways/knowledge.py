@@ -16,6 +16,7 @@ from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, ren
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.inverse_parts import Digit
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Relation
@@ -58,6 +59,7 @@ class Beside:
 class Knowledge:
     """Which relation sets each field of the wire, to what, and what is known of fields by expressions of the holder alone."""
 
+    type_of: TypeOf
     setters: dict[Key, tuple[Relation, Expr]] = field(default_factory=dict["Key", "tuple[Relation, Expr]"])
     values: dict[Key, Expr] = field(default_factory=dict["Key", "Expr"])
     shapes: dict[Shape, list[Key]] = field(default_factory=dict["Shape", "list[Key]"])
@@ -68,7 +70,7 @@ class Knowledge:
     def inside(self) -> Knowledge:
         """The same, for a block that may know more."""
         shapes = {shape: list(keys) for shape, keys in self.shapes.items()}
-        return Knowledge(dict(self.setters), dict(self.values), shapes, dict(self.sizes), self.budget, self.beside)
+        return Knowledge(self.type_of, dict(self.setters), dict(self.values), shapes, dict(self.sizes), self.budget, self.beside)
 
     def learn(self, place: Field, value: Expr, loops: Loops) -> None:
         """That a field has a value, unless that is known."""

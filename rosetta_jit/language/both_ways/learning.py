@@ -101,7 +101,7 @@ def _solve_parts(known: Knowledge, rule: Relation, loops: Loops, is_assigned: Ca
     if fields_of(place, "wire") or len(unknown) < 2 or condition_in(rule.value) or any(map(is_assigned, unknown)):
         return False
     try:
-        found = part(_with_known(rule.value, unknown, known, loops), place)
+        found = part(_with_known(rule.value, unknown, known, loops), place, known.type_of)
     except NoInverseError:
         return False
     for setting in found.settings:
@@ -131,7 +131,7 @@ def _part_of(rule: Relation) -> Call | None:
 
 def _put_together(known: Knowledge, rule: Relation, other: Relation, loops: Loops) -> bool:
     try:
-        solution, digit = put_together(rule.value, rule.place, other.value, other.place)
+        solution, digit = put_together(rule.value, rule.place, other.value, other.place, known.type_of)
     except NoInverseError:
         return False
     digits = () if digit is None else (digit,)
@@ -146,7 +146,7 @@ def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Exp
     if fields_of(condition, "wire") or any(condition_in(part) for part in parts[1:]):
         return False
     try:
-        found = [solved(part, place) for part in parts[1:] if len(fields_in(part)) == 1]
+        found = [solved(part, place, known.type_of) for part in parts[1:] if len(fields_in(part)) == 1]
     except NoInverseError:
         return False
     if len(found) != 2 or found[0].place != found[1].place:
@@ -157,7 +157,7 @@ def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Exp
 
 def _set_by(known: Knowledge, rule: Relation, expr: Expr, place: Expr, loops: Loops) -> bool:
     try:
-        solution = solved(expr, place)
+        solution = solved(expr, place, known.type_of)
     except NoInverseError:
         return False
     _say(known, rule, solution.place, solution.value, loops)

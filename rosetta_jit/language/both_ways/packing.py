@@ -19,7 +19,6 @@ from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, t
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
-from rosetta_jit.language.both_ways.typed_inverse import as_written
 from rosetta_jit.language.folding import FALSE, TRUE, folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.limits import MAX_BLOCKS
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.inverse_parts import Digit
     from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model.expr import Expr
@@ -64,18 +64,19 @@ class Packing:
     """Turns one block round after another, each with what is known around it."""
 
     problems: list[Diagnostic]
+    known: Knowledge
     completed: frozenset[tuple[str, ...]]
     assigned: frozenset[tuple[str, ...]]
-    known: Knowledge = field(default_factory=Knowledge)
     owed: tuple[_Owed, ...] = ()
     blocks: list[Relation] = field(default_factory=list["Relation"])
     written: Mapping[Field, Expr] = field(default_factory=lambda: NOTHING)
 
     @classmethod
-    def of(cls, pack_rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Packing:
+    def of(cls, pack_rules: tuple[Rule, ...], type_of: TypeOf, problems: list[Diagnostic]) -> Packing:
         """``pack_rules`` are those of the direction's own block."""
         written: dict[Field, Expr] = {rule.place: rule.value for rule in pack_rules if isinstance(rule, Assign)}
-        return cls(problems, frozenset(_set_by(pack_rules)), frozenset(_set_by(pack_rules, lengths=False)), written=written)
+        completed, assigned = (frozenset(_set_by(pack_rules, lengths=lengths)) for lengths in (True, False))
+        return cls(problems, Knowledge(type_of), completed, assigned, written=written)
 
     def block(self, rules: tuple[Rule, ...], loops: Loops) -> tuple[Rule, ...]:
         """The rules of a block, when all of its relations are known."""
@@ -147,7 +148,7 @@ class Packing:
         if conditional is not None and not fields_of(place, "wire"):
             return self.split(rule, conditional, loops)
         if not all(map(self.is_completed, missing)):
-            self.problems.append(_reason(rule, missing, place))
+            self.problems.append(_reason(rule, missing, place, self.known.type_of))
         return ()
 
     def setting(self, target: Field, loops: Loops, rule: Relation) -> tuple[Rule, ...]:
@@ -216,7 +217,7 @@ class Packing:
         if _rejects(block):
             return _Block((), ())
         owed = _Owed(rule, holds)
-        found = self.enter(block, loops, facts_of(rule.condition, holds=holds), owed)
+        found = self.enter(block, loops, facts_of(rule.condition, self.known.type_of, holds=holds), owed)
         if any(each is owed for each in found.owed):
             missing = [each for each in fields_in(rule.condition) if self.known.value(each, loops) is None]
             if not all(map(self.is_completed, missing)):
@@ -297,7 +298,7 @@ def checks_of(beside: Beside) -> tuple[Rule, ...]:
 
 def _within(digit: Digit, span: Span | None) -> Rule:
     is_below, is_above = Binary("<", digit.value, Literal(0, span), span), Binary(">=", digit.value, Literal(digit.below, span), span)
-    reason = words.no_digit(show_expr(as_written(digit.value)), digit.below)
+    reason = words.no_digit(show_expr(digit.value), digit.below)
     return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
 
 
@@ -314,7 +315,7 @@ def _setting(place: Path, value: Expr, span: Span | None, *, length: bool, way: 
 def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
     """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
     held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
-    reason = words.disagrees(show_expr(place), show_expr(as_written(wanted)))
+    reason = words.disagrees(show_expr(place), show_expr(wanted))
     return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
 
 
@@ -346,7 +347,7 @@ def _rejects(rules: tuple[Rule, ...]) -> bool:
     return bool(rules) and all(isinstance(rule, Reject) for rule in rules)
 
 
-def _reason(rule: Relation, missing: list[Field], place: Expr) -> Diagnostic:
+def _reason(rule: Relation, missing: list[Field], place: Expr, type_of: TypeOf) -> Diagnostic:
     """Why a relation cannot be packed."""
     shown = [show_expr(each) for each in missing]
     if fields_of(place, "wire"):
@@ -354,7 +355,7 @@ def _reason(rule: Relation, missing: list[Field], place: Expr) -> Diagnostic:
     if len(fields_in(rule.value)) > 1:
         return words.several_fields(rule.value.span, shown)
     try:
-        solve(rule.value, rule.place)
+        solve(rule.value, rule.place, type_of)
     except NoInverseError as error:
         return words.no_inverse(error.part.span, str(error), rule.span, shown[0])
     return words.index_reads(missing[0].span)
@@ -376,7 +377,7 @@ def _fields_in_rules(rules: tuple[Rule, ...]) -> list[Field]:
     return found
 
 
-def _set_by(rules: tuple[Rule, ...], *, lengths: bool = True) -> list[tuple[str, ...]]:
+def _set_by(rules: tuple[Rule, ...], *, lengths: bool) -> list[tuple[str, ...]]:
     """The fields that rules set, without indices."""
     found: list[tuple[str, ...]] = []
     for rule in rules:

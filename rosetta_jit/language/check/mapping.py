@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError
-from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.check.causes import causes, relations_of, unclear
 from rosetta_jit.language.check.completeness import Missing, check_complete
 from rosetta_jit.language.check.default_counts import defaulted_counts
@@ -23,7 +22,7 @@ from rosetta_jit.language.imports.declarations import Imports, merge, reached, r
 from rosetta_jit.language.imports.mappings import read_others
 from rosetta_jit.language.imports.search import Reading
 from rosetta_jit.language.parameters.bind import bind, handed_on
-from rosetta_jit.language.resolve.rules import Resolved, resolve
+from rosetta_jit.language.resolve.rules import Resolved, derived, resolve
 from rosetta_jit.language.units.hand_factors import wrong_factors
 from rosetta_jit.language.units.side_files import annotated
 from rosetta_jit.model.types import name_parts
@@ -91,12 +90,14 @@ def check(
     bound: list[Diagnostic] = []
     underived: list[Diagnostic] = []
     written, reading = bind(mapping, parameters, bound), reading or Reading()
-    relations, mapping = relations_of(written.rules or ()), in_each_direction(written, underived)
-    others = read_others(mapping, search, reading, problems, handed_on(mapping, parameters))
-    imports = Imports(mapping.source, front_ends, search, reading)
-    imported = read_imports(mapping, imports, problems)
-    theirs = [each for other in others.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
+    relations = relations_of(written.rules or ())
+    read = read_others(written, search, reading, problems, handed_on(written, parameters))
+    imports = Imports(written.source, front_ends, search, reading)
+    imported = read_imports(written, imports, problems)
+    theirs = [each for other in read.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
     merged = merge([*imported, *theirs], problems)
+    mapping = derived(written, merged, read, underived)
+    others = read.changed(lambda other: derived(other, merged, read, problems))
     complete = not _errors(problems)
     problems += [*_without_handed_on(bound, mapping, others), *underived]
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)

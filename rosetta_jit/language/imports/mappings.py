@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import nested as words
 from rosetta_jit.errors import ReportError
-from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.limits import MAX_MAPPINGS
 from rosetta_jit.language.parameters.bind import bind
 from rosetta_jit.language.parse.mapping import parse
 from rosetta_jit.language.uses import Others
-from rosetta_jit.model.mapping import Assign, For, Via, When
+from rosetta_jit.model.mapping import Assign, For, Relation, Via, When
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -62,7 +61,7 @@ def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, o
         mapping = parse(source)
         declared = {each.name for each in mapping.parameters}
         given = None if parameters is None else {name: value for name, value in parameters.items() if name in declared}
-        return in_each_direction(bind(mapping, given, problems), problems)
+        return bind(mapping, given, problems)
     except ReportError as error:
         problems.extend(error.diagnostics)
         return None
@@ -71,14 +70,14 @@ def _read(source: Source, problems: list[Diagnostic], parameters: Mapping[str, o
 def _named(mapping: model.Mapping) -> Iterator[tuple[str, Span | None]]:
     """The names of the mappings that one uses, and where."""
     yield from ((each.path, each.span) for each in mapping.imports if each.path.endswith(MAPPING_SUFFIX))
-    for rules in (mapping.unpack_rules, mapping.pack_rules):
+    for rules in (mapping.rules, mapping.unpack_rules, mapping.pack_rules):
         yield from ((via.mapping, via.span) for via in _vias(rules or ()))
 
 
 def _vias(rules: tuple[Rule, ...]) -> Iterator[Via]:
     for rule in rules:
         match rule:
-            case Assign(by=Via() as via):
+            case Assign(by=Via() as via) | Relation(via=Via() as via):
                 yield via
             case For(body=body):
                 yield from _vias(body)

@@ -12,10 +12,8 @@ from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.constants import constant_of
 from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single
-from rosetta_jit.language.function import for_field
 from rosetta_jit.language.functions.calls import type_call
 from rosetta_jit.language.functions.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.language.functions.texts import concatenation, is_textual
@@ -70,7 +68,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Call("has" | "index" as function, (model.Path() as path,)):
             return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
         case model.Call():
-            return _call(expr, scope)
+            return type_call(expr, scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
@@ -81,15 +79,9 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
             assert_never(expr)
 
 
-def _call(expr: model.Call, scope: Scope) -> Expr | None:
-    """A call; an inverse that depends on a type is here compared with something that asks for none."""
-    found = for_field(expr, None)
-    return type_call(expr, scope, type_expr) if found is expr else type_expr(found, scope)
-
-
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
     """An expression that must be an integer, as int64."""
-    typed = type_expr(for_type(expr, INT64), scope)
+    typed = type_expr(expr, scope)
     if typed is None:
         return None
     integer = as_int64(typed)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.both_ways.typed_inverse import for_type
 from rosetta_jit.language.conversions import convert
 from rosetta_jit.language.functions.calls import rules_between
 from rosetta_jit.language.functions.texts import is_textual, name_of
@@ -14,7 +13,7 @@ from rosetta_jit.language.typed import Binary, Convert, Local, Nearest
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.model.expr import NEAREST, Held, Path
 from rosetta_jit.model.expr import Binary as Operation
-from rosetta_jit.model.types import Enum, Float, Int
+from rosetta_jit.model.types import Enum, Float
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +32,7 @@ def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: T
     place = resolve_path(expr.place, scope, type_index)
     if isinstance(place, Broken):
         return None
-    value = type_expr(for_type(expr.value, place.type), scope)
+    value = type_expr(expr.value, scope)
     if value is None:
         return None
     measured = in_unit(value, place, scope)
@@ -43,7 +42,7 @@ def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: T
 def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr | None:
     """The typed form of a solved relation: of a float for an integer the nearest integer, if the relation gives its place back."""
     value = type_expr(expr.value, scope)
-    if value is None or not isinstance(expr.type, Int) or not isinstance(value.type, Float):
+    if value is None or not isinstance(value.type, Float):
         return value
     again = Held(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
     check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, nearest=expr.type))

@@ -14,7 +14,7 @@ from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
-from rosetta_jit.language.both_ways.typed_inverse import for_type
+from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.constants import constants_of
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
 from rosetta_jit.language.functions.decisions import type_condition
@@ -31,6 +31,7 @@ from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.nested import nest
 from rosetta_jit.language.resolve.rest import defaulted, ignored
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
+from rosetta_jit.language.resolve.types_of import types_of
 from rosetta_jit.language.scope import Broken, Message, Scope, enums_of, resolve_path
 from rosetta_jit.language.typed import (
     Assign,
@@ -60,7 +61,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Side
-    from rosetta_jit.model.types import Schema
+    from rosetta_jit.model.types import Schema, Type
     from rosetta_jit.source import Span
 
 
@@ -95,22 +96,41 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
     wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
     if holder_type is None or wire_type is None:
         return tuple(problems)
-    enums = enums_of(holder, wire)
-    constants = constants_of(*((holder,) if holder is wire else (holder, wire)))
-    messages: dict[Side, Message] = {"holder": holder_type, "wire": wire_type}
-    named: set[str] = set()
-    functions = signatures((mapping, *others.mappings()), problems)
-    scope = Scope(messages, enums, constants, "holder", (), problems, named, functions, others, rounds=mapping.rounds)
+    scope = _scope({"holder": holder_type, "wire": wire_type}, mapping, others, problems)
     try:
         unpack = _block(mapping.unpack_rules, scope)
         pack = _block(mapping.pack_rules, replace(scope, target="wire"))
     except EnoughError:
         return tuple(problems)
-    return Resolved(holder_type, wire_type, unpack, pack, frozenset(named), tuple(problems), functions)
+    return Resolved(holder_type, wire_type, unpack, pack, frozenset(scope.named), tuple(problems), scope.functions)
+
+
+def derived(mapping: model.Mapping, schema: Schema, others: Others, problems: list[Diagnostic]) -> model.Mapping:
+    """A mapping with all rules of each direction in the block of that direction; with the types of its fields, where they are known."""
+    return in_each_direction(mapping, types_of(mapping.rules or (), lambda: scope_of(mapping, schema, others)), problems)
+
+
+def scope_of(mapping: model.Mapping, schema: Schema, others: Others) -> Scope | None:
+    """What the rules of a mapping that unpack can name; None where a side has no message, which `resolve` reports."""
+    holder, wire = (_named(schema, name) for name in (mapping.holder_type, mapping.wire_type))
+    if not isinstance(holder, Struct) or not isinstance(wire, Struct):
+        return None
+    return _scope({"holder": Message(holder, schema), "wire": Message(wire, schema)}, mapping, others, [])
+
+
+def _scope(messages: dict[Side, Message], mapping: model.Mapping, others: Others, problems: list[Diagnostic]) -> Scope:
+    holder, wire = (messages[side].schema for side in ("holder", "wire"))
+    enums, constants = enums_of(holder, wire), constants_of(*((holder,) if holder is wire else (holder, wire)))
+    functions = signatures((mapping, *others.mappings()), problems)
+    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=mapping.rounds)
+
+
+def _named(schema: Schema, name: str) -> Type | None:
+    return schema.types.get(name) or next((type_ for known, type_ in schema.types.items() if same_name(known, name)), None)
 
 
 def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
-    found = schema.types.get(name) or next((type_ for known, type_ in schema.types.items() if same_name(known, name)), None)
+    found = _named(schema, name)
     if isinstance(found, Struct):
         why = excess(found, schema)
         problems += [too_large(found.name, span, why)] if why else []
@@ -241,8 +261,6 @@ class _Block:
 
     def assign(self, rule: model.Assignment, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
-        if place is not None and rule.by == "checked":
-            rule = replace(rule, value=for_type(rule.value, place.type))
         value = type_expr(rule.value, scope)
         if place is None:
             return None
