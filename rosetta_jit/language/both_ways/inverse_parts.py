@@ -20,15 +20,16 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve
+from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve, undone_group
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import functions, written
-from rosetta_jit.model.expr import Binary, Call, Len, Literal, Path
+from rosetta_jit.language.groups import component, function_of
+from rosetta_jit.model.expr import Binary, Call, Len, List, Literal, Path
 from rosetta_jit.model.walk import parts, rebuilt
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rosetta_jit.language.function import Function
     from rosetta_jit.model.expr import Expr
@@ -79,6 +80,10 @@ def _part(expr: Expr, value: Expr) -> Parted:
         case Call(function, (_, _)) if (known := written(function)) is not None and known.split is not None:
             (first, its), (second, rest) = known.split(expr, value)
             return _both(first, its, second, rest)
+        case Call() if (several := function_of(expr)) is not None:
+            return _all(_part(argument, its) for argument, its in undone_group(expr, value, several, alone=False))
+        case List(items):
+            return _all(_part(item, component(value, number)) for number, item in enumerate(items) if fields_in(item))
         case Call(function, (argument, *_)) if function in CONVERSIONS:
             return _part(argument, value if function != "uint64" else Call("int64", (value,), expr.span))  # parts are computed in int64
         case Binary("+" | "-"):
@@ -88,8 +93,12 @@ def _part(expr: Expr, value: Expr) -> Parted:
 
 
 def _both(first: Expr, its: Expr, second: Expr, rest: Expr) -> Parted:
-    found = _part(first, its), _part(second, rest)
-    return Parted((*found[0].settings, *found[1].settings), (*found[0].digits, *found[1].digits))
+    return _all((_part(first, its), _part(second, rest)))
+
+
+def _all(found: Iterable[Parted]) -> Parted:
+    several = list(found)
+    return Parted(tuple(each for one in several for each in one.settings), tuple(each for one in several for each in one.digits))
 
 
 def _digits(expr: Binary, value: Expr) -> Parted:
