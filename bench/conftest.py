@@ -18,6 +18,7 @@ ORDER = (
     "native_bottle",
     "native_image",
     "reorder",
+    "groups",
     "mapped",
     "bridges",
     "peers",

@@ -14,6 +14,7 @@ from rosetta_jit.explain.content import explanation
 from rosetta_jit.language.arrays import layouts
 from rosetta_jit.language.function import names, shipped
 from rosetta_jit.language.functions import calls
+from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.laws.chain import UNSHOWN
 from tests.golden import check_golden
 
@@ -121,13 +122,14 @@ def test_what_is_not_turned_round(value):
 
 
 def test_every_function_is_told():
-    functions = {*names(), *layouts.ARGUMENTS, *calls.INTEGERS, *calls.FLOATS}
+    functions = {*names(), *group_functions(), *layouts.ARGUMENTS, *calls.INTEGERS, *calls.FLOATS}
     told = PAGE.replace("`int8_at(b, i)` … `uint64_at(b, i)`", " ".join(f"`{name}(" for name in names() if re.search(r"int\d+_at", name)))
     assert {name for name in {*functions, "has", "bool"} if f"`{name}(" not in told} == set()
 
 
 TABLES = {
     "numbers": "| function | takes | gives |",
+    "groups": "| function | takes | gives |",
     "texts": "| function | gives | else, an error of kind |",
     "bytes": "| function | gives | else, an error of kind |",
     "images": "| function | takes | gives |",

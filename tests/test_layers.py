@@ -70,7 +70,7 @@ MAY_IMPORT = {
     "functions": FUNCTIONS,
     "language.both_ways": READS | {"language.arrays", "language.functions"},
     "language.imports": READS | {"parsing", "language.parse", "language.parameters"},
-    "language.resolve": READS | {"language.arrays", "language.units", "language.functions", "language.both_ways"},
+    "language.resolve": READS | {"language.parse", "language.arrays", "language.units", "language.functions", "language.both_ways"},
     "language.algebra": READS,
     "language.check": READS | {"parsing"} | LANGUAGE - {"language.laws", "language.both_ways"},
     "language.laws": READS | {"language.algebra", "language.check"},

@@ -145,6 +145,11 @@ def key_field(span: Span | None) -> Diagnostic:
     return error("key-field", "elements are known by a field, or a field of one", span, "this is none", help_='write `.a[.key = "x"]`')
 
 
+def via_of_several(span: Span) -> Diagnostic:
+    """A mapping for several places at once."""
+    return error("syntax", "`via` maps one message, and several places stand here", span, help_="write a rule for each message")
+
+
 def picked(span: Span | None) -> Diagnostic:
     """An element of a list of elements that is no number."""
     return error(

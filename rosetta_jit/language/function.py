@@ -43,6 +43,9 @@ if TYPE_CHECKING:
 GROUP = "rosetta_jit.functions"
 """The entry-point group in which packages offer functions of their own: a `Function` each."""
 
+GROUPS = ("rotations", "poses", "geodesy")
+"""Those of `OURS` whose functions are components of functions of several values (`language.groups`)."""
+
 OURS = (
     "angles",
     "numbers",
@@ -57,6 +60,7 @@ OURS = (
     "moments",
     "octets",
     "images",
+    *GROUPS,
 )
 """Modules of `rosetta_jit.functions` with a tuple `FUNCTIONS`, in the order of the reference."""
 
@@ -189,7 +193,7 @@ Operation = OneOf[
 
 # --- the record ----------------------------------------------------------------------------------------------------------
 
-Table = OneOf["numbers", "texts", "bytes", "images"]
+Table = OneOf["numbers", "groups", "texts", "bytes", "images"]
 """The tables of the reference."""
 
 

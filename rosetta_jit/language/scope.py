@@ -44,7 +44,8 @@ class Scope:
     """The names that are known at one point of a mapping; where problems go, and the declarations that were ``named``.
 
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
-    ``suffix`` tells its loop variables from those around. ``nearest`` is the type of `model.expr.NEAREST`, where that is one.
+    ``suffix`` tells its loop variables from those around. ``values`` are the types of what else has a name:
+    `model.expr.NEAREST`, and what the definitions of a function of several values name.
     ``rounds`` is whether the mapping says that float64 is rounded where float32 is set.
     """
 
@@ -59,7 +60,7 @@ class Scope:
     others: Others
     bases: Mapping[Side, Place] = field(default_factory=dict["Side", "Place"])
     suffix: str = ""
-    nearest: Int | None = None
+    values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])
     rounds: bool = False
 
     def inside(self, variable: str) -> Scope:

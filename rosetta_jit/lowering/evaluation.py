@@ -80,6 +80,14 @@ class Evaluation(Protocol):
         """Do something with the item of a list that an index chooses."""
         ...
 
+    def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, Expr]]) -> Mapping[str, Expr]:
+        """Numbers that are computed together, by name; what was computed for an equal value is found again where it is known."""
+        ...
+
+    def with_locals(self, numbers: Mapping[str, Expr]) -> Evaluation:
+        """The same where these names alone have values, and nothing is decided yet."""
+        ...
+
     def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Evaluation:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
         ...

@@ -168,7 +168,10 @@ class List:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """``names[index]``, ``[a, b, c][index]``: an item of a list of the text, or of a parameter."""
+    """``names[index]``, ``[a, b, c][index]``: an item of a list of the text, or of a parameter.
+
+    ``euler(.q).yaw``: one number of a group (`language.groups`), whose name is a literal as the index.
+    """
 
     items: Expr
     index: Expr

@@ -2,7 +2,8 @@
 
     Mapping = Import*, Function*, Parameter*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = those of `model.rules`, with Path and Expr; an Assign is `by` a Via, or "checked"
-            | Relation(Path | Len, Expr, Via) | Rest | SameNames(Renamed*, Path*) | Arranged(place, flag, {constant: Expr})
+            | Relation(Path | Len | List, Expr, Via) | Rest | SameNames(Renamed*, Path*) | Arranged(place, flag, {constant: Expr})
+            | Several(Path*, Expr)
 
 In a rule to unpack the place is on the holder's side, in a rule to pack on the wire's. Relations and loops of them stand in the rules for
 both directions alone, with the place on the holder's side.
@@ -19,7 +20,7 @@ from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLen
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.expr import Len
+    from rosetta_jit.model.expr import Len, List
     from rosetta_jit.source import Source, Span
 
 
@@ -75,9 +76,12 @@ Way: TypeAlias = Via | OneOf["checked"]
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """``.place <-> value``, ``len(.place) <-> value``: what `language.both_ways.derive` makes rules for both directions of."""
+    """``.place <-> value``, ``len(.place) <-> value``: what `language.both_ways.derive` makes rules for both directions of.
 
-    place: Path | Len
+    A list of places is related to the numbers of a group (`language.groups`), in their order.
+    """
+
+    place: Path | Len | List
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
     via: Via | None = None
@@ -127,6 +131,19 @@ class Arranged:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class Several:
+    """``.a, .b, .c = value``, ``.a, .b, .c <-> value``: several places, and a value of as many numbers.
+
+    `language.parameters.bind` makes rules of one place of it, or a `Relation` of a list.
+    """
+
+    places: tuple[Path, ...]
+    value: Expr
+    span: Span | None = field(default=None, compare=False, repr=False)
+    is_relation: bool = False
+
+
 Assignment: TypeAlias = Assign[Path, Expr, Way]
 Rule: TypeAlias = (
     Assignment
@@ -140,6 +157,7 @@ Rule: TypeAlias = (
     | Rest
     | SameNames
     | Arranged
+    | Several
 )
 
 

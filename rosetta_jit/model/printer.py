@@ -79,6 +79,8 @@ def show_expr(value: expr.Expr) -> str:
             return f"({' else '.join([f'{show_expr(value)} if {show_expr(condition)}' for condition, value in cases])} else {last})"
         case expr.List(items):
             return f"[{', '.join(map(show_expr, items))}]"
+        case expr.Item(items, expr.Literal(str(name))):
+            return f"{show_expr(items)}.{name}"
         case expr.Item(items, at):
             return f"{show_expr(items)}[{show_expr(at)}]"
         case expr.Given(name, arguments):

@@ -90,14 +90,23 @@ def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
             return replace(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
         case mapping.Reject(pieces=pieces):
             return replace(rule, pieces=tuple(map(change, pieces)))
+        case mapping.Several(places, value):
+            return replace(rule, places=tuple(with_indices(place, change) for place in places), value=change(value))
         case mapping.SameNames() | mapping.Rest():
             return rule
         case _:
             assert_never(rule)
 
 
-def _with_indices(place: Field, change: Callable[[Expr], Expr]) -> Field:
-    return replace(place, path=with_indices(place.path, change)) if isinstance(place, Len) else with_indices(place, change)
+def _with_indices(place: Field | List, change: Callable[[Expr], Expr]) -> Field | List:
+    """A place, or several, with its indices changed."""
+    match place:
+        case Len(path):
+            return replace(place, path=with_indices(path, change))
+        case List(items):
+            return replace(place, items=tuple(rebuilt(each, change) for each in items))
+        case Path():
+            return with_indices(place, change)
 
 
 def with_indices(path: Path, change: Callable[[Expr], Expr]) -> Path:

@@ -12,6 +12,7 @@ from rosetta_jit.catalogue import bind as bind_words
 from rosetta_jit.catalogue import check as check_words
 from rosetta_jit.catalogue import derive as derive_words
 from rosetta_jit.catalogue import functions as functions_words
+from rosetta_jit.catalogue import groups as groups_words
 from rosetta_jit.catalogue import images as images_words
 from rosetta_jit.catalogue import layouts as layouts_words
 from rosetta_jit.catalogue import mapping as mapping_words
@@ -58,6 +59,7 @@ CATALOGUE = (
     unit_files_words,
     bind_words,
     number_bytes_words,
+    groups_words,
 )
 MAKERS = ("error", "warning", "note", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found")

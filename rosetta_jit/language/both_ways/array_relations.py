@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, KEEP_LENGTH
 from rosetta_jit.language.both_ways.inverse import fields_in
-from rosetta_jit.model.expr import Call, Each, Held, Index, Len, Member, Path
+from rosetta_jit.model.expr import Call, Each, Held, Index, Len, List, Member, Path
 from rosetta_jit.model.walk import path_of, rebuilt
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.walk import Field
 
 
-def equal_lengths(place: Field, value: Expr) -> tuple[Len, Len] | None:
+def equal_lengths(place: Field | List, value: Expr) -> tuple[Len, Len] | None:
     """The length of the array in a value, and that of the place, if both have as many elements."""
     array = value
     while isinstance(array, Call) and array.function in KEEP_LENGTH and array.arguments:

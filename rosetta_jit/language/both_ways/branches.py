@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved, subject_of
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.limits import MAX_TESTED
-from rosetta_jit.model.expr import Binary, Call, Choice, Literal, Name, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Reject, Relation, When
 from rosetta_jit.model.walk import Field, fields_of, rebuilt
 
@@ -103,7 +103,7 @@ def _places(rules: tuple[Rule, ...]) -> list[Field]:
     found: list[Field] = []
     for rule in rules:
         match rule:
-            case Relation(place) if not fields_of(place, "wire"):
+            case Relation((Path() | Len()) as place) if not fields_of(place, "wire"):
                 found.append(place)
             case When(_, then, otherwise):
                 found += _places((*then, *otherwise))

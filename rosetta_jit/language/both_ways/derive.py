@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.inverse import condition_in
 from rosetta_jit.language.both_ways.packing import Packing, checks_of
+from rosetta_jit.language.groups import component
 from rosetta_jit.language.limits import MAX_CONDITIONS
-from rosetta_jit.model.expr import Len
+from rosetta_jit.model.expr import Len, List, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Relation, SameNames, SetLength, When
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model import mapping as model
-    from rosetta_jit.model.mapping import Rule
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Rule, Via
     from rosetta_jit.source import Span
 
 
@@ -85,6 +87,16 @@ def _relations(rules: tuple[Rule, ...]) -> Iterator[int]:
                 pass
 
 
+def _set(place: Path | Len | List, value: Expr, span: Span | None, via: Via | None) -> tuple[Rule, ...]:
+    match place:
+        case Len(path):
+            return (SetLength(path, value, span),)
+        case List(items):
+            return tuple(Assign(each, component(value, number), span) for number, each in enumerate(items) if isinstance(each, Path))
+        case Path():
+            return (Assign(place, value, span, via),)
+
+
 def _unpacking(rules: tuple[Rule, ...], checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
     return tuple(made for rule in rules for made in _unpacked(rule, checked))
 
@@ -95,8 +107,7 @@ def _unpacked(rule: Rule, checked: Mapping[int, Beside]) -> tuple[Rule, ...]:
         case Relation(place, value, span, via):
             beside = checked.get(id(rule))
             checks = () if beside is None or beside.side == "holder" else checks_of(beside)
-            set_to = SetLength(place.path, value, span) if isinstance(place, Len) else Assign(place, value, span, via)
-            return (*checks, set_to)
+            return (*checks, *_set(place, value, span, via))
         case For(body=body):
             return (replace(rule, body=_unpacking(body, checked)),)
         case When(then=then, otherwise=otherwise):

@@ -25,7 +25,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
-from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Len, Literal, Name, Nearest, Path, Unary
+from rosetta_jit.language.groups import arguments_of, component, function_of
+from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
 from rosetta_jit.model.types import Int, String
 from rosetta_jit.model.walk import parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -33,6 +34,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from rosetta_jit.language.groups import GroupFunction
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Type
     from rosetta_jit.model.walk import Field
@@ -89,6 +91,8 @@ def solved(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
 
 def _may_round(expr: Expr) -> bool:
     """Whether an expression of an integer may be computed in floats, so that what turns it round is off by their rounding."""
+    if any(function_of(part) is not None for part in parts(expr)):
+        return False  # nothing that several values are computed from is the nearest integer for each of them
     found = [part for part in parts(expr) if _is_rounding(part)]
     of_integers = all(isinstance(part, Binary) and part.operator != "/" and _has_whole(part) for part in found)
     is_float = any(isinstance(part, Call) and part.function in ("float32", "float64") for part in parts(expr))
@@ -149,6 +153,13 @@ def _step(expr: Expr, value: Expr, type_of: TypeOf) -> tuple[Expr, Expr]:
             return array, put_back(expr, value)
         case Call(function) if (known := written(function)) is not None:
             return _undone(expr, value, known, type_of)
+        case Call() if (several := function_of(expr)) is not None:
+            (found,) = undone_group(expr, value, several, alone=True)
+            return found
+        case List():
+            return only_item(expr, value)
+        case Item(items=Call(function), index=Literal(str(name))):
+            raise NoInverseError(expr, f"`{name}` does not say what else `{function}` gives")
         case Call("has"):
             raise NoInverseError(expr, f"`has` {SEVERAL}")
         case Call(function):
@@ -176,6 +187,37 @@ def _undone(call: Call, value: Expr, function: Function, type_of: TypeOf) -> tup
     if found is None or any(fields_in(each) for each in call.arguments if each is not found[0]):
         raise NoInverseError(call, f"`{call.function}` {SEVERAL}")
     return found
+
+
+def undone_group(call: Call, value: Expr, function: GroupFunction, *, alone: bool) -> list[tuple[Expr, Expr]]:
+    """The arguments of a function of several values that have fields, and what each must be; one where it is to stand ``alone``.
+
+    Raises
+    ------
+    NoInverseError
+    """
+    arguments = arguments_of(call, function)
+    if arguments is None:
+        raise NoInverseError(call, f"`{call.function}` takes {len(function.parameters)} values")
+    unknown = [number for number, argument in enumerate(arguments) if fields_in(argument)]
+    if len(unknown) > 1 and (alone or not function.separates):
+        raise NoInverseError(call, f"fields stand in several arguments of `{call.function}`")
+    found: list[tuple[Expr, Expr]] = []
+    for number in unknown:
+        inverse = function.inverses[number]
+        if isinstance(inverse, str):
+            raise NoInverseError(call, f"`{call.function}` {inverse}")
+        found.append((arguments[number], inverse(arguments, value)))
+    return found
+
+
+def only_item(items: List, value: Expr) -> tuple[Expr, Expr]:
+    """The item of a list with the field, and the number of a group that it must be."""
+    found = [(item, number) for number, item in enumerate(items.items) if fields_in(item)]
+    if len(found) != 1:
+        raise NoInverseError(items, "its fields are several")
+    ((item, number),) = found
+    return item, component(value, number)
 
 
 def _operation(expr: Binary, value: Expr) -> tuple[Expr, Expr]:

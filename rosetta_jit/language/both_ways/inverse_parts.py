@@ -20,15 +20,16 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve
+from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve, undone_group
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import functions, written
-from rosetta_jit.model.expr import Binary, Call, Len, Literal, Path
+from rosetta_jit.language.groups import component, function_of
+from rosetta_jit.model.expr import Binary, Call, Len, List, Literal, Path
 from rosetta_jit.model.walk import parts, rebuilt
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rosetta_jit.language.both_ways.inverse import TypeOf
     from rosetta_jit.language.function import Function
@@ -80,6 +81,10 @@ def _part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
         case Call(function, (_, _)) if (known := written(function)) is not None and known.split is not None:
             (first, its), (second, rest) = known.split(expr, value)
             return _both(_part(first, its, type_of), _part(second, rest, type_of))
+        case Call() if (several := function_of(expr)) is not None:
+            return _all(_part(argument, its, type_of) for argument, its in undone_group(expr, value, several, alone=False))
+        case List(items):
+            return _all(_part(item, component(value, number), type_of) for number, item in enumerate(items) if fields_in(item))
         case Call(function, (argument, *_)) if function in CONVERSIONS:
             whole = value if function != "uint64" else Call("int64", (value,), expr.span)  # parts are computed in int64
             return _part(argument, whole, type_of)
@@ -90,7 +95,12 @@ def _part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
 
 
 def _both(first: Parted, second: Parted) -> Parted:
-    return Parted((*first.settings, *second.settings), (*first.digits, *second.digits))
+    return _all((first, second))
+
+
+def _all(found: Iterable[Parted]) -> Parted:
+    several = list(found)
+    return Parted(tuple(each for one in several for each in one.settings), tuple(each for one in several for each in one.digits))
 
 
 def _digits(expr: Binary, value: Expr, type_of: TypeOf) -> Parted:

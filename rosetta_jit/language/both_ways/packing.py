@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
-from rosetta_jit.catalogue import layouts
+from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
@@ -21,9 +21,10 @@ from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key
 from rosetta_jit.language.both_ways.learning import learn
 from rosetta_jit.language.folding import FALSE, TRUE, folded
 from rosetta_jit.language.function import written
+from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
-from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, Rest, SameNames, SetLength, When
+from rosetta_jit.model.expr import Binary, Call, Held, Len, List, Literal, Path, Unary
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, Rest, SameNames, SetLength, Several, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -115,7 +116,7 @@ class Packing:
             case SameNames(but, span, renames=renames):
                 turned = tuple(replace(each, place=each.value, value=each.place) for each in renames)
                 return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True, renames=turned),)
-            case Assign() | SetLength():
+            case Assign() | SetLength() | Several():
                 raise AssertionError(rule)
 
     def loop(self, rule: For[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:
@@ -142,6 +143,9 @@ class Packing:
             return checks_of(beside)
         wanted = self.known.replaced(rule.value, loops)
         missing = [*fields_of(wanted, "wire"), *fields_of(place, "wire")]
+        if not missing and group_of(wanted) is not None:
+            self.problems.append(groups.compared(rule.span))
+            return ()
         if not missing:
             return _check(place, wanted, rule)
         conditional = condition_in(rule.value)
@@ -302,17 +306,22 @@ def _within(digit: Digit, span: Span | None) -> Rule:
     return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
 
 
-def with_known_indices(place: Field, known: Knowledge, loops: Loops) -> Field:
-    """A place of the holder whose indices packing can compute."""
-    found = known.placed(path_of(place), loops)
-    return Len(found, place.span) if isinstance(place, Len) else found
+def with_known_indices(place: Field | List, known: Knowledge, loops: Loops) -> Field | List:
+    """A place of the holder, or several, whose indices packing can compute."""
+    match place:
+        case Len(path):
+            return Len(known.placed(path, loops), place.span)
+        case List(items):
+            return replace(place, items=tuple(known.placed(each, loops) for each in items if isinstance(each, Path)))
+        case Path():
+            return known.placed(place, loops)
 
 
 def _setting(place: Path, value: Expr, span: Span | None, *, length: bool, way: Way = "checked") -> Rule:
     return SetLength(place, value, span) if length else Assign(place, value, span, way)
 
 
-def _check(place: Field, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
+def _check(place: Field | List, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
     """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
     held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
     reason = words.disagrees(show_expr(place), show_expr(wanted))

@@ -13,13 +13,14 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, cast
 
-from rosetta_jit.catalogue import layouts
+from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language import conversions
 from rosetta_jit.language.arrays.layouts import ARGUMENTS
 from rosetta_jit.language.conversions import as_int64, as_single, convert, describe, in_single, is_single, wrap
 from rosetta_jit.language.function import Numbers, Texts, names, written
 from rosetta_jit.language.functions.texts import constant_named, is_textual, type_texts
+from rosetta_jit.language.groups import function_of, group_functions
 from rosetta_jit.language.typed import Call, Const, Convert
 from rosetta_jit.language.units.conversion import check_arguments
 from rosetta_jit.model.expr import Name
@@ -51,8 +52,11 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         scope.problems.append(layouts.out_of_place(expr.span))
         return None
     function = written(expr.function)
+    if (several := function_of(expr)) is not None:
+        scope.problems.append(groups.alone(expr.span, several.gives.name, [each.names[0] for each in several.gives.components]))
+        return None
     if function is None:
-        known = {*INTEGERS, *FLOATS, *names(), *ARGUMENTS, "bool", "has", "index", *scope.enums, *scope.functions}
+        known = {*INTEGERS, *FLOATS, *names(), *group_functions(), *ARGUMENTS, "bool", "has", "index", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
     arguments = [type_expr(argument, scope) for argument in expr.arguments]

@@ -11,6 +11,7 @@ from rosetta_jit.catalogue import functions as words
 from rosetta_jit.language.conversions import convert, describe, word_for
 from rosetta_jit.language.function import names
 from rosetta_jit.language.functions.calls import FLOATS, INTEGERS, named_type
+from rosetta_jit.language.groups import group_functions
 from rosetta_jit.language.limits import MAX_PARAMETERS
 from rosetta_jit.language.typed import HostCall
 from rosetta_jit.language.uses import Signature
@@ -47,7 +48,7 @@ def _declared(functions: Iterable[Function], problems: list[Diagnostic]) -> dict
     for function in functions:
         types = [_scalar(each, problems) for each in (*function.parameters, function.result)]
         known = [each for each in types if each is not None]
-        if function.name in {*names(), *SCALARS} or "." in function.name:
+        if function.name in {*names(), *group_functions(), *SCALARS} or "." in function.name:
             problems.append(words.taken(function.span, function.name))
         elif function.name in found:
             problems.append(words.repeated(function.span, function.name, found[function.name].span))

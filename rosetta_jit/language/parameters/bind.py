@@ -10,12 +10,15 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import bind as words
+from rosetta_jit.catalogue import groups
 from rosetta_jit.language.folding import folded
+from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_CHOSEN
 from rosetta_jit.language.parameters.list_rules import spread
+from rosetta_jit.language.parameters.several_places import one_by_one
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.model.expr import Call, Choice, Given, Item, List, Literal, Name
-from rosetta_jit.model.mapping import For, When
+from rosetta_jit.model.mapping import For, Several, When
 from rosetta_jit.model.types import Array, Int
 from rosetta_jit.model.walk import parts, rebuilt, with_expressions
 from rosetta_jit.startup.dataclass import dataclass
@@ -109,6 +112,8 @@ class _Binder:
                 if known is not None:
                     return self.rules(then if known else otherwise, variables)
                 return (replace(bound, then=self.rules(then, variables), otherwise=self.rules(otherwise, variables)),)
+            case Several():
+                return tuple(found for each in one_by_one(bound, self.problems) for found in spread(each, variables))
             case _:
                 return spread(bound, variables)
 
@@ -132,6 +137,8 @@ class _Binder:
     def item(self, items: Expr, index: Expr, item: Item) -> Expr:
         """An item of a list; the item itself where its number is known."""
         match items, folded(index):
+            case Call(), Literal(str(name)):
+                return self.component(items, name, item)
             case List(()), _:
                 self.problems.append(words.empty_list(item.span))
             case List(values), Literal(int(number)) if 0 <= number < len(values):
@@ -144,6 +151,15 @@ class _Binder:
                 return self.chosen(item, len(values))
             case _:
                 self.problems.append(words.not_a_list(item.span))
+        return Literal(0, item.span)
+
+    def component(self, value: Call, name: str, item: Item) -> Expr:
+        """One number of a group, by its name."""
+        group = group_of(value)
+        names = [] if group is None else [each.names[0] for each in group.components]
+        if name in names:
+            return item
+        self.problems.append(groups.no_component(item.span, name, names))
         return Literal(0, item.span)
 
     def chosen(self, item: Item, count: int) -> Expr:

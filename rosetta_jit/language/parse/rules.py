@@ -43,6 +43,7 @@ from rosetta_jit.model.mapping import (
     Rest,
     SameNames,
     SetLength,
+    Several,
     Via,
     When,
 )
@@ -80,22 +81,20 @@ def read_rule(tree: Tree, context: Context) -> Rule:
     """One rule: the place is on the target's side, everything else on the origin's."""
     span = context.span(tree)
     match str(tree.data):
-        case "assign":
-            place, value, *via = _trees(tree)
-            return Assign(_path(place, context.target, context), _expr(value, context), span, _via(via, context))
+        case "assign" | "relation":
+            return _set(tree, context, span)
         case "set_length":
             place, value = _trees(tree)
-            return SetLength(_path(place, context.target, context), _expr(value, context), span)
-        case "relation" | "length_relation":
-            left, right, *via = _trees(tree)
+            return SetLength(_path(place, context.target, context), read_expression(value, context), span)
+        case "length_relation":
+            left, right = _trees(tree)
             place = _path(left, context.target, context)
-            related = place if tree.data == "relation" else Len(place, place.span)
-            return Relation(related, _expr(right, context), span, _via(via, context))
+            return Relation(Len(place, place.span), read_expression(right, context), span)
         case "arranged" | "arranged_both":
             return _arranged(tree, context, span)
         case "when" | "when_of_both":
             condition, *body = _trees(tree)
-            return _when(_expr(condition, context), body, context, span)
+            return _when(read_expression(condition, context), body, context, span)
         case "ignore" | "default":
             return _left_alone(tree, context, span)
         case "same" | "same_of_both":
@@ -106,7 +105,23 @@ def read_rule(tree: Tree, context: Context) -> Rule:
             start, stop, *body = _trees(tree)
             variable = str(_tokens(tree)[0])
             rules = tuple(read_rule(rule, context) for rule in body)
-            return For(variable, _expr(start, context), _expr(stop, context), rules, span)
+            return For(variable, read_expression(start, context), read_expression(stop, context), rules, span)
+
+
+def _set(tree: Tree, context: Context, span: Span) -> Rule:
+    """A place, or several, and what is assigned or related to them."""
+    parts = _trees(tree)
+    via = [parts.pop()] if parts[-1].data == "via" else []
+    *places, value = parts
+    found = [_path(place, context.target, context) for place in places]
+    is_relation = tree.data == "relation"
+    if len(found) > 1:
+        context.problems.extend(words.via_of_several(context.span(each)) for each in via)
+        return Several(tuple(found), read_expression(value, context), span, is_relation=is_relation)
+    (place,) = found
+    if is_relation:
+        return Relation(place, read_expression(value, context), span, _via(via, context))
+    return Assign(place, read_expression(value, context), span, _via(via, context))
 
 
 def _left_alone(tree: Tree, context: Context, span: Span) -> Rule:
@@ -128,7 +143,7 @@ def _same_names(tree: Tree, context: Context, span: Span) -> SameNames:
 
 def _arranged(tree: Tree, context: Context, span: Span) -> Arranged:
     place, flag, *entries = _trees(tree)
-    cases = [tuple(_expr(part, context) for part in _trees(entry)) for entry in entries]
+    cases = [tuple(read_expression(part, context) for part in _trees(entry)) for entry in entries]
     both = (_path(place, context.target, context), _path(flag, context.target, context))
     return Arranged(*both, tuple((key, value) for key, value in cases), span)
 
@@ -151,14 +166,14 @@ def _reject(tree: Tree, context: Context, span: Span) -> Rule:
     text, pieces = _template(tree, context)
     rejection = Reject(text, span, pieces, written=True)
     for condition in _trees(tree):
-        return When(_expr(condition, context), (rejection,), (), span)
+        return When(read_expression(condition, context), (rejection,), (), span)
     return rejection
 
 
 def _template(tree: Tree, context: Context) -> tuple[str, tuple[Expr, ...]]:
     """A text and, where it has values in braces, what it consists of."""
     text, place = _text(tree, context), context.span(_tokens(tree)[0])
-    return text, pieces_of(text, place, context.problems, lambda value: _expr(value, context))
+    return text, pieces_of(text, place, context.problems, lambda value: read_expression(value, context))
 
 
 def _text(tree: Tree, context: Context) -> str:
@@ -177,7 +192,8 @@ def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str
     return re.sub(r"\\(.)", lambda escape: ESCAPES.get(escape[1], escape[1]), text)
 
 
-def _expr(tree: Tree, context: Context) -> Expr:
+def read_expression(tree: Tree, context: Context) -> Expr:
+    """An expression, whose fields are on the origin's side."""
     span = context.span(tree)
     match str(tree.data):
         case "integer":
@@ -193,38 +209,45 @@ def _expr(tree: Tree, context: Context) -> Expr:
         case "path":
             return _path(tree, context.origin, context)
         case "length":
-            measured = _expr(_trees(tree)[0], context)
+            measured = read_expression(_trees(tree)[0], context)
             return Len(measured, span) if isinstance(measured, Path) else Call("len", (measured,), span)
         case "list":
-            return List(tuple(_expr(item, context) for item in _trees(tree)), span)
+            return List(tuple(read_expression(item, context) for item in _trees(tree)), span)
         case "item":
             index = _trees(_trees(tree)[0])[0]
-            return Item(Name(str(_tokens(tree)[0]), span), _expr(index, context), span)
+            return Item(Name(str(_tokens(tree)[0]), span), read_expression(index, context), span)
         case "negative" | "inversion":
-            return Unary("-" if tree.data == "negative" else "not", _expr(_trees(tree)[0], context), span)
+            return Unary("-" if tree.data == "negative" else "not", read_expression(_trees(tree)[0], context), span)
         case "conditional":
-            then, condition, other = (_expr(part, context) for part in _trees(tree))
+            then, condition, other = (read_expression(part, context) for part in _trees(tree))
             return Choice(((condition, then),), other, span=span)
         case "table":
             return _table(tree, context, span)
         case "binary":
-            left, right = (_expr(operand, context) for operand in _trees(tree))
+            left, right = (read_expression(operand, context) for operand in _trees(tree))
             return Binary(cast("Operator", str(_tokens(tree)[0])), left, right, span)
         case "group":
-            return _expr(_trees(tree)[0], context)
+            return read_expression(_trees(tree)[0], context)
         case _:
-            arguments = tuple(_expr(argument, context) for argument in _trees(tree))
-            return Call(str(_tokens(tree)[0]), arguments, span)
+            return _call(tree, context, span)
+
+
+def _call(tree: Tree, context: Context, span: Span) -> Expr:
+    """A call, or one number of the group that it gives."""
+    arguments = tuple(read_expression(argument, context) for argument in _trees(tree))
+    function, *members = (token for token in _tokens(tree) if token.type in {"NAME", "MEMBER"})
+    call = Call(str(function), arguments, span)
+    return Item(call, Literal("".join(members)[1:].replace('"', ""), span), span) if members else call
 
 
 def _table(tree: Tree, context: Context, span: Span) -> Choice:
     """A table, as a choice among comparisons of its subject."""
     subject, *entries = _trees(tree)
-    compared = _expr(subject, context)
+    compared = read_expression(subject, context)
     cases: list[tuple[Expr, Expr]] = []
     otherwise, reason, pieces = None, "the table has no entry for it", ()
     for entry in entries:
-        values = [_expr(part, context) for part in _trees(entry)]
+        values = [read_expression(part, context) for part in _trees(entry)]
         if entry.data == "entry":
             cases.append((Binary("==", compared, values[0], context.span(entry)), values[1]))
         elif values:
@@ -241,7 +264,7 @@ def _path(tree: Tree, side: Side, context: Context) -> Path:
 def _step(step: Tree | Token, context: Context) -> Step:
     if isinstance(step, Token):
         return Member(str(step)[1:].strip('"'), context.span(step))
-    span, parts = context.span(step), [_expr(part, context) for part in _trees(step)]
+    span, parts = context.span(step), [read_expression(part, context) for part in _trees(step)]
     match str(step.data), parts:
         case "keyed", [Path(steps=steps, span=place), value]:
             return Keyed(_names(steps, place, context), value, span)
@@ -292,7 +315,7 @@ def _real(token: Token, context: Context) -> float:
 def read_parameter(tree: Tree, context: Context) -> Parameter:
     """A parameter with the name of its type, whatever that is."""
     name, *_, type_ = (token for token in _tokens(tree) if token.type == "NAME")
-    default = next((_expr(value, context) for value in _trees(tree)), None)
+    default = next((read_expression(value, context) for value in _trees(tree)), None)
     is_list = any(token.type == "LIST" for token in _tokens(tree))
     return Parameter(str(name), str(type_), is_list, default, context.span(tree))
 

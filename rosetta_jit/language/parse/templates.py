@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
-from rosetta_jit.language.limits import MAX_PIECES, MAX_VALUE_TOKENS
+from rosetta_jit.language.limits import MAX_PIECES, MAX_TOKENS, MAX_VALUE_TOKENS
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.parsing.parsers import parser_of
@@ -72,14 +72,23 @@ def pieces_of(text: str, place: Span, problems: list[Diagnostic], read: Callable
 
 def _value(text: str, place: Span, problems: list[Diagnostic]) -> Tree | None:
     """The tree of what stands in braces; mistakes at its end are reported for all of it."""
-    tokens = [token.at(place.start + 1 + token.start_pos, place.start + 1 + token.end_pos) for token in grammar().lex(text)]
-    if len(tokens) > MAX_VALUE_TOKENS:
-        problems.append(words.nesting(place, MAX_VALUE_TOKENS))
+    inside = Span(place.source, place.start + 1, place.end)
+    found: list[Diagnostic] = []
+    tree = expression_tree(text, inside, found, most=MAX_VALUE_TOKENS)
+    problems.extend(problem if problem.span != inside and _is_in(problem, place) else replace(problem, span=place) for problem in found)
+    return tree
+
+
+def expression_tree(text: str, place: Span, problems: list[Diagnostic], *, most: int = MAX_TOKENS) -> Tree | None:
+    """The tree of an expression that begins at a place and has at most so many tokens."""
+    tokens = [token.at(place.start + token.start_pos, place.start + token.end_pos) for token in grammar().lex(text)]
+    if len(tokens) > most:
+        problems.append(words.nesting(place, most))
         return None
     before = [Token(kind, text, place.start, place.start) for kind, text in BEFORE]
     tree = parse_tokens(grammar(), place.source, [*before, *tokens], NOWHERE, words.unexpected)
     if not isinstance(tree, Tree):
-        problems.extend(problem if _is_in(problem, place) else replace(problem, span=place) for problem in tree)
+        problems.extend(tree)
         return None
     statements = [rules for rules in tree.children if isinstance(rules, Tree)]
     found = [rule for rules in statements for rule in rules.children if isinstance(rule, Tree)]

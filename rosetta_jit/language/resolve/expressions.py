@@ -18,7 +18,9 @@ from rosetta_jit.language.functions.calls import type_call
 from rosetta_jit.language.functions.decisions import type_choice, type_comparison, type_logic, type_not
 from rosetta_jit.language.functions.texts import concatenation, is_textual
 from rosetta_jit.language.functions.user_functions import type_host_call
+from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.resolve.absent_texts import length_there, text_there
+from rosetta_jit.language.resolve.groups import type_component
 from rosetta_jit.language.resolve.held_values import type_held, type_nearest
 from rosetta_jit.language.resolve.key_search import is_found, type_search
 from rosetta_jit.language.resolve.list_items import compared_text, type_listed
@@ -72,11 +74,17 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Choice():
             return type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
-            return type_listed(expr, scope, type_expr)
+            return _listed(expr, scope)
         case model.Held() | model.Nearest():
             return type_held(expr, scope, type_expr, type_index) if isinstance(expr, model.Held) else type_nearest(expr, scope, type_expr)
         case _:
             assert_never(expr)
+
+
+def _listed(expr: model.List | model.Item | model.Given, scope: Scope) -> Expr | None:
+    if isinstance(expr, model.Item) and group_of(expr.items) is not None:
+        return type_component(expr, scope, type_expr, type_index)
+    return type_listed(expr, scope, type_expr)
 
 
 def type_integer(expr: model.Expr, scope: Scope, what: str) -> Expr | None:
@@ -100,8 +108,8 @@ def type_index(expr: model.Expr | Sought, scope: Scope) -> Expr | None:
 def _name(expr: model.Name, scope: Scope) -> Expr | None:
     if expr.name in scope.locals:
         return Local(expr.name + scope.suffix, INT64, expr.span)
-    if expr.name == model.NEAREST and scope.nearest is not None:
-        return Local(expr.name, scope.nearest, expr.span)
+    if expr.name in scope.values:
+        return Local(expr.name, scope.values[expr.name], expr.span)
     if expr.name in CONSTANTS:
         return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
     found = scope.constants.find(expr.name)

@@ -45,7 +45,7 @@ def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr
     if value is None or not isinstance(value.type, Float):
         return value
     again = Held(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
-    check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, nearest=expr.type))
+    check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, values={NEAREST: expr.type}))
     return Nearest(value, Local(NEAREST, expr.type), check, expr.type, expr.span) if isinstance(check, Binary) else None
 
 

@@ -20,11 +20,13 @@ from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
 from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
 from rosetta_jit.language.functions.user_functions import signatures
+from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.resolve.defaults import ManyDefaultsError, default_rules, has_array
 from rosetta_jit.language.resolve.expressions import type_expr, type_index, type_integer
 from rosetta_jit.language.resolve.fitting import fit
+from rosetta_jit.language.resolve.groups import length_rules, paths_of, type_group
 from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
@@ -58,6 +60,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.language.groups import Group
     from rosetta_jit.language.typed import Expr, Place, Rule
     from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Side
@@ -203,6 +206,8 @@ class _Block:
             nested = nest(rule, scope, self.whole)
             if nested is not None:
                 return [*nested]
+            if (group := group_of(rule.value)) is not None:
+                return self.group(rule, group, scope)
         found = self.rule(rule, scope)
         if not isinstance(found, Default):
             return [found]
@@ -233,7 +238,7 @@ class _Block:
             case model.Rest():
                 scope.problems.append(words.rest_in_block(rule.span, rule.word))
                 return None
-            case model.Relation() | model.Arranged():
+            case model.Relation() | model.Arranged() | model.Several():
                 raise AssertionError(rule)
             case _:
                 assert_never(rule)
@@ -259,11 +264,25 @@ class _Block:
             return None
         return When(condition, then, otherwise, rule.span)
 
+    def group(self, rule: model.Assignment, group: Group, scope: Scope) -> list[Rule | None]:
+        """The rules of a group: one for each of its numbers."""
+        place = self.place(rule, scope)
+        values = type_group(rule.value, scope, type_expr, type_index)
+        paths = None if place is None else paths_of(rule.place, place.type, group, scope)
+        if place is None or values is None or paths is None:
+            self.broken.extend([] if place is None else [field_names(place)])
+            return [None]
+        lengths = [self.rule(each, scope) for each in length_rules(rule, place.type, group, scope, type_index)]
+        ends = [(self.place(replace(rule, place=path), scope), value) for path, value in zip(paths, values, strict=True)]
+        return [*lengths, *(self.assigned(end, value, rule, scope) for end, value in ends if end is not None)]
+
     def assign(self, rule: model.Assignment, scope: Scope) -> Rule | None:
         place = self.place(rule, scope)
         value = type_expr(rule.value, scope)
-        if place is None:
-            return None
+        return None if place is None else self.assigned(place, value, rule, scope)
+
+    def assigned(self, place: Place, value: Expr | None, rule: model.Assignment, scope: Scope) -> Rule | None:
+        """The rule that sets a place to a value, which becomes of its type."""
         if value is not None:
             value = in_unit(value, place, scope)
         if value is not None and rule.by == "checked":

@@ -63,6 +63,9 @@ class Values:
     where: Where = MESSAGE
     line: str = ""
     decided: dict[typed.Expr, tuple[list[Stmt], Expr]] = field(default_factory=dict["typed.Expr", "tuple[list[Stmt], Expr]"])
+    groups: dict[typed.Expr, tuple[list[Stmt], Mapping[str, Expr]]] = field(
+        default_factory=dict["typed.Expr", "tuple[list[Stmt], Mapping[str, Expr]]"]
+    )
 
     def of(self, value: typed.Expr) -> Expr:
         """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
@@ -73,6 +76,16 @@ class Values:
         if block is None or found is None or not self.writer.is_around(block):
             block, found = self.writer.block, self.computed(value)
             self.decided[value] = block, found
+        return found
+
+    def together(self, value: typed.Expr, compute: Callable[[], Mapping[str, Expr]]) -> Mapping[str, Expr]:
+        """Numbers that are computed together, by name; what was computed for an equal value is found again where it is known."""
+        if asks_others(value):
+            return compute()
+        block, found = self.groups.get(value, (None, None))
+        if block is None or found is None or not self.writer.is_around(block):
+            block, found = self.writer.block, compute()
+            self.groups[value] = block, found
         return found
 
     def computed(self, value: typed.Expr) -> Expr:
@@ -188,7 +201,11 @@ class Values:
     def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Values:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
         variables = {**self.variables, name: number}
-        return replace(self, variables=variables, decided={}) if afresh else replace(self, variables=variables)
+        return replace(self, variables=variables, decided={}, groups={}) if afresh else replace(self, variables=variables)
+
+    def with_locals(self, numbers: Mapping[str, Expr]) -> Values:
+        """The same where these names alone have values, and nothing is decided yet."""
+        return replace(self, variables=numbers, decided={}, groups={})
 
     def at_rule(self, span: Span | None) -> Values:
         """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""

@@ -172,3 +172,23 @@ def test_what_one_of_them_cannot_say_is_refused(backend):
         with pytest.raises(rj.EncodeError) as error:
             encode(encode.holder_type.from_dict(held))
         assert error.value.kind in {"rejected", "range"}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_places_from_a_satellite_receiver(backend):
+    options = {"encoding": "ros1", "backend": backend, "parameters": {"origin": [52.0, 8.5, 100.0]}}
+    decode, encode = rj.Decoder("ros1/nav_sat_fix.mapping", **options), rj.Encoder("ros1/nav_sat_fix.mapping", **options)
+
+    def fix(status=0, **place):
+        state = theirs("sensor_msgs/NavSatStatus", status=status, service=1)
+        covariance = {"position_covariance": np.eye(3).ravel(), "position_covariance_type": 2}
+        return theirs("sensor_msgs/NavSatFix", header=header(), status=state, **place, **covariance)
+
+    place = {"latitude": 52.01, "longitude": 8.52, "altitude": 130.0}
+    found = decode(raw(fix(**place)))
+    assert [found.x, found.y, found.z] == pytest.approx([1373.2821437, 1112.8860393, 29.7553353], abs=2e-7)  # as PROJ computes them
+    back = STORE.deserialize_ros1(encode(found), "sensor_msgs/msg/NavSatFix")
+    assert {name: getattr(back, name) for name in place} == pytest.approx(place, abs=1e-9)
+    with pytest.raises(rj.DecodeError) as error:
+        decode(raw(fix(status=-1, **place)))
+    assert error.value.kind == "rejected"
