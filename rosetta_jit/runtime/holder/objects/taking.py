@@ -13,6 +13,7 @@ from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import assigner, raw
+from rosetta_jit.runtime.holder.classes import plain
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.objects import reading, shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
@@ -65,6 +66,14 @@ class Takers:
                 lanes.reset()
                 values.write_record(self._family.tree.root, lanes, 0, raw(plain))
 
+    def take_message(self, holder: Any, message: Message) -> None:
+        """The same of a holder of another family, or of a part of one; nothing that another thread changes meanwhile is mixed."""
+        try:
+            message.lanes_.consistent(lambda source: self._of_root[type(source)](holder, source), message)
+        except LEFT:
+            holder.lanes_.restart()
+            self.take_plain(holder, plain(message))
+
     def _take_slowly(self, holder: Any, value: object) -> None:
         record = self._family.tree.root
         plain = reading.plain_record(record, value, self._family)
@@ -82,11 +91,14 @@ class Takers:
             found = self._of_records[id(record)] = ByClass(lambda object_type: self._written(record, object_type))
         return found
 
-    def _written(self, record: Record, object_type: type) -> Take:
+    def _written(self, record: Record, object_type: Any) -> Take:
         """The function for objects of a class."""
-        if issubclass(cast("Any", object_type), Mapping):
+        if issubclass(object_type, Mapping):
             return self._of_mapping(record)
-        if unions.discriminator_of(record) is not None or not shapes.has_messages(object_type) or self._is_whole(record, object_type):
+        if issubclass(object_type, Message):
+            return self._of_holders(record, cast("Any", object_type).family_.tree.root)
+        is_whole = self._family.of_struct(record.struct).family_.wholes[object_type] is not None
+        if unions.discriminator_of(record) is not None or not shapes.has_messages(object_type) or is_whole:
             raise TypeError("left to the slow way")
         source = Source("take")
         names = {each: self._family.manners.foreign.names(record, each) for each in record.entries}
@@ -100,8 +112,17 @@ class Takers:
                 self._add(source, record, entry, attribute("source", _spelled(object_type, names[entry.name])))
         return source.made("target, source")
 
-    def _is_whole(self, record: Record, object_type: type) -> bool:
-        return issubclass(object_type, Message) or self._family.of_struct(record.struct).family_.wholes[object_type] is not None
+    def _of_holders(self, record: Record, other: Record) -> Take:
+        """The function for holders and parts of them, of whose fields none can be absent, and which all are attributes."""
+        entries = record.entries.values()
+        is_plain = all(entry.presence is None and other.entries[entry.name].presence is None for entry in entries)
+        shown = self._family.shown(record)
+        if record.entries.keys() != other.entries.keys() or not is_plain or not shown.issuperset(record.entries):
+            raise TypeError("left to the slow way")
+        source = Source("take")
+        for entry in entries:
+            self._add(source, record, entry, attribute("source", entry.name), is_there=True)
+        return source.made("target, source")
 
     def _of_mapping(self, record: Record) -> Take:
         """The function for mappings: those that name every field, and others."""
