@@ -11,8 +11,10 @@ from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import THREAD
+from rosetta_jit.runtime.holder.objects.foreign import MOST_CLASSES
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.room import roomier
+from rosetta_jit.runtime.whole_objects import decoding
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -86,7 +88,14 @@ class DecoderBase(Program):
         ValuesError
             The class lacks an attribute, or no class is known for a message within it.
         """
-        givers = self._loaded.holder_type.family_.givers if types is None else self._givers_of(types)
+        quick = self._quick.get(object_type) if types is None else None
+        if quick is not None:
+            return quick(message)
+        family = self._loaded.holder_type.family_
+        whole = family.wholes[object_type]
+        if whole is not None and len(self._quick) < MOST_CLASSES:
+            self._quick[object_type] = decoding(self.builtin, self.new, whole.make)
+        givers = family.givers if types is None else self._givers_of(types)
         holder = self._borrow()
         try:
             return givers.make(object_type, self(message, holder))

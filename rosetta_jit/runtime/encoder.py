@@ -11,9 +11,11 @@ from rosetta_jit.errors import EncodeError, ValuesError
 from rosetta_jit.kernel.state import CLEAN, VALID
 from rosetta_jit.model.types import same_name
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.holder.classes import plain, settle_lanes
-from rosetta_jit.runtime.holder.message import Message
+from rosetta_jit.runtime.holder.classes import settle_lanes
+from rosetta_jit.runtime.holder.message import Message, place
+from rosetta_jit.runtime.holder.objects.foreign import MOST_CLASSES
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
+from rosetta_jit.runtime.whole_objects import encoding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -72,7 +74,7 @@ class EncoderBase(Program):
         with checked.lanes_ as lanes:
             self._make_usable(checked)
             self._tell(lanes, 0)
-            return self._measured(lanes)
+            return self._measured(lanes, 0)
 
     def many(self, batch: Any) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
         """Encode all messages of a batch.
@@ -175,27 +177,29 @@ class EncoderBase(Program):
             raise holder.lanes_.invalid()
         settle_lanes(holder)
 
-    def _measured(self, lanes: Lanes) -> int:
+    def _measured(self, lanes: Lanes, row: int) -> int:
         assert self._loaded.size is not None
         with run.encoding():
-            size = run.run_growing(self._loaded.size, None, 0, run.ANY_SIZE, lanes, 0)
+            size = run.run_growing(self._loaded.size, None, 0, run.ANY_SIZE, lanes, row)
         if size < 0:
             raise run.encode_error(self._loaded.size_sites[-1 - size], lanes)
         return size
 
     def _call_slowly(self, *arguments: object, **named: object) -> object:
         """Whatever the entry does not do: wrong arguments, holders that must be put in order, a scratch lane that is too small, errors."""
+        quick = self._quick.get(type(arguments[0])) if arguments and not named else None
+        if quick is not None:
+            return quick(*arguments)
         if len(arguments) == 2:
             arguments = (*arguments, 0)
         if named or len(arguments) not in (1, 3):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
         if self._is_to_be_taken(arguments[0]):
-            return self._of_foreign(arguments[0], self, *arguments[1:])
+            return self._call_with_foreign(*arguments)
         holder = self._checked(arguments[0])
-        target, offset = (None, 0) if len(arguments) == 1 else (run.writable(arguments[1]), arguments[2])
         with holder.lanes_ as lanes, self._told(lanes):
             self._make_usable(holder)
-            return self._bytes(lanes) if target is None else self._put(lanes, target, offset)
+            return self._written_row(lanes, 0, *arguments[1:])
 
     def _is_to_be_taken(self, value: object) -> bool:
         """Whether a value is no holder of this program's, but has the values of one: it is foreign, or of the same type elsewhere."""
@@ -204,37 +208,64 @@ class EncoderBase(Program):
             return type(value) is not own and same_name(value.access_.record.struct, own.family_.tree.root.struct)
         return is_foreign(value)
 
+    def _call_with_foreign(self, value: object, *more: object) -> Any:
+        """Encode an object of another class; from now on quickly, where objects of its class are handed over at once."""
+        if isinstance(value, Message):
+            is_row = value.access_ is self._loaded.holder_type.family_.root and value.parent_ is None
+            return self._of_row(value, *more) if is_row else self._of_foreign(value, self, *more)
+        whole = self._loaded.holder_type.family_.wholes[type(value)]
+        if whole is None:
+            return self._of_foreign(value, self, *more)
+        quick = encoding(self.builtin, self.new, whole)
+        if len(self._quick) < MOST_CLASSES:
+            self._quick[type(value)] = quick
+        return quick(value, *more)
+
+    def _of_row(self, message: Message, *more: object) -> Any:
+        """Encode one message of a batch where it lies."""
+        if self._asks:  # for the number of the message, which lanes of many messages count from the first of them
+            return self._of_foreign(message, self, *more)
+        lanes, row = message.lanes_, message.index_
+        with lanes:
+            place(message)
+            if lanes.words[VALID] == CLEAN and lanes.source[0] is None:
+                return self._written_row(lanes, row, *more)
+        from rosetta_jit.runtime.parts import joined
+
+        with joined([(lanes, slice(row, row + 1))]) as alone:
+            return self._written_row(alone, 0, *more)
+
     def _of_foreign(self, value: object, use: Callable[..., Any], *more: object) -> Any:
         """What comes of a holder with the values of an object of another class, or of a dict."""
         holder = self._borrow()
         try:
             takers = self._loaded.holder_type.family_.takers
             if isinstance(value, Message):
-                takers.take_plain(holder, plain(value))
+                takers.take_message(holder, value)
             else:
                 takers.take(holder, value)
             return use(holder, *more)
         finally:
             self._give_back(holder)
 
-    def _bytes(self, lanes: Lanes) -> bytes:
-        size = self._measured(lanes)
-        with run.encoding():
-            written = np.empty(size, np.uint8)
-        self._write(lanes, written, 0, size)
-        return written.tobytes()
-
-    def _put(self, lanes: Lanes, target: NDArray[np.uint8], offset: object) -> int:
-        size = self._measured(lanes)
+    def _written_row(self, lanes: Lanes, row: int, buffer: object = None, offset: object = 0) -> Any:
+        """The bytes of the message in a row; or, written into a buffer, the offset behind it."""
+        target = None if buffer is None else run.writable(buffer)
+        size = self._measured(lanes, row)
+        if target is None:
+            with run.encoding():
+                written = np.empty(size, np.uint8)
+            self._write(lanes, row, written, 0, size)
+            return written.tobytes()
         if not isinstance(offset, int):
             raise TypeError(f"an offset is an int, not {type(offset).__name__}")
         if not 0 <= offset <= target.size - size:
             raise BufferError(f"the message takes {size} bytes, and {max(target.size - offset, 0)} are left behind offset {offset}")
-        return self._write(lanes, target, offset, offset + size)
+        return self._write(lanes, row, target, offset, offset + size)
 
-    def _write(self, lanes: Lanes, target: NDArray[np.uint8], begin: int, end: int) -> int:
+    def _write(self, lanes: Lanes, row: int, target: NDArray[np.uint8], begin: int, end: int) -> int:
         with run.encoding():
-            result = run.run_growing(self._loaded.kernel, target, begin, end, lanes, 0)
+            result = run.run_growing(self._loaded.kernel, target, begin, end, lanes, row)
         if result < 0:
             raise run.encode_error(self._loaded.sites[-1 - result], lanes)
         return result

@@ -191,6 +191,11 @@ class Program(Told):
     def _spares(self) -> list[Any]:
         return []
 
+    @cached_property
+    def _quick(self) -> dict[type, Callable[..., Any]]:
+        """What does, for objects of some classes, all that the program does with them (`rosetta_jit.runtime.whole_objects`)."""
+        return {}
+
     def _checked(self, holder: object) -> Holder:
         expected = self._loaded.holder_type
         if not isinstance(holder, expected) or type(holder) is not expected:

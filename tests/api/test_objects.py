@@ -5,7 +5,7 @@ from __future__ import annotations
 import array
 import sys
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from itertools import pairwise
 from types import ModuleType, SimpleNamespace
@@ -383,3 +383,52 @@ def test_lists_of_messages_are_encoded_in_one_call(encode):
     encode_latin = rj.Encoder.of("p/Part", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"])
     with pytest.raises(TypeError):
         encode_latin.many([part, 3])
+
+
+def test_messages_of_batches_are_encoded_where_they_lie(encode, decode):
+    values = [
+        Whole(True, number / 2, [number] * number, np.zeros(3), b"r" * number, ["n"] * number, Part(number, "p", Moment()), [])
+        for number in range(4)
+    ]
+    messages = [encode(replace(each, parts=[each.part] * 2)) for each in values]
+    borrowing = rj.Decoder.of("p/Whole", schema=SCHEMA, encoding="ros1", imports=["p/Whole.msg"], borrow=True)
+    for batch in (decode.many(messages), borrowing.many(messages)):
+        assert [encode(batch[number]) for number in range(4)] == messages
+        buffer = bytearray(5 + len(messages[3]))
+        assert encode(batch[3], buffer, 5) == len(buffer)
+        assert buffer[5:] == messages[3]
+        with pytest.raises(BufferError, match="are left behind offset"):
+            encode(batch[3], buffer, 6)
+    row = batch[0]
+    with pytest.raises(rj.DecodeError):
+        borrowing.many([messages[0][:-1]], into=batch)
+    with pytest.raises(rj.InvalidHolder):
+        encode(row)
+    assert encode(decode(messages[2])) == messages[2]
+
+
+def test_each_message_of_a_batch_gets_the_next_number():
+    schema = {"n.bottle-schema": '"n" (("value" :int))', "w.bottle-schema": '"w" (("value" :int))'}
+    head = 'import "n.bottle-schema"\nimport "w.bottle-schema"\ndata-holder: n\nwire-schema: w\n'
+    files = {
+        **schema,
+        "m.mapping": f"{head}pack-rules:\n  .value = int32(counter())\n",
+        "plain.mapping": f"{head}rules:\n  .value <-> .value\n",
+    }
+    counting = rj.Encoder("m.mapping", schema=files, encoding="yarp3")
+    batch = rj.Decoder("plain.mapping", schema=files, encoding="yarp3").many([counting(counting.new()) for _ in range(3)])
+    assert batch.value.tolist() == [0, 1, 2]
+    assert [counting(batch[2])[-4:] for _ in range(2)] == [bytes([number, 0, 0, 0]) for number in (3, 4)]
+
+
+def test_holders_of_a_type_of_the_same_name_in_another_framework():
+    """Field by field, where no field can be absent; and what one of them cannot hold is said."""
+    one = rj.Encoder.of("p/msg/Part", schema={"p/msg/Part.msg": "int32 number\nstring label\n"}, encoding="cdr")
+    other = rj.Decoder.of("p/Part", schema={"p/Part.msg": "int64 number\nstring label\n"}, encoding="ros1").new()
+    other.number, other.label = 7, "seven"
+    assert one(other) == one({"number": 7, "label": "seven"})
+    other.number = 1 << 40
+    with pytest.raises(ValuesError, match="number"):
+        one(other)
+    other.number = 8
+    assert one(other) == one({"number": 8, "label": "seven"})

@@ -30,15 +30,16 @@ def whole(family: Family, object_type: Any) -> Whole | None:
     if not _is_protobuf(object_type):
         return None
     _check(family, object_type)
+    programs, parse = programs_of(family.holder), object_type.FromString
 
     def take(holder: Any, message: Any) -> None:
-        programs_of(family.holder).decode(message.SerializePartialToString(), holder)
+        programs.decode(message.SerializePartialToString(), holder)
 
     def fill(message: Any, holder: Any) -> None:
-        message.ParseFromString(programs_of(family.holder).encode(holder))
+        message.ParseFromString(programs.encode(holder))
 
     def make(holder: Any) -> Any:
-        return object_type.FromString(programs_of(family.holder).encode(holder))
+        return parse(programs.encode(holder))
 
     return Whole(take, fill, make)
 

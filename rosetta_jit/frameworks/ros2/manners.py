@@ -44,10 +44,14 @@ class Ros2Message(Holder):
 
     def __init__(self, **fields: Any) -> None:
         super().__init__()
+        for name, value in self.defaults_.items():
+            setattr(self, name, value)
+        if not fields:
+            return
         unknown = fields.keys() - self.fields_.keys()
         if unknown:
             raise TypeError(f"Invalid arguments passed to constructor: {', '.join(sorted(unknown))}")
-        for name, value in {**self.defaults_, **fields}.items():
+        for name, value in fields.items():
             setattr(self, name, value)
 
     @classmethod
@@ -97,8 +101,14 @@ def members(family: Family) -> dict[str, Any]:
     return {
         **{each.name: each.value for each in struct.constants if not hasattr(Ros2Message, each.name)},
         "fields_": {each.name: spelled(each.type) for each in fields},
-        "defaults_": {each.name: _default(each) for each in fields if _default(each) is not None},
+        "defaults_": {each.name: _default(each) for each in fields if not _is_as_born(each)},
     }
+
+
+def _is_as_born(field: Field) -> bool:
+    """Whether a new message has the default of a field without being given it: there is none, or it is zero or empty."""
+    default = _default(field)
+    return default is None or (not default and not isinstance(field.type, Optional))
 
 
 def _default(field: Field) -> Any:

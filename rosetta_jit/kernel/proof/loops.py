@@ -123,8 +123,11 @@ def changed_names(body: Block) -> set[str]:
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
 
 
-def needless(body: Block, said: Iterable[Expr], known: Container[str]) -> set[Guess]:
-    """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps."""
+def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str]) -> set[Guess]:
+    """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps.
+
+    What grows in each round is tried all the same: a loop around this one may grow by it.
+    """
     users: dict[str, set[str]] = {}
     assigned: dict[str, list[set[str]]] = {}
     for stmt, _ in statements(body):
@@ -133,7 +136,7 @@ def needless(body: Block, said: Iterable[Expr], known: Container[str]) -> set[Gu
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
             users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
-    told = {name for expr in said for name in _names(expr)}
+    told = {name for expr in said for name in _names(expr)} - set(() if measure is None else _names(measure))
     variables = [name for name in assigned if name in known]
     return {Guess(name, 2, 1) for name in variables if name in told or not all(map(_made_of(name, users).intersection, assigned[name]))}
 

@@ -331,6 +331,6 @@ def _assume_invariant(scope: Scope, loop: While) -> None:
 def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave: Callable[[], None]) -> None:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
-        said = loop.invariant if isinstance(loop, While) else ()
-        dropped = walk.dropped[id(loop)] = needless(loop.body, said, walk.scope.locals)
+        said, measure = (loop.invariant, loop.measure) if isinstance(loop, While) else ((), None)
+        dropped = walk.dropped[id(loop)] = needless(loop.body, said, measure, walk.scope.locals)
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave), dropped)

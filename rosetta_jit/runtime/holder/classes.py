@@ -125,8 +125,9 @@ class Holder(Message, metaclass=HolderClass):
         ValuesError
             If a name or a value is not one of the type; its path says which.
         """
-        holder = cast("type[Self]", cls.family_.holder)()
-        cls.family_.takers.take_plain(holder, plain)
+        family = cls.family_
+        holder = family.fresh()
+        family.takers.take_plain(holder, plain)
         return holder
 
     def materialise(self) -> None:

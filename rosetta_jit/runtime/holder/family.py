@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
@@ -135,6 +136,7 @@ class Family:
         self._recipes: dict[int, tuple[Any, ...]] = {}
         self._sameness = Sameness()
         self.latest: tuple[Any, Any, Any] = None, None, None
+        self._fresh: tuple[Plan | None, Callable[[], Any]] = None, object
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
         self._kept: KeptFields | None = None
@@ -264,6 +266,16 @@ class Family:
         holder = self.holder.__new__(self.holder)
         holder.lay_out_(plan)
         return holder
+
+    def fresh(self) -> Any:
+        """A holder with the room that new ones have, of which nobody's constructor runs."""
+        plan, make = self._fresh
+        if plan is not self.plan:
+            plan = self.plan
+            recipe = self.recipe(plan)
+            make = partial(self.new, plan) if recipe is None else partial(functions()["spawn"], self.holder, recipe)
+            self._fresh = plan, make
+        return make()
 
     @cached_property
     def mark(self) -> str:

@@ -39,6 +39,24 @@ def test_there_and_back(programs, theirs):
     assert not theirs.FromString(encode(theirs())).HasField("i32")
 
 
+def test_one_object_after_another(programs, theirs):
+    """Nothing is left of the object before, nor of one that failed."""
+    encode, decode = programs
+    messages = [filled(theirs), theirs(), theirs(text="é" * 100), theirs(ints=range(1000))]
+    for message in messages + messages:
+        data = message.SerializePartialToString()
+        assert encode(message) == data
+        assert encode.size(message) == len(data)
+        assert decode.to(data, theirs) == message
+        buffer = bytearray(2 + len(data))
+        assert encode(message, buffer, 2) == len(buffer)
+        assert buffer[2:] == data
+        with pytest.raises(BufferError):
+            encode(message, buffer, 3)
+        with pytest.raises(rj.DecodeError):
+            decode.to(data + b"\x0a\x7f", theirs)
+
+
 def test_within_a_dict_and_in_a_list(programs, theirs, native):
     encode, _ = programs
     message = filled(theirs)

@@ -20,7 +20,7 @@ class Whole:
     Attributes
     ----------
     take : callable
-        Given an empty holder and an object, gives the holder the object's values.
+        Given a holder and an object, gives the holder the object's values, and leaves it nothing that it had before.
     fill : callable
         Given an object and a holder, gives the object the holder's values.
     make : callable

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import keyword
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from typing import Any
 
 from rosetta_jit.runtime.holder.objects.foreign import MOST_CLASSES
@@ -30,11 +31,19 @@ class Source:
     def __init__(self, name: str) -> None:
         self.name = name
         self.lines: list[str] = []
+        self.indent = "    "
         self.scope: dict[str, Any] = {}
 
     def add(self, line: str) -> None:
         """One more line of its body."""
-        self.lines.append(f"    {line}")
+        self.lines.append(f"{self.indent}{line}")
+
+    @contextmanager
+    def indented(self) -> Generator[None]:
+        """Around the lines of a block."""
+        self.indent += "    "
+        yield
+        self.indent = self.indent[:-4]
 
     def name_of(self, value: object) -> str:
         """A name by which the text refers to a value."""

@@ -13,6 +13,7 @@ from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import assigner, raw
+from rosetta_jit.runtime.holder.classes import plain
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.objects import reading, shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 Take = Callable[[Any, Any], None]
 """Gives an empty message the values of an object."""
+
+INLINED = 3
+"""How deep messages lie in others whose fields one function sets."""
 
 LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)
 """What makes a quick way leave an object to the slow one. Errors of another kind are those of the object's own code."""
@@ -59,11 +63,19 @@ class Takers:
     def take_plain(self, holder: Any, plain: Any) -> None:
         """The same of plain values, as `Holder.from_dict` is given them."""
         try:
-            self._of_root[dict](holder, plain)
+            self._of_dict(holder, plain)
         except LEFT:
             with holder.lanes_ as lanes:
                 lanes.reset()
                 values.write_record(self._family.tree.root, lanes, 0, raw(plain))
+
+    def take_message(self, holder: Any, message: Message) -> None:
+        """The same of a holder of another family, or of a part of one; nothing that another thread changes meanwhile is mixed."""
+        try:
+            message.lanes_.consistent(lambda source: self._of_root[type(source)](holder, source), message)
+        except LEFT:
+            holder.lanes_.restart()
+            self.take_plain(holder, plain(message))
 
     def _take_slowly(self, holder: Any, value: object) -> None:
         record = self._family.tree.root
@@ -76,17 +88,24 @@ class Takers:
     def _of_root(self) -> ByClass:
         return self._of_record(self._family.tree.root)
 
+    @cached_property
+    def _of_dict(self) -> Take:
+        return self._of_root[dict]
+
     def _of_record(self, record: Record) -> ByClass:
         found = self._of_records.get(id(record))
         if found is None:
             found = self._of_records[id(record)] = ByClass(lambda object_type: self._written(record, object_type))
         return found
 
-    def _written(self, record: Record, object_type: type) -> Take:
+    def _written(self, record: Record, object_type: Any) -> Take:
         """The function for objects of a class."""
-        if issubclass(cast("Any", object_type), Mapping):
+        if issubclass(object_type, Mapping):
             return self._of_mapping(record)
-        if unions.discriminator_of(record) is not None or not shapes.has_messages(object_type) or self._is_whole(record, object_type):
+        if issubclass(object_type, Message):
+            return self._of_holders(record, cast("Any", object_type).family_.tree.root)
+        is_whole = self._family.of_struct(record.struct).family_.wholes[object_type] is not None
+        if unions.discriminator_of(record) is not None or not shapes.has_messages(object_type) or is_whole:
             raise TypeError("left to the slow way")
         source = Source("take")
         names = {each: self._family.manners.foreign.names(record, each) for each in record.entries}
@@ -100,17 +119,51 @@ class Takers:
                 self._add(source, record, entry, attribute("source", _spelled(object_type, names[entry.name])))
         return source.made("target, source")
 
-    def _is_whole(self, record: Record, object_type: type) -> bool:
-        return issubclass(object_type, Message) or self._family.of_struct(record.struct).family_.wholes[object_type] is not None
+    def _of_holders(self, record: Record, other: Record) -> Take:
+        """The function for holders and parts of them, of whose fields none can be absent, and which all are attributes."""
+        entries = record.entries.values()
+        is_plain = all(entry.presence is None and other.entries[entry.name].presence is None for entry in entries)
+        shown = self._family.shown(record)
+        if record.entries.keys() != other.entries.keys() or not is_plain or not shown.issuperset(record.entries):
+            raise TypeError("left to the slow way")
+        source = Source("take")
+        for entry in entries:
+            self._add(source, record, entry, attribute("source", entry.name), is_there=True)
+        return source.made("target, source")
 
     def _of_mapping(self, record: Record) -> Take:
         """The function for mappings: those that name every field, and others."""
         source = Source("take")
         some = source.name_of(self._of_some(record))
         source.add(f"if len(source) != {len(record.entries)}: return {some}(target, source)")
-        for entry in record.entries.values():
-            self._add(source, record, entry, f"source[{entry.name!r}]", is_there=True)
+        self._add_fields(source, record, "target", "source", 0)
         return source.made("target, source")
+
+    def _add_fields(self, source: Source, record: Record, target: str, values: str, depth: int) -> None:
+        """Lines that set all fields, out of a mapping that names them all."""
+        for entry in record.entries.values():
+            value = f"{values}[{entry.name!r}]"
+            if depth < INLINED and self._is_nested(record, entry):
+                self._add_inlined(source, entry, target, value, depth + 1)
+            else:
+                self._add(source, record, entry, value, target, is_there=True)
+
+    def _add_inlined(self, source: Source, entry: Entry, target: str, value: str, depth: int) -> None:
+        """Lines that set a message in another: of a dict that names all its fields these are set here, which saves a call."""
+        record, inner, values = cast("Record", entry.node), f"target_{depth}", f"values_{depth}"
+        source.add(f"{inner}, {values} = {attribute(target, entry.name)}, {value}")
+        if entry.presence is not None:
+            source.add(f"{source.name_of(make_present)}({inner})")
+        source.add(f"if {source.name_of(type)}({values}) is {source.name_of(dict)} and len({values}) == {len(record.entries)}:")
+        with source.indented():
+            source.add("pass")
+            self._add_fields(source, record, inner, values, depth)
+        source.add(f"else: {source.name_of(self._of_record(record))}[{source.name_of(type)}({values})]({inner}, {values})")
+
+    def _is_nested(self, record: Record, entry: Entry) -> bool:
+        """Whether a field is a message that is written within the row of the one around it, and an attribute of that."""
+        node = entry.node
+        return isinstance(node, Record) and entry.name in self._family.shown(record) and unions.discriminator_of(node) is None
 
     def _of_some(self, record: Record) -> Take:
         setters = {entry.name: self._setter(record, entry) for entry in record.entries.values()}
@@ -126,17 +179,17 @@ class Takers:
         self._add(source, record, entry, "source", is_there=True)
         return source.made("target, source")
 
-    def _add(self, source: Source, record: Record, entry: Entry, value: str, *, is_there: bool = False) -> None:
+    def _add(self, source: Source, record: Record, entry: Entry, value: str, target: str = "target", *, is_there: bool = False) -> None:
         """Lines that set a field; None is a value that is absent, but where the field is known to be there."""
         indent = ""
         if entry.presence is not None and not is_there:
             source.add(f"value = {value}")
             source.add("if value is not None:")
             value, indent = "value", "    "
-        for line in self._lines(source, record, entry, value):
+        for line in self._lines(source, record, entry, value, target):
             source.add(indent + line)
 
-    def _lines(self, source: Source, record: Record, entry: Entry, value: str) -> list[str]:
+    def _lines(self, source: Source, record: Record, entry: Entry, value: str, target: str) -> list[str]:
         node, shown = entry.node, entry.name in self._family.shown(record)
         match node:
             case Scalar() if isinstance(node.type, Enum):
@@ -144,26 +197,26 @@ class Takers:
             case Blob():
                 value = f"{source.name_of(reading.octets)}({value})"
             case Numbers() if not isinstance(node.type, Enum):
-                value = f"{source.name_of(reading.numbers)}({value})"
+                value = _list_or(source, reading.numbers, value)
             case Items(element=Text()):
-                value = f"{source.name_of(reading.listed)}({value})"
+                value = _list_or(source, reading.listed, value)
             case Scalar() | Text():
                 pass
             case Record() if shown and unions.discriminator_of(node) is None:
-                return self._nested(source, entry, node, value)
+                return self._nested(source, entry, node, value, target)
             case Items(element=Record()) if shown:
-                return [f"{source.name_of(self._items(entry))}(target, {value})"]
+                return [f"{source.name_of(self._items(entry))}({target}, {value})"]
             case _:
                 value = f"{source.name_of(self._plain(entry))}({value})"
         if shown and (self._family.assigns_whole or isinstance(node, Scalar | Text | Blob)):
-            return [assignment("target", entry.name, value)]
-        return [f"{source.name_of(assigner(entry))}(target, {value})"]
+            return [assignment(target, entry.name, value)]
+        return [f"{source.name_of(assigner(entry))}({target}, {value})"]
 
-    def _nested(self, source: Source, entry: Entry, record: Record, value: str) -> list[str]:
-        takers, target = source.name_of(self._of_record(record)), attribute("target", entry.name)
+    def _nested(self, source: Source, entry: Entry, record: Record, value: str, target: str) -> list[str]:
+        takers, own = source.name_of(self._of_record(record)), attribute(target, entry.name)
         inner = source.name_of(type)
-        lines = [f"{source.name_of(make_present)}({target})"] if entry.presence is not None else []
-        return [*lines, f"inner = {value}", f"{takers}[{inner}(inner)]({target}, inner)"]
+        lines = [f"{source.name_of(make_present)}({own})"] if entry.presence is not None else []
+        return [*lines, f"inner = {value}", f"{takers}[{inner}(inner)]({own}, inner)"]
 
     def _items(self, entry: Entry) -> Take:
         """What sets an array of messages."""
@@ -185,6 +238,12 @@ class Takers:
     def _plain(self, entry: Entry) -> Callable[[Any], Any]:
         node, family = entry.node, self._family
         return lambda value: reading.plain(node, value, family)
+
+
+def _list_or(source: Source, other: Callable[[Any], Any], value: str) -> str:
+    """A value as it is if it is a list, else what a function makes of it: the call is what lists, which are many, do not need."""
+    kind, exact = source.name_of(type), source.name_of(list)
+    return f"each if {kind}(each := {value}) is {exact} else {source.name_of(other)}(each)"
 
 
 def _spelled(object_type: type, names: tuple[str, ...]) -> str:
