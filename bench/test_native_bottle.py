@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from functools import partial
 
 import numpy as np
@@ -14,12 +15,14 @@ from bench.figures import Spread
 from bench.messages import batch, joints_mapping, repeated, specialised, tagged
 from bench.peers import bottle_by_hand
 from bench.peers.generated import generated_c, generated_cpp
+from bench.peers.generated_lisp import generated_lisp
 from bench.peers.yarp_native import Peers
 from bench.processes import run
 
 CHAPTER = "Native bottle parsing"
 CPP, ADDS, RESIZES = "rosetta_jit, generated C++", "C++ by hand, add_angles", "C++ by hand, into resized memory"
 INTO_PROTOBUF = {CPP: "codec", ADDS: "add", RESIZES: "resize"}
+LISP = "rosetta_jit, generated Lisp"
 MESSAGES, SERIES = 1_000_000, 20
 OURS, BUILTIN, MANY, LEN, LOOP, COPY, TAGGED, GENERATED = (
     "rosetta_jit",
@@ -110,7 +113,7 @@ def in_cpp(who, makes, timed, target, wanted, count):
     """A decoder by hand in C++, which fills a target."""
     timed(1)
     same(target, wanted)
-    return Contender(who, "ours" if who in (GENERATED, CPP) else "peer", makes, partial(timed, count))
+    return Contender(who, "ours" if who in (GENERATED, CPP, LISP) else "peer", makes, partial(timed, count))
 
 
 def by_struct(effort, message, makes):
@@ -164,6 +167,27 @@ def test_24_specialised_doubles(decoders, effort, compare, record, tmp_path):
     loop, copy = (outcome.took(who).median for who in (LOOP, COPY))
     detail = f"loop {loop:.1f} ns, header check and memcpy {copy:.1f} ns"
     record("24 specialised doubles, against a C++ loop by hand, inside C++", outcome.ratio(OURS, LOOP), None, "x", detail)
+
+
+@pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL is not installed")
+def test_24_specialised_doubles_in_lisp(decoders, effort, compare, record, tmp_path):
+    """Against generated C: what a vectorised loop, and a structure that need not be filled, are worth."""
+    message, mapping, count = specialised(24), joints_mapping(24, tmp_path), series(effort)
+    wanted, in_c, in_lisp = np.radians(degrees_of(message)), np.zeros(24, np.float32), np.zeros(24, np.float32)
+    compiled = generated_c(mapping, tmp_path, message, in_c)
+    with generated_lisp(mapping, tmp_path, message, in_lisp) as timed:
+        outcome = compare(
+            CHAPTER,
+            f"24 specialised doubles in Lisp, {decodes(effort)}",
+            [
+                Contender(OURS, "ours", HOLDER, effort.call(decoders[24], message, count=count)),
+                in_cpp(LISP, "a structure, used again", timed, in_lisp, wanted, count),
+                in_cpp(GENERATED, HOLDER, compiled, in_c, wanted, count),
+            ],
+            rounds=SERIES,
+        )
+    took = outcome.took(LISP).median
+    record("generated Lisp against generated C", outcome.ratio(LISP, GENERATED), None, "x", f"{took:.0f} ns, SBCL", against=GENERATED)
 
 
 def test_24_specialised_doubles_into_protobuf(decoders, effort, compare, record, tmp_path):

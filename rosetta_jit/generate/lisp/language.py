@@ -16,7 +16,7 @@ from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.objects import Put, Take
 from rosetta_jit.generate.lisp.structs import definitions, function_symbols, structures_of
 from rosetta_jit.generate.lisp.texts import comment, literal
-from rosetta_jit.generate.lisp.words import RUNTIME, package_of
+from rosetta_jit.generate.lisp.words import package_of, runtime_text
 from rosetta_jit.kernel.shape import is_told
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def files(unit: Unit) -> dict[str, str]:
 
 def runtime(package: str) -> str:
     """What all units have, in a package."""
-    return RUNTIME.read_text("utf-8").replace("$package", package)
+    return runtime_text().replace("$package", package)
 
 
 class _Source:

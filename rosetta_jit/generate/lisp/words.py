@@ -10,7 +10,8 @@ from pathlib import Path
 from rosetta_jit.startup.dataclass import dataclass
 
 HERE = Path(__file__).parent
-RUNTIME = HERE / "runtime.lisp"
+PARTS = ("errors", "numbers", "kernels", "texts", "objects", "decimals", "host")
+"""Of the runtime, in the order in which they need each other."""
 MAX_NAME = 60
 CONSTANT = re.compile(r"t|nil|pi|(most|least|boole|internal)-.*|.*-(limit|epsilon|keywords)")
 """Symbols of the language that no variable may be called."""
@@ -39,9 +40,15 @@ def constants() -> frozenset[str]:
 
 
 @cache
+def runtime_text() -> str:
+    """What all units have, of a package that is not named yet."""
+    return "\n".join((HERE / "runtime" / f"{part}.lisp").read_text("utf-8") for part in PARTS)
+
+
+@cache
 def runtime_names() -> frozenset[str]:
     """What the runtime defines, exports, or makes out of the names of numbers."""
-    text = RUNTIME.read_text("utf-8")
+    text = runtime_text()
     defined = re.findall(r"\((?:def[a-z-]+|:constructor) \(?(?:setf )?([^\s()]+)", text) + re.findall(r"#:([a-z0-9*+/-]+)", text)
     numbers = [name for name in LISP_TYPES if name != "bool"]
     made = {f"{first}{name}{last}" for name in numbers for first, last in (("", "s"), ("append-", "s"))}
@@ -56,7 +63,7 @@ def codec_slots() -> frozenset[str]:
 
 
 def _slots(struct: str) -> list[str]:
-    found = re.search(rf"\(defstruct \({struct}\b.*?\n\n", RUNTIME.read_text("utf-8"), re.DOTALL)
+    found = re.search(rf"\(defstruct \({struct}\b.*?\n\n", runtime_text(), re.DOTALL)
     assert found is not None, struct
     return re.findall(r"^  \(([a-z0-9-]+) ", found.group(), re.MULTILINE)
 

@@ -1,0 +1,59 @@
+;;; Statements of kernels.
+
+(defmacro for ((variable count) &body body)
+  "Run BODY with VARIABLE from 0 up to COUNT."
+  (let ((end (gensym "END")))
+    `(do ((,variable 0 (the i64 (1+ ,variable)))
+          (,end ,count))
+         ((>= ,variable ,end))
+       (declare (type i64 ,variable ,end))
+       ,@body)))
+
+(defmacro while (condition &body body)
+  `(loop (unless ,condition (return)) ,@body))
+
+(defmacro row (stride index &optional (offset 0))
+  "The byte of a lane where a row begins, or a field of it."
+  `(the fixnum (+ (the fixnum (* ,stride (the fixnum ,index))) ,offset)))
+
+(declaim (inline lacks copy-octets fill-octets))
+
+(defun lacks (at size end)
+  "Whether some of SIZE bytes from AT are missing."
+  (declare #.*proven* (type i64 at size end))
+  (or (< at 0) (< size 0) (> at end) (> size (the i64 (- end at)))))
+
+(defun copy-octets (to first from begin size)
+  (declare #.*proven* (type octets to from) (type fixnum first begin size))
+  (replace to from :start1 first :start2 begin :end2 (the fixnum (+ begin size))))
+
+(defun fill-octets (octets start size octet)
+  (declare #.*proven* (type octets octets) (type fixnum start size))
+  (fill octets octet :start start :end (the fixnum (+ start size))))
+
+(defun with-room (octets used missing stride most)
+  "Octets with room for more rows, at least twice as many; nil where that were more than MOST rows."
+  (declare (type octets octets) (type i64 used missing stride most))
+  (let ((wanted (+ used missing)))
+    (unless (> wanted most)
+      (let ((more (make-array (* stride (max wanted (min most (* 2 (floor (length octets) stride))))) :element-type 'u8)))
+        (replace more octets)))))
+
+(defmacro reserve ((rows place stride) used count codec full)
+  "Room for COUNT more rows in ROWS, which PLACE keeps for the next message; or FULL."
+  (let ((missing (gensym "MISSING")) (more (gensym "MORE")))
+    `(let ((,missing ,count))
+       (declare (type i64 ,missing))
+       (when (> ,missing (the i64 (- (truncate (length ,rows) ,stride) ,used)))
+         (let ((,more (with-room ,rows ,used ,missing ,stride (codec-state-most ,codec))))
+           (if ,more
+               (setf ,rows ,more ,place ,more)
+               ,full))))))
+
+(defmacro call-function ((name type) refused &rest arguments)
+  "What a function that the mapping declares gives, which must have a type."
+  `(handler-case
+       (let ((found (funcall ',name ,@arguments)))
+         (check-type found ,type)
+         found)
+     (refused () ,refused)))
