@@ -247,7 +247,7 @@ class _Block:
         if place is None:
             return None
         if value is not None:
-            value = in_unit(value, place, scope)
+            value = in_unit(value, place, scope, packs=rule.by == "checked")
         if value is not None and rule.by == "checked":
             value = fitted(value, place.type)
         elif value is not None and scope.rounds and is_single(place.type) and same(value.type, FLOAT64):
