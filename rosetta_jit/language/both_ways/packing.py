@@ -23,7 +23,7 @@ from rosetta_jit.language.folding import FALSE, TRUE, folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.expr import Binary, Call, Held, Len, Literal, Path, Unary
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, Rest, SameNames, SetLength, When
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, Rest, SameNames, SetLength, SetState, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -115,7 +115,7 @@ class Packing:
             case SameNames(but, span, renames=renames):
                 turned = tuple(replace(each, place=each.value, value=each.place) for each in renames)
                 return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True, renames=turned),)
-            case Assign() | SetLength():
+            case Assign() | SetLength() | SetState():
                 raise AssertionError(rule)
 
     def loop(self, rule: For[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:
