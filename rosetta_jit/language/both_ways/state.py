@@ -6,6 +6,7 @@ What may read it is the condition of a `reject`, and its text: such a check is n
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import is_
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import state as words
@@ -31,16 +32,17 @@ def without_state(rules: tuple[Rule, ...], names: frozenset[str], problems: list
                 named = (part for expr in expressions_of(rule) for part in parts(expr) if isinstance(part, Name))
                 problems.extend(words.in_relation(part.span, part.name) for part in named if part.name in names)
                 found.append(_within(rule, names, problems))
-    return tuple(found)
+    return rules if len(found) == len(rules) and all(map(is_, found, rules)) else tuple(found)
 
 
 def _within(rule: Rule, names: frozenset[str], problems: list[Diagnostic]) -> Rule:
-    """A rule with its blocks looked through."""
+    """A rule with its blocks looked through; the same one where nothing is to be changed."""
     match rule:
         case For(body=body):
-            return replace(rule, body=without_state(body, names, problems))
+            inside = without_state(body, names, problems)
+            return rule if inside is body else replace(rule, body=inside)
         case When(then=then, otherwise=otherwise):
-            blocks = (without_state(block, names, problems) for block in (then, otherwise))
-            return replace(rule, then=next(blocks), otherwise=next(blocks))
+            blocks = [without_state(block, names, problems) for block in (then, otherwise)]
+            return rule if blocks[0] is then and blocks[1] is otherwise else replace(rule, then=blocks[0], otherwise=blocks[1])
         case _:
             return rule

@@ -297,7 +297,7 @@ class _Block:
 
     def set_state(self, rule: model.SetState[str, expr.Expr], scope: Scope) -> Rule | None:
         variable = scope.state.get(rule.variable)
-        value = type_expr(rule.value if variable is None else for_type(rule.value, variable.type), scope)
+        value = type_expr(rule.value, scope)
         if variable is None:
             scope.problems.append(states.unknown(rule.span, rule.variable, scope.state))
         if variable is None or value is None:
