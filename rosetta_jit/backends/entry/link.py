@@ -222,7 +222,7 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
-    texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
+    texts = map(_template, ("objects.ll", told, hosted, _thread_template(), _large_template(), *templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))
@@ -231,6 +231,11 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
 def _thread_template() -> str:
     """What says which thread calls: what the system's own function would do, where that is known."""
     return "thread_linux_x86_64.ll" if sys.platform == "linux" and os.uname().machine == "x86_64" else "thread.ll"
+
+
+def _large_template() -> str:
+    """How memory for large messages is asked for."""
+    return "large_linux.ll" if sys.platform == "linux" else "large.ll"
 
 
 def _template(file: str) -> str:
