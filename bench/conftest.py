@@ -11,7 +11,7 @@ from bench.figures import Curve, Report, Row, to_json
 from bench.machine import versions
 from bench.report.markdown import targets
 from bench.report.readme import write_in
-from bench.turns import Call, Effort, Placed
+from bench.turns import Effort
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = (
@@ -38,6 +38,8 @@ ORDER = (
 """The modules as they are run and reported: what users ask first comes first."""
 
 FOUND = pytest.StashKey[dict[str, list]]()
+MESSAGES = pytest.StashKey[int | None]()
+"""How many different messages the last comparison of a test was of, as a `Row` has it."""
 
 
 def pytest_addoption(parser):
@@ -86,7 +88,7 @@ def record(request, found):
     """Call it with the fields of a `Row`: the row joins the report, and its target is demanded unless only a report is wanted."""
 
     def record_row(what, measured, at_most, unit, detail="", against=""):
-        row = Row(what, measured, at_most, unit, detail, against)
+        row = Row(what, measured, at_most, unit, detail, against, request.node.stash.get(MESSAGES, None))
         found("rows", row)
         if not request.config.getoption("--bench-report"):
             assert row.met, f"{what}: {measured.median:.3g} {unit}, at most {at_most:.3g} wanted"
@@ -95,15 +97,15 @@ def record(request, found):
 
 
 @pytest.fixture
-def compare(found, effort, benchmark):
+def compare(request, found, effort, benchmark):
     """Call it with a chapter, a title and contenders, ours first: the comparison joins the report, and ours pytest-benchmark's own."""
 
     def measure(chapter, title, contenders, *, rounds=None):
         outcome = contest.held(effort, contenders, rounds=rounds)
         found("comparisons", contest.comparison(chapter, title, contenders, outcome))
-        timed = contenders[0].timed
-        ours = timed.calls[0] if isinstance(timed, Placed) else timed
-        assert isinstance(ours, Call)
+        ours = contest.call_of(contenders[0].timed)
+        assert ours is not None
+        request.node.stash[MESSAGES] = ours.different
         benchmark.group = chapter
         benchmark.extra_info.update({who: outcome.took(who).median for who in outcome.rounds_ns})
         benchmark.pedantic(ours.function, ours.arguments, rounds=5, iterations=max(1, ours.count // 5))

@@ -20,11 +20,15 @@ Role = Literal["ours", "limit", "peer"]
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """A median and the quartiles around it."""
+    """A median and the quartiles around it.
+
+    ``net``, of a ratio: the median of what is left when the loops around both are not counted; None where there are none.
+    """
 
     median: float
     low: float
     high: float
+    net: float | None = None
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
@@ -47,12 +51,17 @@ def ratio(one: Sequence[float], other: Sequence[float]) -> Spread:
     return Spread.of([a / b for a, b in zip(one, other, strict=True)])
 
 
+def without(rounds: Sequence[float], idle: Sequence[float]) -> list[float]:
+    """What is left of each round when the loop alone is not counted; no less than nothing."""
+    return [max(all_ - loop, 0.0) for all_, loop in zip(rounds, idle, strict=True)]
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """One line of the README.
 
     ``at_most`` None: no target, the figure is only reported. ``against``: which of several the ratio was taken to, where that depends on
-    what is installed.
+    what is installed. ``messages``: how many different ones came in turn; 1 of one that was repeated, None where there are none.
     """
 
     what: str
@@ -61,6 +70,7 @@ class Row:
     unit: str  # of `measured` and `at_most`: "x len()", "ms", …
     detail: str = ""
     against: str = ""
+    messages: int | None = None
 
     @property
     def met(self) -> bool:
@@ -141,7 +151,11 @@ def from_json(data: Mapping[str, Any]) -> Report:
     """The report that `to_json` wrote."""
     return Report(
         tuple(
-            Row(each["what"], _spread(each["measured"]), each["at_most"], each["unit"], each["detail"], each.get("against", ""))
+            Row(
+                *(each["what"], _spread(each["measured"]), each["at_most"], each["unit"], each["detail"]),
+                against=each.get("against", ""),
+                messages=each.get("messages"),
+            )
             for each in data["rows"]
         ),
         tuple(Comparison(each["chapter"], each["title"], tuple(map(_figure, each["figures"]))) for each in data["comparisons"]),
@@ -150,7 +164,7 @@ def from_json(data: Mapping[str, Any]) -> Report:
 
 
 def _spread(data: Mapping[str, Any]) -> Spread:
-    return Spread(float(data["median"]), float(data["low"]), float(data["high"]))
+    return Spread(float(data["median"]), float(data["low"]), float(data["high"]), data.get("net"))
 
 
 def _figure(data: Mapping[str, Any]) -> Figure:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from bench.turns import Effort
 
 READ = re.compile(r"read\(((?:[^()]|\([^()]*\))*)\)")
+MESSAGE = re.compile(r"\bm\b")
 TIMES = 8
 """How often short statements stand in a loop, so that the loop itself does not count."""
 
@@ -39,8 +40,9 @@ def over(body: str, **given: Any) -> Callable[[Sequence[Any]], None]:
 
 def loop(effort: Effort, body: str, messages: Sequence[Any], *, times: int = 1, each: int = 1, **given: Any) -> Callable[[], float]:
     """What times a body, so many times for each message; ``each`` is how many things one run of it deals with."""
-    run = over("\n".join([READ.sub(r"\1", dedent(body))] * times), **given)
-    return effort.call(run, messages, messages=len(messages) * times * each)
+    run, idle = over("\n".join([READ.sub(r"\1", dedent(body))] * times), **given), over("pass")
+    different = len(messages) if MESSAGE.search(body) else None
+    return effort.call(run, messages, messages=len(messages) * times * each, idle=idle, different=different)
 
 
 def found(body: str, messages: Sequence[Any], **given: Any) -> list[Any]:

@@ -164,10 +164,16 @@ def test_different_messages(name, effort, compare, record):
     """What a decode takes when each message is another one, against one message over and over, each time in another place."""
     made = DIFFERENT[name]()
     decode, copies = made.subject.decoder(), [anew(made.messages[0]) for _ in made.messages]
+    peers = peers_of(made.subject, PACKAGES)
     contenders = [
         contender(effort, OURS, "ours", "a holder, used again", "decode(m)", made.messages, decode=decode),
         contender(effort, REPEATED, "limit", "a holder, used again", "decode(m)", copies, decode=decode),
+        *(contender(effort, peer.who, "peer", peer.makes, "decode(m)", made.messages, decode=peer.decode) for peer in peers),
     ]
     outcome = compare(CHAPTER, f"{name}, each message another one", contenders)
     took = words.time(outcome.took(OURS).median)
     record(f"{name}, decode, each message another one", outcome.ratio(OURS, REPEATED), None, "x one message repeated", took)
+    if peers:
+        fastest = outcome.fastest([peer.who for peer in peers])
+        detail = f"{fastest}: {words.time(outcome.took(fastest).median)}"
+        record(f"{name}, decode, against the fastest Python peer", outcome.ratio(OURS, fastest), None, "of it", detail)

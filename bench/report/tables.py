@@ -23,7 +23,8 @@ def target(row: Row) -> Line:
     """A row against its target."""
     at_most = "" if row.at_most is None else f"{row.at_most:.3g} {row.unit}"
     mark = "" if row.at_most is None else "met" if row.met else "missed"
-    return row.what, f"{words.ratio(row.measured)} {row.unit}", at_most, mark, row.detail
+    detail = "; ".join(each for each in (row.detail, words.messages(row.messages)) if each)
+    return row.what, f"{words.ratio(row.measured)} {row.unit}", at_most, mark, detail
 
 
 def contenders(comparison: Comparison) -> tuple[Line, Sequence[Line]]:

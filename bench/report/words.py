@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from bench.figures import Spread
 
+LOOPS = 0.02
+"""The part of a ratio from which on it is shown what the loops make of it."""
+
 _TIMES = ((1e9, "s"), (1e6, "ms"), (1e3, "µs"), (1.0, "ns"))
 
 
@@ -23,8 +26,17 @@ def spread_of_time(took: Spread) -> str:
 
 
 def ratio(value: Spread) -> str:
-    """`1.23 (1.20 to 1.31)`."""
-    return f"{number(value.median)} ({number(value.low)} to {number(value.high)})"
+    """`1.23 (1.20 to 1.31)`; with `, 1.4 net` where the loops around both make a difference."""
+    found = f"{number(value.median)} ({number(value.low)} to {number(value.high)})"
+    differs = value.net is not None and abs(value.net - value.median) > LOOPS * value.median
+    return f"{found}, {number(value.net or 0.0)} net" if differs else found
+
+
+def messages(different: int | None) -> str:
+    """How many different messages came in turn."""
+    if different is None:
+        return ""
+    return "one message, repeated" if different == 1 else f"{different:,} messages in turn"
 
 
 def count(value: float) -> str:

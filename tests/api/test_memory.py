@@ -74,3 +74,17 @@ print((private_kb() - before) / 60)
 def test_decoders_of_different_types_leave_nothing_behind():
     ended = subprocess.run([sys.executable, "-c", DROPPED], check=True, capture_output=True, text=True, timeout=300)
     assert float(ended.stdout) < 40, "KB each; where LLVM's passes or the classes of holders stay it is over 100"
+
+
+@pytest.mark.parametrize("size", [(4 << 20) - 1, 4 << 20, (4 << 20) + 70_000, 9 << 20])
+def test_large_messages_are_the_same_in_new_bytes_and_in_a_buffer(size):
+    """Around the size from which on memory is asked for in large pages."""
+    schema = {"p/B.msg": "uint8[] data\n"}
+    encode = rj.Encoder.of("p/B", schema=schema, encoding="ros1")
+    holder = encode.new()
+    holder.data = (bytes(range(256)) * (size // 256 + 1))[: size - 4]
+    buffer = bytearray(encode.size(holder))
+    assert encode.into(holder, buffer) == len(buffer)
+    assert encode(holder) == buffer
+    between = rj.Bridge.of("p/B", decode={"schema": schema, "encoding": "ros1"}, encode={"schema": schema, "encoding": "ros1"})
+    assert between(buffer) == buffer

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import time
+from dataclasses import replace
 from functools import partial
 
 import pytest
 
 from bench.contest import Contender, held
 from bench.figures import Spread, chapters, from_json, ratio, to_json
+from bench.loops import contender
+from bench.report.tables import target
 from bench.slopes import exponent, too_steep
 from bench.turns import Effort
 from tests.bench import runs
@@ -23,6 +26,25 @@ def test_a_spread_is_the_median_between_quartiles():
 def test_ratios_are_of_single_rounds():
     """A moment that slows both down threefold does not show."""
     assert ratio([10.0, 30.0, 10.0], [5.0, 15.0, 5.0]) == Spread(2.0, 2.0, 2.0)
+
+
+def test_ratios_are_given_net_of_the_loops_too():
+    effort = Effort(5, 0.002, quick=True)
+    body = "".join(["sum(m)\n"] * 3)
+    contenders = [contender(effort, who, "ours", "", body[: 7 * times], [range(30)] * 7) for times, who in ((3, "three"), (1, "one"))]
+    outcome = held(effort, contenders)
+    measured = outcome.ratio("three", "one")
+    assert outcome.idle_ns.keys() == {"one", "three"}
+    assert measured.net > measured.median
+    assert contenders[0].timed.different == 7
+    assert held(effort, [Contender(who, "ours", "", lambda: 2.0) for who in "ab"]).ratio("a", "b") == Spread(1.0, 1.0, 1.0)
+
+
+def test_rows_say_how_many_messages_there_were():
+    shown = [target(replace(runs.row(), messages=each))[-1] for each in (None, 1, 1000)]
+    assert shown == ["25 ns", "25 ns; one message, repeated", "25 ns; 1,000 messages in turn"]
+    measured = replace(runs.row(), measured=Spread(1.5, 1.4, 1.6, 1.75))
+    assert target(measured)[1] == "1.5 (1.4 to 1.6), 1.75 net x len()"
 
 
 def test_reports_survive_json():

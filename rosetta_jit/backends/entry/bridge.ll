@@ -47,7 +47,7 @@ run:
   %measured = icmp sge i64 %size, 0
   br i1 %measured, label %allocate, label %stop, !prof !0
 allocate:
-  %made = call ptr @PyBytes_FromStringAndSize(ptr null, i64 %size)
+  %made = call ptr @new_bytes(i64 %size)
   %allocated = icmp ne ptr %made, null
   br i1 %allocated, label %write, label %stop, !prof !0
 write:

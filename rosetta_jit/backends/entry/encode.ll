@@ -26,7 +26,7 @@ measure:
   %measured = icmp sge i64 %size, 0
   br i1 %measured, label %allocate, label %stop, !prof !0
 allocate:
-  %bytes = call ptr @PyBytes_FromStringAndSize(ptr null, i64 %size)
+  %bytes = call ptr @new_bytes(i64 %size)
   %allocated = icmp ne ptr %bytes, null
   br i1 %allocated, label %write, label %unallocated, !prof !0
 unallocated:

@@ -224,7 +224,7 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
-    texts = (*map(_template, ("objects.ll", told, hosted, _thread_template())), kept, *map(_template, templates))
+    texts = (*map(_template, ("objects.ll", told, hosted, _thread_template(), _large_template())), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))
@@ -233,6 +233,11 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
 def _thread_template() -> str:
     """What says which thread calls: what the system's own function would do, where that is known."""
     return "thread_linux_x86_64.ll" if sys.platform == "linux" and os.uname().machine == "x86_64" else "thread.ll"
+
+
+def _large_template() -> str:
+    """How memory for large messages is asked for."""
+    return "large_linux.ll" if sys.platform == "linux" else "large.ll"
 
 
 def _template(file: str) -> str:

@@ -48,14 +48,14 @@ from rosetta_jit.lowering.codec.tagged_message import (
     set_number,
 )
 from rosetta_jit.lowering.codec.unknown_fields import skip_unknown
-from rosetta_jit.lowering.codec.varint import from_varint, read_length, read_tag, read_varint, varint_bytes
+from rosetta_jit.lowering.codec.varint import from_varint, read_element, read_length, read_tag, read_varint, varint_bytes
 from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.model.layout import Slot, Span
 from rosetta_jit.wire.codec import Blob, Entry, Number, Recursion, Tagged, Varint
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rosetta_jit.kernel.ir import Stmt
 
@@ -204,9 +204,11 @@ def _read_single(message: Message, entry: Entry) -> None:
             raise AssertionError(entry)
 
 
-def _varint_value(message: Message, varint: Varint, slot: Slot, where: Where) -> Local:
+def _varint_value(
+    message: Message, varint: Varint, slot: Slot, where: Where, read: Callable[[Writer, Where], Local] = read_varint
+) -> Local:
     scalar = slot.scalar if isinstance(slot, NumberSlot) else "u64"
-    value = from_varint(varint, read_varint(message.writer, where), scalar)
+    value = from_varint(varint, read(message.writer, where), scalar)
     return message.writer.let("value", value if scalar == "bool" else converted(value, scalar))
 
 
@@ -339,7 +341,7 @@ def _read_packed_varints(message: Message, entry: Entry, varint: Varint, lane: i
     at = writer.var("at", writer.position)
     with writer.nested() as body:
         writer.position = at
-        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where)
+        value = _varint_value(message, varint, fields.layout.lanes[lane].element, where, read_element)
         with writer.nested() as known:
             _append(message, lane, value)
         _if_allowed(message, entry, value, known, at)

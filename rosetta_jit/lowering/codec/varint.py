@@ -30,6 +30,12 @@ def read_varint(writer: Writer, where: Where) -> Local:
     return value
 
 
+def read_element(writer: Writer, where: Where) -> Local:
+    """The same of many, one behind the other: two bytes are as common as one there, and cost no call either."""
+    value, writer.position = writer.call("read_element", _read_element, (writer.position,), where)
+    return value
+
+
 def read_tag(writer: Writer, where: Where) -> Local:
     """The same for what has two bytes as often as one: fields have numbers from 16 on, too."""
     value, writer.position = writer.call("read_tag", _read_tag, (writer.position,), where)
@@ -78,13 +84,23 @@ def _read(writer: Writer) -> Contract:
     return _first_byte(writer, lambda _, at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
 
 
+def _read_element(writer: Writer) -> Contract:
+    return _two_bytes(writer, lambda at: writer.call("read_long_varint", _read_long, (at,), MESSAGE))
+
+
 def _read_tag(writer: Writer) -> Contract:
+    return _two_bytes(writer, lambda at: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE))
+
+
+def _two_bytes(writer: Writer, further: Callable[[Local], tuple[Local, ...]]) -> Contract:
+    """A byte alone or two of them, or what begins at a place."""
+
     def second(first: Local, at: Local) -> tuple[Local, ...]:
         byte = writer.let("byte", writer.load("u8", MESSAGE))
         low = Binary("and", Convert("u64", first), SEVEN_BITS)
         value = writer.var("varint", Binary("or", low, Binary("shl", Convert("u64", byte), Const("u64", 7))))
         after = writer.var("next", writer.position)
-        _if_more(writer, byte, lambda: writer.call("read_long_tag", _read_long_tag, (at,), MESSAGE), value, after)
+        _if_more(writer, byte, lambda: further(at), value, after)
         return value, after
 
     return _first_byte(writer, second)

@@ -55,6 +55,7 @@ ALLOWED = frozenset(
         "Py_IncRef",
         *("_Py_FalseStruct", "_Py_NoneStruct", "_Py_TrueStruct"),
         "clock_gettime",
+        "madvise",
         *("memcmp", "memcpy", "memmove", "memset"),
         *("ceil", "ceilf", "floor", "floorf", "fmod", "fmodf", "rint", "rintf", "sqrt", "sqrtf", "trunc", "truncf"),
         *("snprintf", "strtod", "strtoll"),

@@ -93,3 +93,39 @@ def failure(decode, message):
     except rj.DecodeError as error:
         return error.kind, error.path, error.offset
     return None
+
+
+def packed_programs():
+    schema = {"p.proto": "syntax = 'proto3';\nmessage Packed { repeated uint64 numbers = 1; }\n"}
+    return [rj.Decoder.of("Packed", encoding="protobuf", schema=schema, backend=backend) for backend in BACKENDS]
+
+
+def test_arrays_of_values_of_all_lengths():
+    """Two of each length in each order, the last of them at the end of the message and before more; and cut everywhere."""
+    decoders = packed_programs()
+    for first in values(23, 0):
+        for second in values(23, 0):
+            body = varint(first) + varint(second)
+            message = b"\x0a" + varint(len(body)) + body
+            for decode in decoders:
+                assert decode(message).numbers.tolist() == [first, second]
+                assert decode(message + b"\x0a\x01\x05").numbers.tolist() == [first, second, 5]
+    for end in range(len(message)):
+        failures = set()
+        for decode in decoders:
+            with pytest.raises(rj.DecodeError) as caught:
+                decode(message[:2][:end] + message[2:end] if end else b"\x0a")
+            failures.add((caught.value.kind, caught.value.path, caught.value.offset))
+        assert len(failures) == 1
+
+
+def test_the_last_number_of_an_array_ends_with_it():
+    """Where its bytes go on beyond the array, whatever they are, all backends say the same."""
+    for body in (b"\x80", b"\x01\x80", b"\xff\xff"):
+        message = b"\x0a" + bytes([len(body)]) + body + b"\x01\x01\x01"
+        failures = set()
+        for decode in packed_programs():
+            with pytest.raises(rj.DecodeError, match="beyond the array") as caught:
+                decode(message)
+            failures.add((caught.value.kind, caught.value.path, caught.value.offset))
+        assert len(failures) == 1
