@@ -14,6 +14,7 @@ from rosetta_jit.pipeline.request import BridgeRequest, Request, ends
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.bridge import BridgeBase, LoadedBridge
 from rosetta_jit.runtime.callable import callable_class, public_class
+from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -180,6 +181,7 @@ def _loaded(header: Mapping[str, Any], kernels: tuple[run.Run, run.Run, run.Run]
         library=code,
         told=header["told"],
         limit=header["limit"],
+        state=Kept.of(header["state"]),
     )
 
 

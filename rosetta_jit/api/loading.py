@@ -129,7 +129,7 @@ def interpreted_kernel(build: Any, number: int) -> run.Run:
         from rosetta_jit.runtime.images import image_functions
 
         functions |= image_functions()
-    return run.python_run(runner_of(build.backend)(kernel, functions))
+    return run.python_run(runner_of(build.backend)(kernel, functions), keeps=bool(kernel.registers))
 
 
 def sites_of(header: Mapping[str, Any], kernel: int) -> tuple[run.Site, ...]:

@@ -19,6 +19,7 @@ from rosetta_jit.runtime.decoder import DecoderBase
 from rosetta_jit.runtime.encoder import EncoderBase
 from rosetta_jit.runtime.holder import holder_class_of
 from rosetta_jit.runtime.program import Loaded
+from rosetta_jit.runtime.registers import Kept
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
 
@@ -113,8 +114,9 @@ class Decoder(_Made, DecoderBase):
         Raises
         ------
         ValueError
-            The mapping calls functions, or compresses images.
+            The mapping keeps state, calls functions, or compresses images.
         """
+        self._refuse_state()
         imported("rosetta_jit.in_numba.calling")
         from rosetta_jit.in_numba.calling import callable_kernel
         from rosetta_jit.in_numba.taking import Program
@@ -149,8 +151,10 @@ class Encoder(_Made, EncoderBase):
         """The kernel as a typed numba function, ``int64(uint8*, intp begin, intp end, int64* state, intp row)``.
 
         For use in ``@njit`` code: see `rosetta_jit.backends.numba.function.data_pointer`, and a holder's ``lanes_.state``. What
-        `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping calls functions, or compresses images.
+        `now()` and `counter()` are then stands in its words 12 and 13. ValueError where the mapping keeps state, calls functions, or
+        compresses images.
         """
+        self._refuse_state()
         from rosetta_jit.backends.numba.function import typed
 
         return typed(_build(self._request).kernels[0])
@@ -188,6 +192,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         borrow=header["entry"] == "borrow",
         told=header["told"],
         limit=header["limit"],
+        state=Kept.of(header["state"]),
     )
 
 
@@ -203,6 +208,7 @@ def _interpreted(build: Build) -> Loaded:
         borrow=build.request.borrow,
         told=build.header["told"],
         limit=build.header["limit"],
+        state=Kept.of(build.header["state"]),
     )
 
 

@@ -9,11 +9,12 @@ import numpy as np
 from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW, GROW_LANE, GROW_ROWS, MAX_INDICES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, MutableSequence, Sequence
 
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
     Bytes = bytes | bytearray | memoryview
-    Attempt = Callable[[memoryview, int, int, State, list[memoryview], int], int]
+    Registers = MutableSequence[int]
+    Attempt = Callable[..., int]
 
 
 class Failed(Exception):  # noqa: N818 - it ends an attempt, and is no error of this program
@@ -40,10 +41,12 @@ def run_attempts(
     row: int,
     own: int = 0,
     hidden: tuple[int, ...] = (),
+    registers: tuple[Registers, ...] = (),
 ) -> int:
     """The first attempt that succeeds, else the failure that came farthest, left in the state.
 
     ``hidden`` are the strides of the hidden lanes behind the holder's ``own``; there may be too few of them in ``lanes`` yet.
+    ``registers`` has those of the program, if the kernel has any.
     """
     buffer, begin, end = message
     views = [memoryview(lane).cast("B") for lane in lanes]
@@ -52,7 +55,7 @@ def run_attempts(
     for attempt in attempts:
         try:
             with np.errstate(all="ignore"):
-                return attempt(memoryview(buffer).cast("B"), begin, end, state, views, row)
+                return attempt(memoryview(buffer).cast("B"), begin, end, state, views, row, *registers)
         except Failed as failed:
             if farthest is None or failed.at > farthest.at:
                 farthest = failed.with_traceback(None)  # its frames hold this one, and that the message's buffer

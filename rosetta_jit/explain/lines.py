@@ -11,7 +11,7 @@ from rosetta_jit.explain.notes import Note, notes
 from rosetta_jit.language import typed
 from rosetta_jit.language.places import shown_fields
 from rosetta_jit.model.expr import Member, Path
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, Via, When
+from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, SameNames, SetLength, SetState, Via, When
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -129,6 +129,8 @@ class Lines:
                 yield from self.of_used(rule, depth)
             case SetLength(place, value):
                 yield self.line(rule, self.text(rule.span) or f"len({show_expr(place)}) = {_expr(value)}", depth)
+            case SetState(variable, value):
+                yield self.line(rule, self.text(rule.span) or f"state {variable} = {_expr(value)}", depth)
             case Ignore(place) | Default(place):
                 yield self.line(rule, f"{'ignore' if isinstance(rule, Ignore) else 'default'} {show_expr(place)}", depth)
             case Reject(text):

@@ -55,6 +55,8 @@ def _notes(rule: Rule) -> Iterator[Note]:
             yield from _conversions((place, value))
         case typed.For(_, start, stop):
             yield from _conversions((start, stop))
+        case typed.SetState(_, value):
+            yield from _conversions(value)
         case typed.When(condition):
             yield from _conversions(condition)
         case _:

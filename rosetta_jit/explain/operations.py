@@ -70,6 +70,8 @@ def operations_of(rules: tuple[Rule, ...], *, chosen: bool = False) -> Iterator[
                 yield from operations_of((*then, *otherwise), chosen=True)
             case typed.Reject():
                 yield "rejection"
+            case typed.SetState(_, value):
+                yield from _of_nodes(value)
             case typed.Default():
                 yield "generators"
             case _:
@@ -91,7 +93,7 @@ def _of_node(node: object) -> Iterator[Operation]:
                 yield "rejection"
         case typed.Call(function):
             yield functions()[function].operation
-        case typed.HostCall():
+        case typed.HostCall() | typed.StateVariable():
             yield "generators"
         case typed.Has() | typed.Search():
             yield "predicate assignment"

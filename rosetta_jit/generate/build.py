@@ -108,6 +108,7 @@ def unit_of(
         wishes.holder,
         wishes.include,
         _origins(builds),
+        tuple((name, word) for name, _, word in first.header["state"]["variables"]),
     )
 
 

@@ -48,6 +48,8 @@ class Unit:
         The holder's type, and what declares it.
     holder, include
         Which classes are filled, and the header that declares them, where the user says so.
+    state
+        The state variables of the mapping, in the order of registers, and the words that they are at first.
     origins
         Which fields of the holder the rules of the mapping name, for each kernel.
     """
@@ -64,3 +66,4 @@ class Unit:
     holder: str = ""
     include: str = ""
     origins: Mapping[Role, tuple[Origin, ...]] = field(default_factory=dict["Role", "tuple[Origin, ...]"])
+    state: tuple[tuple[str, int], ...] = ()

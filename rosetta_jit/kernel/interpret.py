@@ -37,6 +37,7 @@ from rosetta_jit.kernel.ir import (
     Local,
     Nearest,
     Place,
+    Register,
     Require,
     Reserve,
     Return,
@@ -70,11 +71,11 @@ from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, MutableSequence, Sequence
 
     from rosetta_jit.kernel.arithmetic import Value
     from rosetta_jit.kernel.host import Functions
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Routine, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Known, Routine, Stmt
 
     Memory = bytes | bytearray | memoryview
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
@@ -97,8 +98,16 @@ class _Full:
     missing: int
 
 
-_Outcome = int | _Failed | _Full | None
-"""What a statement did: a position returned, a failure, a full lane, or None to go on."""
+@dataclass(frozen=True, slots=True)
+class _Done:
+    """The position that was returned, and what registers hold from now on."""
+
+    position: int
+    registers: tuple[tuple[int, int], ...]
+
+
+_Outcome = _Done | _Failed | _Full | None
+"""What a statement did: a message done, a failure, a full lane, or None to go on."""
 
 
 @dataclass(slots=True)
@@ -112,6 +121,7 @@ class _Machine:
     used: list[int]
     routines: Mapping[str, Routine]
     told: Mapping[str, int]
+    registers: tuple[int, ...]
     functions: Functions
     locals: dict[str, Value]
 
@@ -129,6 +139,7 @@ def run(
     state: State,
     lanes: Sequence[Memory],
     row: int,
+    registers: MutableSequence[int] | None = None,
     *,
     functions: Functions = NO_FUNCTIONS,
 ) -> int:
@@ -148,6 +159,8 @@ def run(
         The bytes of each lane (anything with a buffer; of an array its ``data``); of hidden ones as many as there are.
     row
         Row of lane 0 that stands for the message.
+    registers
+        Those of the kernel's program, as many as the kernel says; None where it has none. A Return changes them.
     functions
         Those of the host.
 
@@ -170,17 +183,21 @@ def run(
     used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
     routines = {routine.name: routine for routine in kernel.routines}
     told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
+    kept = () if registers is None else tuple(map(int, registers[: kernel.registers]))
     worst: _Failed | None = None
     for body in kernel.bodies:
         parameters: dict[str, Value] = {"begin": begin, "end": end, "row": row}
-        machine = _Machine(kernel.strides, message, views, capacities, list(used), routines, told, functions, parameters)
+        machine = _Machine(kernel.strides, message, views, capacities, list(used), routines, told, kept, functions, parameters)
         with np.errstate(all="ignore"):
             outcome = _block(machine, body)
         match outcome:
-            case int():
+            case _Done(position, changed):
                 for lane, rows in enumerate(machine.used[: kernel.lanes]):
                     state[lane_word(lane, USED)] = rows
-                return outcome
+                for number, value in changed:
+                    assert registers is not None, "a kernel that changes registers is given them"
+                    registers[number] = value
+                return position
             case _Full(lane, missing):
                 state[GROW_LANE], state[GROW_ROWS] = lane, missing if lane < kernel.lanes else missing * kernel.strides[lane]
                 return GROW
@@ -221,8 +238,9 @@ def _statement(machine: _Machine, stmt: Stmt) -> _Outcome:
         case Let(name, value) | Var(name, value) | Assign(name, value):
             machine.locals[name] = _value(machine, value)
             return None
-        case Return(position):
-            return _integer(machine, position)
+        case Return(position, registers):
+            changed = tuple((number, _integer(machine, value)) for number, value in registers)
+            return _Done(_integer(machine, position), changed)
         case Reserve(lane, count):
             rows = _integer(machine, count)
             demand(rows >= 0, "a negative count of rows")
@@ -342,12 +360,8 @@ def _value(machine: _Machine, expr: Expr) -> Value:
             return arithmetic.from_bytes(type_, bytes(_bytes(machine, Wire(at), WIDTH[type_])), order)
         case Get(type_, place):
             return arithmetic.from_bytes(type_, bytes(_field(machine, place, WIDTH[type_])))
-        case Used(lane):
-            return machine.used[lane]
-        case Capacity(lane):
-            return machine.capacities[lane]
-        case Told(what):
-            return machine.told[what]
+        case Used() | Capacity() | Told() | Register():
+            return _known(machine, expr)
         case Unary(function, operand):
             return arithmetic.unary(type_of(operand), function, _value(machine, operand))
         case Binary(op, left, right):
@@ -367,6 +381,20 @@ def _value(machine: _Machine, expr: Expr) -> Value:
             return _is_text(bytes(_bytes(machine, address, _integer(machine, size))))
         case Nearest() | Digits() | Scale():
             return _decimal(machine, expr)
+        case _:
+            assert_never(expr)
+
+
+def _known(machine: _Machine, expr: Known) -> int:
+    match expr:
+        case Used(lane):
+            return machine.used[lane]
+        case Capacity(lane):
+            return machine.capacities[lane]
+        case Told(what):
+            return machine.told[what]
+        case Register(number):
+            return machine.registers[number]
         case _:
             assert_never(expr)
 

@@ -1,17 +1,17 @@
 r"""The kernel: one small typed function from a message to a holder, or back. This page is its grammar and its meaning.
 
-    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*
+    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*, how many registers
     Body   = Stmt*                                        an attempt; the first that succeeds is the result
     Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
            | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
            | Copy(target, source, size) | Fill(target, size, byte)
            | For(variable, count, Stmt*) | While(condition, Stmt*, invariant, measure)
            | If(condition, Stmt*, Stmt*)
-           | Switch(value, {int: Stmt*}, Stmt*) | Return(position)
+           | Switch(value, {int: Stmt*}, Stmt*) | Return(position, {register: value})
            | Call(routine, arguments, results) | HostCall(function, arguments, inputs, target, result)
     Routine = name, parameters, results, Stmt*, requires, ensures, Site*
     Expr   = Const | Local | Load(at) | Get(place) | Used(lane) | Capacity(lane) | Told(what)
-           | Unary | Binary | Compare | Fits | Convert | Bits | Select
+           | Register(number) | Unary | Binary | Compare | Fits | Convert | Bits | Select
            | IsText(address, size) | Nearest(address, size, exponent) | Digits(value) | Scale(value)
     Place  = lane, row, offset                            a typed field of a row of a lane
     Address = Wire(at) | Place
@@ -31,15 +31,19 @@ space.
 until the end of the block that binds it.
 
 **Routines** are statements that many places share. A routine sees `begin`, `end` and its parameters; its results are locals of its
-body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used or Told, and calls only routines before it. Calling
-it demands what it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of the
-caller fails, at the site that the call names for the routine's own, and with the call's indices.
+body, read at the end of it. It holds no Return, Reserve, Advance, HostCall, Used, Told or Register, and calls only routines before it.
+Calling it demands what it `requires` of its parameters, and gives what it `ensures` of them and its results. Where it fails, the body of
+the caller fails, at the site that the call names for the routine's own, and with the call's indices.
 
 **The host** is what the kernel runs in. It tells two things that are the same wherever they are asked for a message: `now`, the time
 in ns since 1970, and `number`, how many messages its program made before. And it has functions by name: a HostCall runs one on
 numbers and on bytes, which it only reads, lets it fill the bytes of ``target``, and binds what it gives, of which nothing is known. A
 function that refuses fails the statement. It may run again for the same message, or for one that fails. A dot in its name says that
 it is ours (`image.size`), no dot that it is the user's.
+
+**Registers** are i64 words that a program keeps from one message to the next. `Register(number)` is what one holds when the kernel starts,
+wherever it stands: nothing is known of it. A Return says what some of them hold from the next message on; the others stay as they are. A
+kernel that does not get to a Return changes none.
 
 **Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the
 width: these are obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an
@@ -160,6 +164,13 @@ class Told:
 
 
 @dataclass(frozen=True, slots=True)
+class Register:
+    """What a register holds when the kernel starts (i64)."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
 class Unary:
     function: Function
     operand: Expr
@@ -260,7 +271,8 @@ class Scale:
 
 
 Decimal = Nearest | Digits | Scale
-Expr = Const | Local | Load | Get | Used | Capacity | Told | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal
+Known = Used | Capacity | Told | Register
+Expr = Const | Local | Load | Get | Known | Unary | Binary | Compare | Fits | Convert | Bits | Select | IsText | Decimal
 
 # --- statements --------------------------------------------------------------------------------------------------------
 
@@ -393,7 +405,10 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class Return:
+    """The end of a message that was handled; ``registers`` are those that hold other values from now on, by their numbers, which rise."""
+
     position: Expr
+    registers: tuple[tuple[int, Expr], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -480,7 +495,10 @@ class Routine:
 
 @dataclass(frozen=True, slots=True)
 class Kernel:
-    """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones."""
+    """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones.
+
+    ``registers`` is how many its program has at least.
+    """
 
     name: str
     direction: Direction
@@ -489,6 +507,7 @@ class Kernel:
     sites: tuple[Site, ...]
     routines: tuple[Routine, ...] = ()
     hidden: int = 0
+    registers: int = 0
 
     @property
     def lanes(self) -> int:

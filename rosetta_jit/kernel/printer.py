@@ -32,6 +32,7 @@ from rosetta_jit.kernel.ir import (
     Local,
     Nearest,
     Place,
+    Register,
     Require,
     Reserve,
     Return,
@@ -51,7 +52,7 @@ from rosetta_jit.kernel.ir import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Failure, Kernel, Part, Routine, Site, Stmt
+    from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Failure, Kernel, Known, Part, Routine, Site, Stmt
 
 SYMBOL = {
     "add": "+",
@@ -90,7 +91,8 @@ def to_text(kernel: Kernel) -> str:
         Lines that end in a newline: the head, each routine and body, the sites.
     """
     hidden = f", {kernel.hidden} hidden" if kernel.hidden else ""
-    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}"]
+    kept = f", {kernel.registers} registers" if kernel.registers else ""
+    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}{kept}"]
     for routine in kernel.routines:
         lines.extend(_routine(routine))
     for number, body in enumerate(kernel.bodies):
@@ -120,12 +122,8 @@ def expression_text(expr: Expr) -> str:
             return f"load {type_}{order} [{expression_text(at)}]"
         case Get(type_, place):
             return f"get {type_} {_address(place)}"
-        case Used(lane):
-            return f"used({lane})"
-        case Capacity(lane):
-            return f"capacity({lane})"
-        case Told(what):
-            return what
+        case Used() | Capacity() | Told() | Register():
+            return _known(expr)
         case Unary(function, operand):
             return f"{function}({expression_text(operand)})"
         case Binary(op, left, right) | Compare(op, left, right):
@@ -140,6 +138,20 @@ def expression_text(expr: Expr) -> str:
             return f"is_text({_address(address)}, {expression_text(size)})"
         case Nearest() | Digits() | Scale():
             return _decimal(expr)
+        case _:
+            assert_never(expr)
+
+
+def _known(expr: Known) -> str:
+    match expr:
+        case Used(lane):
+            return f"used({lane})"
+        case Capacity(lane):
+            return f"capacity({lane})"
+        case Told(what):
+            return what
+        case Register(number):
+            return f"register({number})"
         case _:
             assert_never(expr)
 
@@ -180,8 +192,9 @@ def _statement(stmt: Stmt, depth: int) -> Iterator[str]:
             yield f"copy {_address(target)} = {_address(source)}, {expression_text(size)}"
         case Fill(target, size, byte):
             yield f"fill {_address(target)}, {expression_text(size)}, {byte}"
-        case Return(position):
-            yield f"return {expression_text(position)}"
+        case Return(position, registers):
+            changed = ", ".join(f"register({number}) = {expression_text(value)}" for number, value in registers)
+            yield f"return {expression_text(position)}{' with ' * bool(changed)}{changed}"
         case Call(routine, arguments, results, sites, indices):
             bound = ", ".join(map(expression_text, results))
             given = ", ".join(map(expression_text, arguments))

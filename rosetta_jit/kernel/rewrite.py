@@ -37,6 +37,7 @@ from rosetta_jit.kernel.ir import (
     Local,
     Nearest,
     Place,
+    Register,
     Require,
     Reserve,
     Return,
@@ -77,7 +78,7 @@ def _rebuilt(expr: Expr, parts: list[Expr]) -> Expr:
         return next(given)
 
     match expr:
-        case Const() | Local() | Used() | Capacity() | Told():
+        case Const() | Local() | Used() | Capacity() | Told() | Register():
             return expr
         case Load(type_, at, order):
             return Load(type_, change(at), order)
@@ -142,8 +143,8 @@ def _restated(stmt: Stmt, parts: list[Expr]) -> Stmt:
             return If(change(condition), then, otherwise)
         case Switch(value, cases, default):
             return Switch(change(value), cases, default)
-        case Return(position):
-            return Return(change(position))
+        case Return(position, registers):
+            return Return(change(position), tuple((number, change(value)) for number, value in registers))
         case Call():
             return replace(stmt, arguments=tuple(map(change, stmt.arguments)), indices=tuple(map(change, stmt.indices)))
         case HostCall():
@@ -182,6 +183,23 @@ def _refilled(stmt: Stmt, blocks: list[Block]) -> Stmt:
 def with_bodies(kernel: Kernel, bodies: tuple[Block, ...]) -> Kernel:
     """A kernel with other bodies; the same kernel if they are the same."""
     return kernel if bodies == kernel.bodies else replace(kernel, bodies=bodies)
+
+
+def with_registers_behind(kernel: Kernel, before: int, every: int) -> Kernel:
+    """A kernel whose registers lie behind so many others; ``every`` is how many there are in all."""
+    if not kernel.registers or not before:
+        return replace(kernel, registers=every)
+
+    def moved(expr: Expr) -> Expr:
+        return Register(expr.number + before) if isinstance(expr, Register) else with_operands(expr, moved)
+
+    def restated(stmt: Stmt) -> Stmt:
+        changed = with_blocks(with_expressions(stmt, moved), lambda block: tuple(map(restated, block)))
+        if isinstance(changed, Return):
+            return replace(changed, registers=tuple((number + before, value) for number, value in changed.registers))
+        return changed
+
+    return replace(kernel, bodies=tuple(tuple(map(restated, body)) for body in kernel.bodies), registers=every)
 
 
 def substituted(expr: Expr, values: Mapping[str, Expr], renamed: Mapping[str, str] = NO_NAMES) -> Expr:

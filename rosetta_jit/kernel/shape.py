@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import chain
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.ir import (
@@ -31,6 +31,7 @@ from rosetta_jit.kernel.ir import (
     Nearest,
     Nest,
     Place,
+    Register,
     Require,
     Reserve,
     Return,
@@ -172,8 +173,8 @@ def expressions_of(stmt: Stmt) -> tuple[Expr, ...]:
             return (condition,)
         case Switch(value, _, _):
             return (value,)
-        case Return(position):
-            return (position,)
+        case Return(position, registers):
+            return (position, *(value for _, value in registers))
         case Call(_, arguments, _, _, indices):
             return (*arguments, *indices)
         case HostCall(_, arguments, _, failure):
@@ -190,7 +191,7 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
             return ()
         case Binary() | Compare():
             return (expr.left, expr.right)
-        case Used() | Capacity() | Told():
+        case Used() | Capacity() | Told() | Register():
             return ()
         case Load(_, at, _):
             return (at,)
@@ -226,6 +227,13 @@ def is_told(kernels: Iterable[Kernel]) -> bool:
     """Whether kernels ask for what the host tells of a message."""
     stmts = (stmt for kernel in kernels for body in kernel.bodies for stmt, _ in statements(body))
     return any(isinstance(part, Told) for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
+
+
+def registers_read(kernel: Kernel) -> set[int]:
+    """The registers whose values a kernel asks for."""
+    stmts = (stmt for body in kernel.bodies for stmt, _ in statements(body))
+    parts = (part for stmt in stmts for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return {part.number for part in parts if isinstance(part, Register)}
 
 
 def extents_of(call: HostCall) -> tuple[Extent, ...]:
@@ -267,8 +275,21 @@ def shape_error(kernel: Kernel) -> str | None:
         problem = _routine_error(routine, kernel.routines[:number])
         if problem is not None:
             return f"routine {routine.name}: {problem}"
-    inner = (pair for body in kernel.bodies for pair in statements(body))
+    inner = [pair for body in kernel.bodies for pair in statements(body)]
+    problem = _registers_error(kernel.registers, [stmt for stmt, _ in inner])
+    if problem is not None:
+        return problem
     return _statements_error(inner, (BEGIN.name, END.name, ROW.name), len(kernel.sites), kernel.routines)
+
+
+def _registers_error(count: int, every: list[Stmt]) -> str | None:
+    parts = (part for stmt in every for expr in expressions_of(stmt) for part in subexpressions(expr))
+    changed = [[number for number, _ in stmt.registers] for stmt in every if isinstance(stmt, Return)]
+    named = {part.number for part in parts if isinstance(part, Register)} | {number for numbers in changed for number in numbers}
+    unknown = [number for number in named if not 0 <= number < count]
+    if unknown:
+        return f"no register {unknown[0]}"
+    return None if all(a < b for numbers in changed for a, b in pairwise(numbers)) else "a register that is set twice"
 
 
 def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
@@ -286,8 +307,8 @@ def _routine_error(routine: Routine, before: tuple[Routine, ...]) -> str | None:
 
 
 def _of_a_body(expr: Expr) -> bool:
-    """Whether an expression asks for a used length, or what the host tells."""
-    return any(isinstance(part, Used | Told) for part in subexpressions(expr))
+    """Whether an expression asks for a used length, for what the host tells, or for a register."""
+    return any(isinstance(part, Used | Told | Register) for part in subexpressions(expr))
 
 
 def _statements_error(inside: Iterable[tuple[Stmt, int]], names: tuple[str, ...], sites: int, routines: tuple[Routine, ...]) -> str | None:

@@ -4,13 +4,15 @@
     10 address of the hidden lanes' words    11 how many hidden lanes there are
     12 now, in ns since 1970    13 number of the message in row 0
     14 error offset    15 about how many bytes of rows nothing refers to any more
-    16 + 4 k   address, capacity, used length, stride of lane k
+    16 address of the registers of the program that runs
+    17 + 4 k   address, capacity, used length, stride of lane k
 
 The words of hidden lane k, 4 k words behind their address, are its address and its capacity in bytes: each kernel divides them into rows of
 its own. Of a hidden lane that must grow, word 4 has the missing bytes.
 
 Addresses and lengths are written by the runtime; a kernel writes words 2 to 8 and 14, and the used lengths. Word 9 is what a failed kernel
-returned, for who called it through an entry (`backends/entry/*.ll`); words 12 and 13 are told to kernels that ask (`kernel.ir.Told`).
+returned, for who called it through an entry (`backends/entry/*.ll`); words 12 and 13 are told to kernels that ask (`kernel.ir.Told`), and
+word 16 leads kernels to what they keep from one message to the next (`kernel.ir.Register`).
 
 The epoch counts the changes of the lanes. It is negative (``~epoch``) while somebody changes them, or runs a kernel on them, in a way that
 another thread can interrupt: until it is positive again, nobody else may use them (`runtime.lanes.Lanes`). Kernels know nothing of it.
@@ -29,8 +31,9 @@ HIDDEN, HIDDEN_COUNT = 10, 11
 NOW, NUMBER = 12, 13
 ERROR_OFFSET = 14
 WASTED = 15
+REGISTERS = 16
 MAX_INDICES = 4
-LANES, LANE_WORDS = 16, 4
+LANES, LANE_WORDS = 17, 4
 ADDRESS, CAPACITY, USED, STRIDE = 0, 1, 2, 3
 
 

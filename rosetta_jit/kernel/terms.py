@@ -17,6 +17,7 @@ from rosetta_jit.kernel.ir import (
     Load,
     Local,
     Nearest,
+    Register,
     Scalar,
     Scale,
     Select,
@@ -80,7 +81,7 @@ def type_of(expr: Expr) -> Scalar:
     match expr:
         case Const() | Local() | Load() | Get() | Convert() | Bits():
             return expr.type
-        case Used() | Capacity() | Told():
+        case Used() | Capacity() | Told() | Register():
             return "i64"
         case Unary(_, operand):
             return type_of(operand)

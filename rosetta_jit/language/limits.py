@@ -16,6 +16,9 @@ MAX_IMPORTS = 200
 MAX_NESTING = 64
 """brackets and blocks within each other, operators of an expression, steps of a path"""
 
+MAX_STATE = 64
+"""state variables of a mapping"""
+
 MAX_LIMIT = 1 << 40
 """bytes that a `limit` allows"""
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, When
+from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, Ignore, IndexStep, Reject, SetLength, SetState, When
 from rosetta_jit.model.types import Array, Field, Struct, Union
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _places(rule: Rule) -> list[Place]:
             return places_in(rule.body)
         case When():
             return places_in((*rule.then, *rule.otherwise))
-        case Reject() | Ignore():
+        case Reject() | Ignore() | SetState():
             return []
         case _:
             assert_never(rule)

@@ -1,4 +1,4 @@
-"""What the rules of a mapping can name: the two messages, constants, loop variables."""
+"""What the rules of a mapping can name: the two messages, constants, loop variables, state variables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.constants import Constants
-    from rosetta_jit.language.typed import Expr, Step
+    from rosetta_jit.language.typed import Expr, StateVariable, Step
     from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Expr as Untyped
     from rosetta_jit.model.expr import Path, Side
@@ -46,7 +46,7 @@ class Scope:
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
     ``suffix`` tells its loop variables from those around. ``values`` are the types of what else has a name:
     `model.expr.NEAREST`, and what the definitions of a function of several values name.
-    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set.
+    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set. ``state`` has the direction's state variables.
     """
 
     messages: Mapping[Side, Message]
@@ -62,6 +62,7 @@ class Scope:
     suffix: str = ""
     values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])
     rounds: bool = False
+    state: Mapping[str, StateVariable] = field(default_factory=dict["str", "StateVariable"])
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))

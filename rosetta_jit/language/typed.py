@@ -1,7 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
     Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Call | HostCall | Choice | Listed
-         | Given                                                     each with `type`
+         | Given | StateVariable                                     each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
     Rule = those of `model.rules`, with Place and Expr: of int64 in a SetLength, of bool in a When; an Assign is `by` a Change
@@ -19,7 +19,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 from typing import Literal as OneOf
 
-from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, When
+from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
 from rosetta_jit.model.types import Bool, Int
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -242,8 +242,38 @@ class Given:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class StateVariable:
+    """What a state variable is while a message is read: what the messages before it have left. ``number`` is its place among all.
+
+    Each direction has its own variables: they are those of the rules that fill ``target``.
+    """
+
+    name: str
+    number: int
+    target: Side
+    type: Type
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 Expr = (
-    Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Call | HostCall | Choice | Listed | Given
+    Const
+    | Local
+    | Access
+    | LenOf
+    | Unary
+    | Binary
+    | Convert
+    | Nearest
+    | IsText
+    | Has
+    | Search
+    | Call
+    | HostCall
+    | Choice
+    | Listed
+    | Given
+    | StateVariable
 )
 
 
@@ -277,5 +307,12 @@ Change = Rescale | EachElement | EachMember
 
 Assignment: TypeAlias = Assign[Place, Expr, Change]
 Rule: TypeAlias = (
-    Assignment | SetLength[Place, Expr] | For["Rule", Expr] | When["Rule", Expr] | Reject[Expr] | Ignore[Place] | Default[Place]
+    Assignment
+    | SetLength[Place, Expr]
+    | For["Rule", Expr]
+    | When["Rule", Expr]
+    | Reject[Expr]
+    | Ignore[Place]
+    | Default[Place]
+    | SetState[StateVariable, Expr]
 )

@@ -91,6 +91,8 @@ def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
             case typed.Reject(pieces=pieces):
                 for piece in pieces:
                     yield from _in(piece)
+            case typed.SetState(_, value):
+                yield from _in(value)
             case typed.Default():
                 pass
 
@@ -121,7 +123,7 @@ def _in(value: Expr) -> Iterator[Place]:
         case typed.Listed(items, index):
             for part in (*items, index):
                 yield from _in(part)
-        case typed.Const() | typed.Local():
+        case typed.Const() | typed.Local() | typed.StateVariable():
             pass
 
 

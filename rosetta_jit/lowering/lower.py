@@ -23,6 +23,7 @@ from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireF
 from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
 from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
+from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
 from rosetta_jit.lowering.rules.wire_side import WireSide
@@ -70,7 +71,7 @@ def lower(
     references
         How they refer to it: see `rosetta_jit.lowering.writer.References`. By the sign of their spans if None.
     """
-    lowering = _Lowering(encoding, layout, direction, borrow, references)
+    lowering = _Lowering(encoding, layout, direction, borrow, references, 0 if mapped is None else mapped.registers)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
     mapped = _in_order(mapped, mapped.holder if direction == "decode" else mapped.wire)
@@ -82,7 +83,7 @@ def lower(
 
 @dataclass(frozen=True, slots=True)
 class Mapped:
-    """The rules of a mapping for one direction, and how the wire's own type would lie in a holder."""
+    """The rules of a mapping for one direction, how the wire's own type would lie in a holder, and how many registers keep its state."""
 
     rules: tuple[Rule, ...]
     schema: Schema
@@ -90,6 +91,7 @@ class Mapped:
     wire: Type
     wire_layout: Layout
     unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
+    registers: int = 0
 
     def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
         """A message in lanes; where rules fill it, with what it is born with."""
@@ -115,13 +117,14 @@ def _in_order(mapped: Mapped, target: Type) -> Mapped:
 
 @dataclass(frozen=True, slots=True)
 class _Lowering:
-    """What is lowered, whatever relates the message to the holder."""
+    """What is lowered, whatever relates the message to the holder; ``registers`` is how many the program has."""
 
     encoding: Encoding
     layout: Layout
     direction: Direction
     borrow: bool
     references: References | None = None
+    registers: int = 0
 
     def kernel(self, name: str, relate: Relate) -> Kernel:
         writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
@@ -129,9 +132,10 @@ class _Lowering:
         attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
         bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
-        return Kernel(name, self.direction, strides, bodies, tuple(writer.sites), routines, len(strides) - own)
+        return Kernel(name, self.direction, strides, bodies, tuple(writer.sites), routines, len(strides) - own, self.registers)
 
     def body(self, writer: Writer, attempt: Codec, relate: Relate) -> Block:
+        writer.registers = {}
         with writer.nested() as body:
             writer.position = BEGIN if writer.direction != "size" else index(0)
             writer.origin = add(writer.position, self.encoding.origin)
@@ -141,7 +145,7 @@ class _Lowering:
                 writer.emit(Fill(KernelPlace(0, ROW), index(self.layout.lanes[0].stride)))
             relate(fields, attempt)
             end(writer, self.encoding)
-            writer.emit(Return(writer.position))
+            writer.emit(Return(writer.position, tuple(sorted(writer.registers.items(), key=lambda each: each[0]))))
         return block(body)
 
 
@@ -179,6 +183,7 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
     if encoding.nested or isinstance(attempt, Tagged):
         raise NotInPlaceError
     writer, rules = fields.writer, mapped.rules
+    begin(writer, rules)
     found, decodes = Found(), writer.direction == "decode"
     holder = mapped.side(fields, mapped.holder, filled="holder" if decodes else None)
     if decodes:
@@ -202,6 +207,7 @@ def _in_place(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: 
 def _staged(encoding: Encoding, attempt: Codec, fields: HolderFields, mapped: Mapped) -> None:
     """Decode the message into lanes of its own type, then run the rules; or run them, then encode what they made."""
     writer = fields.writer
+    begin(writer, mapped.rules)
     message = staged_fields(writer, fields.layout, mapped.wire_layout)
     if writer.direction == "decode":
         _own(encoding, attempt, message)

@@ -126,7 +126,8 @@ class Contract:
 class Writer:
     """Collects statements. ``position`` is always a local plus a constant; alignment counts from ``origin``.
 
-    ``strides`` are those of the holder's lanes, and then of the ``hidden`` ones, which are known by a name.
+    ``strides`` are those of the holder's lanes, and then of the ``hidden`` ones, which are known by a name. ``registers`` are
+    variables with what registers hold from the next message on.
     """
 
     direction: Direction
@@ -143,6 +144,7 @@ class Writer:
     routines: dict[str, Routine] = field(default_factory=dict[str, Routine])
     tally: Tally = field(default_factory=Tally)
     references: References | None = None
+    registers: dict[int, Local] = field(default_factory=dict[int, Local])
 
     def left_in_message(self, lane: int, size: Expr) -> Expr | None:
         """The count of a span whose bytes stay in the message; None if they are to be copied. Its sign says whose bytes they are, unless

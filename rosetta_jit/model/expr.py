@@ -39,7 +39,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A loop variable (``i``), an enum constant by qualified name, a parameter, or a constant of the language (``pi``)."""
+    """A loop variable (``i``), an enum constant by qualified name, a parameter, a state variable, a constant of the language (``pi``)."""
 
     name: str
     span: Span | None = field(default=None, compare=False, repr=False)

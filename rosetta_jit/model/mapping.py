@@ -1,6 +1,6 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
-    Mapping = Import*, Function*, Parameter*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
+    Mapping = Import*, Function*, Parameter*, State*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
     Rule    = those of `model.rules`, with Path and Expr; an Assign is `by` a Via, or "checked"
             | Relation(Path | Len | List, Expr, Via) | Rest | SameNames(Renamed*, Path*) | Arranged(place, flag, {constant: Expr})
             | Several(Path*, Expr)
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from typing import Literal as OneOf
 
 from rosetta_jit.model.expr import Expr, Path
-from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, When
+from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -40,6 +40,16 @@ class Parameter:
     type: str
     is_list: bool
     default: Expr | None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """``state name: type = initial``: a value that a program keeps from one message to the next. ``type`` is the name of a scalar."""
+
+    name: str
+    type: str
+    initial: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -158,6 +168,7 @@ Rule: TypeAlias = (
     | SameNames
     | Arranged
     | Several
+    | SetState[str, Expr]
 )
 
 
@@ -182,3 +193,4 @@ class Mapping:
     parameters: tuple[Parameter, ...] = ()
     limit: int | None = None
     rounds: bool = False
+    state: tuple[State, ...] = ()

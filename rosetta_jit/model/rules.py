@@ -1,9 +1,10 @@
 """The rules that the mapping as it is written and the typed one have in common, generic over what they are made of.
 
     Rule = Assign(Place, Expr, by) | SetLength(Place, Expr) | For(variable, start, stop, Rule*) | When(condition, Rule*, Rule*)
-         | Reject(text) | Ignore(Place) | Default(Place)
+         | Reject(text) | Ignore(Place) | Default(Place) | SetState(variable, Expr)
 
-As it is written (`model.mapping`) a place is a path, and an expression has no type; typed (`language.typed`), both have theirs.
+As it is written (`model.mapping`) a place is a path, a state variable its name, and an expression has no type; typed (`language.typed`),
+all have theirs.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ Place_co = TypeVar("Place_co", covariant=True)
 Expr_co = TypeVar("Expr_co", covariant=True)
 Way_co = TypeVar("Way_co", covariant=True)
 Rule_co = TypeVar("Rule_co", covariant=True)
+Variable_co = TypeVar("Variable_co", covariant=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,4 +90,13 @@ class Default(Generic[Place_co]):
     """``default .place``: no rule sets it, and that is meant: numbers are 0, texts and arrays empty, what can be absent is."""
 
     place: Place_co
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SetState(Generic[Variable_co, Expr_co]):
+    """``state name = value``: what a state variable is from the next message on."""
+
+    variable: Variable_co
+    value: Expr_co
     span: Span | None = field(default=None, compare=False, repr=False)

@@ -88,6 +88,8 @@ def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
         case mapping.Arranged(place, flag, cases):
             pairs = tuple((change(constant), change(value)) for constant, value in cases)
             return replace(rule, place=with_indices(place, change), flag=with_indices(flag, change), cases=pairs)
+        case mapping.SetState(value=value):
+            return replace(rule, value=change(value))
         case mapping.Reject(pieces=pieces):
             return replace(rule, pieces=tuple(map(change, pieces)))
         case mapping.Several(places, value):
@@ -96,6 +98,13 @@ def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
             return rule
         case _:
             assert_never(rule)
+
+
+def expressions_of(rule: Rule) -> list[Expr]:
+    """The expressions that a rule has itself, those of the rules within it left out."""
+    found: list[Expr] = []
+    with_expressions(rule, lambda expr: found.append(expr) or expr)
+    return found
 
 
 def _with_indices(place: Field | List, change: Callable[[Expr], Expr]) -> Field | List:

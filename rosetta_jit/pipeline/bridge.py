@@ -13,6 +13,7 @@ from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Reserve
 from rosetta_jit.kernel.printer import to_text
+from rosetta_jit.kernel.rewrite import with_registers_behind
 from rosetta_jit.kernel.shape import is_told, our_functions, statements
 from rosetta_jit.lowering.writer import References
 from rosetta_jit.model.same_layout import have_same_fields
@@ -20,6 +21,7 @@ from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, same_name
 from rosetta_jit.pipeline.build import Build, plain_site
 from rosetta_jit.pipeline.held import joined
+from rosetta_jit.pipeline.kept import kept_of
 from rosetta_jit.pipeline.user_functions import check_compiled
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
@@ -78,8 +80,10 @@ class BridgeBuild:
     def kernels(self) -> tuple[Kernel, ...]:
         """Proven kernels: the decoder, what measures, the encoder."""
         decode, encode = self.halves
-        writes, size = encode.kernels
-        return (*decode.kernels, size, writes)
+        before = len(decode.types.state.initial)
+        every = before + len(encode.types.state.initial)
+        writes, size = (with_registers_behind(kernel, before, every) for kernel in encode.kernels)
+        return (*(replace(kernel, registers=every) for kernel in decode.kernels), size, writes)
 
     @property
     def backend(self) -> Backend:
@@ -105,8 +109,8 @@ class BridgeBuild:
         """All that the code and its `header` depend on besides this process, if all functions are identified that it calls."""
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
-        type_ = json.dumps(self.header["type"], sort_keys=True)
-        return "\n".join([self.backend.name, "bridge", str(self.references), str(self.halves[0].limit), type_, *kernels, *digests])
+        type_, state = json.dumps(self.header["type"], sort_keys=True), json.dumps(self.header["state"])
+        return "\n".join([self.backend.name, "bridge", str(self.references), str(self.halves[0].limit), state, type_, *kernels, *digests])
 
     @cached_property
     def header(self) -> dict[str, Any]:
@@ -118,6 +122,7 @@ class BridgeBuild:
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
+            "state": kept_of(self.kernels, *(half.types.state for half in self.halves)),
             "host": our_functions(self.kernels),
             "limit": decode.limit,
         }

@@ -33,6 +33,7 @@ from rosetta_jit.model.relax import without_text
 from rosetta_jit.model.serial import from_plain, to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct, same_name
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+from rosetta_jit.pipeline.kept import kept_of
 from rosetta_jit.pipeline.request import ByteOrder
 from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.stages import shown
@@ -150,7 +151,8 @@ class Build:
 
     def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
         types = self.types
-        return Mapped(rules, types.schema, Ref(types.holder.name), Ref(types.wire.name), self._layout(types.wire))
+        ends = Ref(types.holder.name), Ref(types.wire.name)
+        return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial))
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """What the request says about the encoding, if the encoding leaves it to say."""
@@ -213,7 +215,8 @@ class Build:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
-        return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), holder, *kernels, *digests])
+        state = json.dumps(self.header["state"])
+        return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), state, holder, *kernels, *digests])
 
     @cached_property
     def entry(self) -> Literal["decode", "borrow", "encode"]:
@@ -230,6 +233,7 @@ class Build:
             "entry": self.entry,
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
+            "state": kept_of(self.kernels, self.types.state),
             "host": our_functions(self.kernels),
             "limit": self.limit,
         }
@@ -300,7 +304,7 @@ def _mapped_types(build: Build) -> Types:
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
-    return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions)
+    return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions, checked.state)
 
 
 def _both(checked: Checked) -> Schema:

@@ -17,6 +17,7 @@ from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref
 from rosetta_jit.pipeline.build import plain_site
+from rosetta_jit.pipeline.kept import kept_of
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
@@ -86,6 +87,7 @@ class TranscodingBuild:
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": False,
+            "state": kept_of(()),
             "host": [],
             "limit": GRACE_BYTES,
         }

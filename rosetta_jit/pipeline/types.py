@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from rosetta_jit.language.parameters.state import NO_STATE
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.language.parameters.state import Declared
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Signature
     from rosetta_jit.model.types import Schema, Struct
@@ -17,10 +19,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Types:
-    """The types of a program, and the rules between them, if they are two."""
+    """The types of a program, and the rules between them, if they are two, with the state that they keep."""
 
     holder: Struct
     wire: Struct
     schema: Schema
     rules: tuple[Rule, ...] | None
     functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
+    state: Declared = NO_STATE

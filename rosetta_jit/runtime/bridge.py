@@ -17,7 +17,8 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import Context, bind_call
 from rosetta_jit.runtime.decoder import laid_out
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.program import MAX_SPARES, Told
+from rosetta_jit.runtime.program import MAX_SPARES, Told, entry_of
+from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class LoadedBridge:
         The lanes that become the message when it is decoded.
     library
         The compiled code, None where kernels run in Python.
-    told, limit
+    told, limit, state
         As of `rosetta_jit.runtime.program.Loaded`.
     """
 
@@ -67,6 +68,7 @@ class LoadedBridge:
     library: Library | None = None
     told: bool = False
     limit: int = 0
+    state: Kept = NOTHING_KEPT
 
 
 class BridgeBase(Told):
@@ -84,11 +86,12 @@ class BridgeBase(Told):
     def _start(self, loaded: LoadedBridge) -> None:
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded, self._asks = loaded, loaded.told
+        self._loaded, self._asks, self._registers = loaded, loaded.told, loaded.state.registers()
         self._lanes = Lanes.of(loaded.layout)
         self._spares: list[Lanes] = []
-        context = Context(self._lanes.state, self._lanes, self._call_slowly, self._lanes.source, Lanes)
-        bind_call(self, None if loaded.library is None else loaded.library["call"], context)
+        address = address_of(self._registers)
+        context = Context(self._lanes.state, self._lanes, self._call_slowly, self._lanes.source, Lanes, address)
+        bind_call(self, entry_of(loaded.library, loaded.state), context)
 
     def into(self, message: Buffer, buffer: Buffer) -> int:
         """Write what a message becomes to the begin of a buffer; returns how many bytes that are.
@@ -134,14 +137,15 @@ class BridgeBase(Told):
         data, count = run.readable(source), len(places) - 1
         ends = np.zeros(count + 1, np.int64)
         target = np.empty(max(2 * data.size, 64), np.uint8)
-        with self._free() as lanes:
+        with self._free() as lanes, self._keeping(lanes):
             self._tell(lanes, count)
             done = self._many(data, places, 0, lanes, target, ends)
             while done < count:
                 if run.result_of(lanes) == FULL:
                     target = _copied(target, int(ends[done]), 2 * target.size)
                 else:
-                    target = self._unstuck(data, places, done, lanes, target, ends)
+                    with self._as_before():
+                        target = self._unstuck(data, places, done, lanes, target, ends)
                     done += 1
                 done = self._many(data, places, done, lanes, target, ends)
         return target[: ends[-1]], ends

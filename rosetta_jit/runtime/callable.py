@@ -43,8 +43,9 @@ if TYPE_CHECKING:
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
-MADE, THREAD = 5, 6
-"""Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0."""
+MADE, THREAD, REGISTERS = 5, 6, 7
+"""Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0; the
+address of its registers, or 0."""
 
 STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
 ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
@@ -67,6 +68,8 @@ class Context:
         A list of one item, the source of borrowed values.
     holder_type
         The exact type of holders that the entry takes.
+    registers
+        Their address, 0 where there are none.
     """
 
     state: Words
@@ -74,10 +77,13 @@ class Context:
     slow: Callable[..., object]
     cell: list[object]
     holder_type: type
+    registers: int = 0
 
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
-        return np.array([self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0], np.int64)
+        return np.array(
+            [self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0, self.registers], np.int64
+        )
 
 
 def is_native() -> bool:

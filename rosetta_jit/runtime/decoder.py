@@ -153,7 +153,7 @@ class DecoderBase(Program):
         batch = self._batch(len(places) - 1) if into is None else into
         lanes = self._lanes_of(batch)
         before = lanes.source[0]
-        with lanes:
+        with lanes, self._keeping(lanes):
             batch.errors, batch.kept_ = {}, None
             self._fill(lanes, data, places, None if on_error == "raise" else batch.errors)
             if on_error == "skip" and batch.errors:

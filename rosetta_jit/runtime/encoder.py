@@ -71,7 +71,7 @@ class EncoderBase(Program):
         if self._is_to_be_taken(holder):
             return self._of_foreign(holder, self.size)
         checked = self._checked(holder)
-        with checked.lanes_ as lanes:
+        with checked.lanes_ as lanes, self._keeping(lanes):
             self._make_usable(checked)
             self._tell(lanes, 0)
             return self._measured(lanes, 0)
@@ -103,15 +103,29 @@ class EncoderBase(Program):
         if isinstance(batch, list | tuple):
             return self._one_by_one(cast("Sequence[object]", batch))
         lanes = self._lanes_of(self._batch_of(batch))
-        with lanes:
+        with lanes, self._keeping(lanes):
             self._settle(lanes)
             self._tell(lanes, lanes.rows)
-            offsets = np.zeros(lanes.rows + 1, np.int64)
-            self._all(lanes, lambda first: self._sizes(lanes, offsets, first))
-            with run.encoding():
-                buffer = np.empty(int(offsets[-1]), np.uint8)
-            self._all(lanes, lambda first: self._written(lanes, buffer, offsets, first))
-        return buffer, offsets
+            offsets, buffer = np.zeros(lanes.rows + 1, np.int64), np.empty(0, np.uint8)
+            stretch = 1 if self._loaded.state.sizes else max(1, lanes.rows)  # one, where the size depends on what those before have left
+            for first in range(0, lanes.rows, stretch):
+                buffer = self._stretch(lanes, buffer, offsets, first, first + stretch)
+        return buffer[: offsets[-1]], offsets
+
+    def _stretch(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> NDArray[np.uint8]:
+        """Measure messages from one on, so that there are ``count``, and write them; gives the buffer, with room for them.
+
+        Where one cannot be measured, those before it are written nevertheless if the program keeps state: it is what they leave.
+        """
+        done, error = self._done(lanes, lambda at: self._sizes(lanes, offsets, at, count), first, count)
+        if error is None or self._registers is not None:
+            room = _with_room(buffer, int(offsets[first]), int(offsets[done]))
+            _, earlier = self._done(lanes, lambda at: self._written(lanes, room, offsets, at, done), first, done)
+            if earlier is None and error is None:
+                return room
+            error = earlier or error
+        assert error is not None
+        raise error
 
     def _one_by_one(self, holders: Sequence[object]) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
         offsets, messages = np.zeros(len(holders) + 1, np.int64), list[bytes]()
@@ -139,37 +153,38 @@ class EncoderBase(Program):
 
             lanes.adopt(settled(lanes))
 
-    def _all(self, lanes: Lanes, step: Callable[[int], int]) -> None:
-        """Go on from where a lane was too small, until all are done."""
-        done = step(0)
-        while done < lanes.rows:
+    def _done(self, lanes: Lanes, step: Callable[[int], int], first: int, count: int) -> tuple[int, EncodeError | None]:
+        """Go on from where a lane was too small, until so many are done; where one cannot be, its number, and why."""
+        done = step(first)
+        while done < count:
             result = run.result_of(lanes)
             if result != run.GROW:
                 sites = self._loaded.sites if -1 - result < len(self._loaded.sites) else self._loaded.size_sites
                 error = run.encode_error(sites[-1 - result], lanes)
-                raise EncodeError(error.kind, f"[{done}]{error.path}", error.detail)
+                return done, EncodeError(error.kind, f"[{done}]{error.path}", error.detail)
             with run.encoding():
                 run.grow(lanes)
             done = step(done)
+        return done, None
 
-    def _sizes(self, lanes: Lanes, offsets: NDArray[np.int64], first: int) -> int:
+    def _sizes(self, lanes: Lanes, offsets: NDArray[np.int64], first: int, count: int) -> int:
         if self._loaded.library is not None:
             sizes = _SIZES(self._loaded.library["sizes"])
-            return sizes(offsets.ctypes.data, first, lanes.rows, lanes.address)
+            return sizes(offsets.ctypes.data, first, count, lanes.address)
         assert self._loaded.size is not None
-        for number in range(first, lanes.rows):
+        for number in range(first, count):
             size = self._loaded.size(None, 0, run.ANY_SIZE, lanes, number)
             if size < 0:
                 run.note(lanes, size)
                 return number
             offsets[number + 1] = offsets[number] + size
-        return lanes.rows
+        return count
 
-    def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int) -> int:
+    def _written(self, lanes: Lanes, buffer: NDArray[np.uint8], offsets: NDArray[np.int64], first: int, count: int) -> int:
         if self._loaded.library is not None:
             many = MANY(self._loaded.library["many"])
-            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, lanes.rows, lanes.address)
-        return one_by_one(self._loaded.kernel, buffer, offsets, first, lanes, self._loaded.size)
+            return many(buffer.ctypes.data, buffer.size, offsets.ctypes.data, first, count, lanes.address)
+        return one_by_one(self._loaded.kernel, buffer, offsets[: count + 1], first, lanes, self._loaded.size)
 
     def _make_usable(self, holder: Holder) -> None:
         """Bring a valid holder, whose lanes are one's own, into the form that kernels read."""
@@ -269,3 +284,13 @@ class EncoderBase(Program):
         if result < 0:
             raise run.encode_error(self._loaded.sites[-1 - result], lanes)
         return result
+
+
+def _with_room(buffer: NDArray[np.uint8], used: int, size: int) -> NDArray[np.uint8]:
+    """A buffer with so many bytes, of which those in use are kept."""
+    if size <= buffer.size:
+        return buffer
+    with run.encoding():
+        made = np.empty(size if not used else max(size, 2 * buffer.size), np.uint8)
+    made[:used] = buffer[:used]
+    return made

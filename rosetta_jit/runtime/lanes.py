@@ -95,6 +95,8 @@ class Lanes:
         Whether no decode is going on.
     lock : lock
         Held inside ``with lanes:``.
+    registers : ndarray of int64
+        Those of the program that runs kernels on them, where it has some.
     source : list
         One element: the message from which spans are borrowed, or None.
     rows : int
@@ -114,6 +116,7 @@ class Lanes:
         "lock",
         "memory",
         "plan",
+        "registers",
         "rows",
         "source",
         "state",
@@ -126,6 +129,7 @@ class Lanes:
     hidden: Hidden | None
     lock: LockType
     memory: Memory
+    registers: NDArray[np.int64]
     source: list[Any]
     state: NDArray[np.int64]
     words: memoryview

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rosetta_jit.kernel.state import NOW, NUMBER
@@ -17,11 +17,13 @@ from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.shapes import is_message_like
+from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Callable, Generator, Mapping
+    from contextlib import AbstractContextManager
 
     import numpy as np
     from numpy.typing import NDArray
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
     from rosetta_jit.runtime.plan import Plan
+    from rosetta_jit.runtime.registers import Registers
 
 MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 """The compiled `many` (`backends/entry/many.ll`): buffer, its size, offsets, first, count, state; the first message that was not done."""
@@ -56,6 +59,8 @@ class Loaded:
         Whether the kernels ask for the time or the number of a message.
     limit
         How many bytes of a lane a message may ask for, whatever its own size.
+    state
+        What it keeps from one message to the next.
     """
 
     holder_type: type[Holder]
@@ -67,6 +72,15 @@ class Loaded:
     borrow: bool = False
     told: bool = False
     limit: int = 0
+    state: Kept = NOTHING_KEPT
+
+
+def entry_of(library: Library | None, state: Kept) -> int | None:
+    """The compiled call of a program; None where all calls take the slow path.
+
+    That is so without code, and where other threads may run while a kernel calls functions of the host: state must not change meanwhile.
+    """
+    return None if library is None or state.is_shared else library["call"]
 
 
 INTERNAL = frozenset({"__annotations__", "__signature__", "__vectorcalloffset__", "__weakref__"})
@@ -96,6 +110,7 @@ class Told:
 
     _context: tuple[Context, NDArray[np.int64]]
     _asks: bool
+    _registers: Registers | None
 
     def _tell(self, lanes: Lanes, count: int) -> None:
         """Before so many messages are made: what their kernels may ask for. No others get their numbers."""
@@ -108,12 +123,38 @@ class Told:
     @contextmanager
     def _told(self, lanes: Lanes) -> Generator[None]:
         """Around one message. Where it cannot be made, the next one gets its number, unless another thread has taken one since."""
-        self._tell(lanes, 1)
-        try:
-            yield
-        except BaseException:
-            self._untell(lanes)
-            raise
+        with self._keeping(lanes), self._as_before():
+            self._tell(lanes, 1)
+            try:
+                yield
+            except BaseException:
+                self._untell(lanes)
+                raise
+
+    def _keeping(self, lanes: Lanes) -> AbstractContextManager[None]:
+        """Around kernels that run on some lanes: what the program keeps from message to message is theirs alone. InUse where it is not."""
+        return nullcontext() if self._registers is None else self._registers.lent(lanes)
+
+    def _as_before(self) -> AbstractContextManager[None]:
+        """Around one message: where it fails, the program keeps what it kept before."""
+        return nullcontext() if self._registers is None else self._registers.as_before()
+
+    def _refuse_state(self) -> None:
+        """Where users' own compiled code would run the kernel: nothing tells there which call has the state."""
+        if self._registers is not None:
+            raise ValueError("a mapping that keeps state from message to message cannot be called from one's own compiled code: use `many`")
+
+    def reset(self) -> None:
+        """Let the next message be the first one: state is what the mapping says that it is at first, and `counter()` is 0.
+
+        Raises
+        ------
+        InUse
+            Another thread's call of the program, which keeps state, has not returned.
+        """
+        if self._registers is not None:
+            self._registers.reset()
+        self._context[1][MADE] = 0
 
     def _untell(self, lanes: Lanes) -> None:
         """Behind a message that could not be made."""
@@ -143,12 +184,23 @@ class Program(Told):
     def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded, self._asks = loaded, loaded.told
+        self._loaded, self._asks, self._registers = loaded, loaded.told, loaded.state.registers()
         self._holder = loaded.holder_type()
         self._plan = loaded.holder_type.family_.plan
         lanes = self._holder.lanes_
-        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type)
-        bind_call(self, None if loaded.library is None else loaded.library["call"], context)
+        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers))
+        bind_call(self, entry_of(loaded.library, loaded.state), context)
+
+    @property
+    def state(self) -> Mapping[str, bool | int | float]:
+        """What each state variable of the mapping is for the next message, by its name.
+
+        Raises
+        ------
+        InUse
+            Another thread's call of the program has not returned.
+        """
+        return {} if self._registers is None else self._registers.shown()
 
     @property
     def holder_type(self) -> type[Holder]:

@@ -43,13 +43,14 @@ def native_run(address: int) -> Run:
     return run
 
 
-def python_run(kernel: Callable[..., int]) -> Run:
-    """A kernel in Python, which gets the lanes themselves."""
+def python_run(kernel: Callable[..., int], *, keeps: bool) -> Run:
+    """A kernel in Python, which gets the lanes themselves, and the registers of its program if it ``keeps`` anything."""
 
     def run(buffer: NDArray[np.uint8] | None, begin: int, end: int, lanes: Lanes, row: int) -> int:
         memory = np.empty(0, np.uint8) if buffer is None else buffer
         buffers = lanes.buffers if lanes.hidden is None else [*lanes.buffers, *lanes.hidden.buffers]
-        return kernel(memory, begin, end, lanes.state, buffers, row)
+        registers = (lanes.registers,) if keeps else ()
+        return kernel(memory, begin, end, lanes.state, buffers, row, *registers)
 
     return run
 

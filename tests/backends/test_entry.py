@@ -13,7 +13,7 @@ import pytest
 
 from rosetta_jit.backends.entry.link import compile_program
 from rosetta_jit.kernel.entries import SYMBOLS
-from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, VALID
+from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, USED, VALID, lane_word
 from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, is_native, message_base
 from rosetta_jit.runtime.code import native
 from tests.backends import kernels
@@ -182,7 +182,7 @@ def test_a_borrowed_bytearray_cannot_be_resized():
 
 def encoder(count=3):
     made = program(kernels.encoder(), "encode")
-    made.rows.state[[VALID, 22]] = 1, count
+    made.rows.state[[VALID, lane_word(1, USED)]] = 1, count
     made.rows.lanes[0].view(np.int64)[:2] = 0, count
     made.rows.lanes[1].view(np.float64)[:] = np.arange(40.0)
     return made

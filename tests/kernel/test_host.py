@@ -33,7 +33,7 @@ from rosetta_jit.kernel.passes import order as passes
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.kernel.shape import shape_error
-from rosetta_jit.kernel.state import NOW, NUMBER, STRIDE, state_words
+from rosetta_jit.kernel.state import CAPACITY, NOW, NUMBER, STRIDE, lane_word, state_words
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, index
 
 FOUND = Local("i64", "found")
@@ -72,8 +72,8 @@ def test_python_backends(changed, run):
     functions = {"reverse": reverse}
     state = np.zeros(state_words(2), np.int64)
     lanes = [np.zeros(32, np.uint8), np.zeros(8, np.uint8)]
-    state[16 + 1], state[16 + 4 + 1], state[NOW], state[NUMBER] = 2, 8, 5, 7
-    state[16 + STRIDE], state[16 + 4 + STRIDE] = 16, 1
+    state[lane_word(0, CAPACITY)], state[lane_word(1, CAPACITY)], state[NOW], state[NUMBER] = 2, 8, 5, 7
+    state[lane_word(0, STRIDE)], state[lane_word(1, STRIDE)] = 16, 1
 
     def ran(message, row):
         if run is None:

@@ -53,7 +53,7 @@ def test_completion_offers_what_is_meant_to_be_used(decoder):
     assert not [name for name in offered if name.endswith("_")]
     assert set(dir(decoder.new().header)) >= {"stamp", "frame_id", "seq"}
     assert {name for name in dir(decoder) if not name.startswith("_")} == {
-        "builtin", "definition", "holder_type", "into", "to", "kernel", "many", "mapping", "new", "of", "stage"
+        "builtin", "definition", "holder_type", "into", "to", "kernel", "many", "mapping", "new", "of", "reset", "stage", "state"
     }  # fmt: skip
     assert {"Decoder", "Encoder", "Batch", "Holder", "check", "infer"} <= set(dir(rj))
     assert all(hasattr(rj, name) for name in dir(rj))

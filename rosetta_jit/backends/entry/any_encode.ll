@@ -33,12 +33,15 @@ opened:
   %inside = icmp sle i64 %offset, %room.size
   ; looked at here: to open a buffer may run any code
   %into.epoch = call i64 @epoch(ptr %state)
-  %into.usable = call i1 @is_usable(ptr %state, i64 %into.epoch)
+  %readable = call i1 @is_usable(ptr %state, i64 %into.epoch)
+  %unshared = call i1 @registers_are_free(ptr %context)
+  %into.usable = and i1 %readable, %unshared
   %fits = and i1 %inside, %into.usable
   br i1 %fits, label %prepare, label %close, !prof !0
 prepare:
   ; though the size is not asked for: the kernel looks up the lengths of nested messages that measuring leaves in the scratch lane
   call void @enter(ptr %state, i64 %into.epoch, i64 0)
+  call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
   %into.size = call i64 @prepare(ptr %state, i64 0)
   %prepared = icmp sge i64 %into.size, 0

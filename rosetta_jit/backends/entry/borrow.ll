@@ -41,10 +41,13 @@ decode:
   %end = phi i64 [ %size, %bytes ], [ %view.size, %viewed ]
   ; looked at here: to open a buffer may run any code
   %epoch = call i64 @epoch(ptr %state)
-  %free = icmp sge i64 %epoch, 0
+  %unused = icmp sge i64 %epoch, 0
+  %unshared = call i1 @registers_are_free(ptr %context)
+  %free = and i1 %unused, %unshared
   br i1 %free, label %run, label %finish, !prof !0
 run:
   call void @enter(ptr %state, i64 %epoch, i64 1)
+  call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
   %result = call i64 @kernel(ptr %start, i64 0, i64 %end, ptr %state, i64 0)
   call void @leave(ptr %state, i64 %epoch, i64 1)

@@ -34,10 +34,14 @@ check:
   %end = phi i64 [ %bytes.size, %bytes ], [ %view.size, %viewed ]
   ; looked at here: to open a buffer may run any code
   %epoch = call i64 @epoch(ptr %state)
-  %free = icmp sge i64 %epoch, 0
+  %unused = icmp sge i64 %epoch, 0
+  %unshared = call i1 @registers_are_free(ptr %context)
+  %free = and i1 %unused, %unshared
   br i1 %free, label %run, label %close, !prof !0
 run:
   call void @enter(ptr %state, i64 %epoch, i64 1)
+  call void @lend_registers(ptr %context, ptr %state)
+  call void @save_registers(ptr %state)
   call void @tell(ptr %context, ptr %state)
   %size = call i64 @taken(ptr %data, i64 0, i64 %end, ptr %state)
   %measured = icmp sge i64 %size, 0
@@ -56,6 +60,7 @@ drop:
   br label %stop
 stop:
   %unallocated = phi i1 [ false, %run ], [ true, %allocate ], [ false, %drop ]
+  call void @restore_registers(ptr %state)
   call void @untell(ptr %context, ptr %state)
   br label %leave
 leave:
@@ -121,11 +126,15 @@ both:
   %apart = or i1 %before, %behind
   ; looked at here: to open a buffer may run any code
   %epoch = call i64 @epoch(ptr %state)
-  %free = icmp sge i64 %epoch, 0
+  %unused = icmp sge i64 %epoch, 0
+  %unshared = call i1 @registers_are_free(ptr %context)
+  %free = and i1 %unused, %unshared
   %usable = and i1 %apart, %free
   br i1 %usable, label %run, label %close, !prof !0
 run:
   call void @enter(ptr %state, i64 %epoch, i64 1)
+  call void @lend_registers(ptr %context, ptr %state)
+  call void @save_registers(ptr %state)
   call void @tell(ptr %context, ptr %state)
   %size = call i64 @taken(ptr %data, i64 0, i64 %end, ptr %state)
   %measured = icmp sge i64 %size, 0
@@ -137,6 +146,7 @@ write:
   %exact = icmp eq i64 %written, %size
   br i1 %exact, label %leave, label %stop, !prof !0
 stop:
+  call void @restore_registers(ptr %state)
   call void @untell(ptr %context, ptr %state)
   br label %leave
 leave:
@@ -190,6 +200,7 @@ head:
   %more = icmp slt i64 %index, %count
   br i1 %more, label %each, label %all
 each:
+  call void @save_registers(ptr %state)
   %begin.at = getelementptr i64, ptr %offsets, i64 %index
   %begin = load volatile i64, ptr %begin.at
   %next = add nsw i64 %index, 1
@@ -225,6 +236,7 @@ all:
   ret i64 %index
 broken:
   %why = phi i64 [ 0, %each ], [ %taken, %take ], [ 1, %fit ], [ %written, %write ]
+  call void @restore_registers(ptr %state)
   call void @note(i64 %why, ptr %state)
   ret i64 %index
 }

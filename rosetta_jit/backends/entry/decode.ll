@@ -21,13 +21,16 @@ bytes:
   %mine = call i1 @is_mine(ptr %context)
   %epoch = call i64 @epoch(ptr %state)
   %free = icmp sge i64 %epoch, 0
-  %usable = and i1 %mine, %free
+  %unshared = call i1 @registers_are_free(ptr %context)
+  %known = and i1 %mine, %free
+  %usable = and i1 %known, %unshared
   br i1 %usable, label %decode, label %other, !prof !1
 decode:
   %data = getelementptr i8, ptr %message, i64 32
   %size.at = getelementptr i8, ptr %message, i64 16
   %size = load i64, ptr %size.at
   call void @enter(ptr %state, i64 %epoch, i64 1)
+  call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
   %result = call i64 @kernel(ptr %data, i64 0, i64 %size, ptr %state, i64 0) #0
   call void @leave(ptr %state, i64 %epoch, i64 1)

@@ -14,10 +14,13 @@ holder:
   br i1 %mine, label %check, label %other, !prof !0
 check:
   %epoch = call i64 @epoch(ptr %state)
-  %usable = call i1 @is_usable(ptr %state, i64 %epoch)
+  %readable = call i1 @is_usable(ptr %state, i64 %epoch)
+  %unshared = call i1 @registers_are_free(ptr %context)
+  %usable = and i1 %readable, %unshared
   br i1 %usable, label %measure, label %other, !prof !0
 measure:
   call void @enter(ptr %state, i64 %epoch, i64 0)
+  call void @lend_registers(ptr %context, ptr %state)
   call void @tell(ptr %context, ptr %state)
   %size = call i64 @prepare(ptr %state, i64 0)
   %measured = icmp sge i64 %size, 0

@@ -222,7 +222,9 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     """A module of an entry's functions. `#0` to `#2` are the attributes of the calls of kernels that are to be quick."""
     told = "told.ll" if is_told(kernels) else "untold.ll"
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
-    texts = map(_template, ("objects.ll", told, hosted, _thread_template(), *templates))
+    count = max(kernel.registers for kernel in kernels)
+    kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
+    texts = (*map(_template, ("objects.ll", told, hosted, _thread_template())), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))

@@ -28,11 +28,13 @@ from rosetta_jit.kernel.ir import (
     Fits,
     Get,
     IsText,
+    Known,
     Load,
     Local,
     Nearest,
     Order,
     Place,
+    Register,
     Scalar,
     Scale,
     Select,
@@ -65,12 +67,8 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return load(frame, wire_pointer(frame, at), type_, alignment=1, order=order)
         case Get(type_, place):
             return load(frame, place_pointer(frame, place), type_, alignment=place_alignment(frame, place, type_))
-        case Used(lane):
-            return frame.builder.load(frame.used_slot(lane), typ=I64)
-        case Capacity(lane):
-            return frame.capacity(lane)
-        case Told(what):
-            return frame.told(what)
+        case Used() | Capacity() | Told() | Register():
+            return _known(frame, expr)
         case Unary(function, operand):
             return _unary(frame, function, expression(frame, operand), type_of(operand))
         case Binary(op, left, right):
@@ -90,6 +88,20 @@ def expression(frame: Frame, expr: Expr) -> ir.Value:
             return frame.builder.call(declared(frame.module, "rosetta_is_text"), [pointer(frame, address), expression(frame, size)])
         case Nearest() | Digits() | Scale():
             return _decimal(frame, expr)
+        case _:
+            assert_never(expr)
+
+
+def _known(frame: Frame, expr: Known) -> ir.Value:
+    match expr:
+        case Used(lane):
+            return frame.builder.load(frame.used_slot(lane), typ=I64)
+        case Capacity(lane):
+            return frame.capacity(lane)
+        case Told(what):
+            return frame.told(what)
+        case Register(number):
+            return frame.register(number)
         case _:
             assert_never(expr)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, USED, lane_word
+from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -39,6 +39,9 @@ LLVM_TYPES: dict[str, ir.Type] = {
 
 MESSAGE = (-1, 0)
 """Among what is loaded at the start, by lane and word, the address of the message."""
+
+REGISTER = -2
+"""In the place of a lane, the registers, which are loaded at the start, too."""
 
 CROWDED = 64
 """Lanes from which on a function keeps what it knows of them in memory."""
@@ -149,6 +152,19 @@ class Frame:
         word = NOW if what == "now" else NUMBER
         value = self.builder.load(state_word(self.builder, self.parameters.state, word), typ=I64, align=8, name=what)
         return value if what == "now" else self.builder.add(value, self.parameters.row)
+
+    def register(self, number: int) -> ir.Value:
+        """What a register holds when the kernel starts: loaded there, before anything changes it."""
+        key = (REGISTER, number)
+        if key not in self.loaded:
+            word = self.register_word(self.entry, number)
+            self.loaded[key] = self.entry.load(word, typ=I64, align=8, name=f"register{number}")
+        return self.loaded[key]
+
+    def register_word(self, builder: ir.IRBuilder, number: int) -> ir.Value:
+        """The address of a register."""
+        registers = builder.load(state_word(builder, self.parameters.state, REGISTERS), typ=POINTER, align=8, name="registers")
+        return state_word(builder, registers, number)
 
     def used_slot(self, lane: int) -> ir.Value:
         """The stack slot of the lane's used length."""

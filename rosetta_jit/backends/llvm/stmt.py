@@ -102,7 +102,8 @@ def _statement(frame: Frame, statement: Stmt) -> None:
             fill_memory(frame, pointer(frame, target), byte, expression(frame, size))
         case For() | While() | If() | Switch():
             _nested(frame, statement)
-        case Return(position):
+        case Return(position, registers):
+            _keep(frame, registers)
             frame.done.enter(frame.builder, [expression(frame, position)])
         case Call():
             _call(frame, statement)
@@ -110,6 +111,13 @@ def _statement(frame: Frame, statement: Stmt) -> None:
             _host_call(frame, statement)
         case _:
             assert_never(statement)
+
+
+def _keep(frame: Frame, registers: tuple[tuple[int, Expr], ...]) -> None:
+    """Let registers hold other values from now on, all of which are computed from the old ones."""
+    values = [expression(frame, value) for _, value in registers]
+    for (number, _), value in zip(registers, values, strict=True):
+        frame.builder.store(value, frame.register_word(frame.builder, number), align=8)
 
 
 def _nested(frame: Frame, statement: For | While | If | Switch) -> None:

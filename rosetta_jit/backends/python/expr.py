@@ -24,10 +24,12 @@ from rosetta_jit.kernel.ir import (
     Fits,
     Get,
     IsText,
+    Known,
     Load,
     Local,
     Nearest,
     Place,
+    Register,
     Scalar,
     Scale,
     Select,
@@ -60,6 +62,7 @@ class Names:
     strides: tuple[int, ...]
     used: set[int] = field(default_factory=set[int])
     capacities: set[int] = field(default_factory=set[int])
+    registers: set[int] = field(default_factory=set[int])
 
     def used_name(self, lane: int) -> str:
         self.used.add(lane)
@@ -68,6 +71,10 @@ class Names:
     def capacity_name(self, lane: int) -> str:
         self.capacities.add(lane)
         return f"capacity_{lane}"
+
+    def register_name(self, number: int) -> str:
+        self.registers.add(number)
+        return f"register_{number}"
 
 
 def expression(names: Names, expr: Expr) -> str:
@@ -81,7 +88,7 @@ def expression(names: Names, expr: Expr) -> str:
             return _read(names, type_, Wire(at), order)
         case Get(type_, place):
             return _read(names, type_, place, "<")
-        case Used() | Capacity() | Told():
+        case Used() | Capacity() | Told() | Register():
             return _known(names, expr)
         case Unary("not", operand) if type_of(operand) == "bool":
             return f"(not {expression(names, operand)})"
@@ -107,7 +114,7 @@ def expression(names: Names, expr: Expr) -> str:
             assert_never(expr)
 
 
-def _known(names: Names, expr: Used | Capacity | Told) -> str:
+def _known(names: Names, expr: Known) -> str:
     match expr:
         case Used(lane):
             return names.used_name(lane)
@@ -115,6 +122,8 @@ def _known(names: Names, expr: Used | Capacity | Told) -> str:
             return names.capacity_name(lane)
         case Told(what):
             return TOLD[what]
+        case Register(number):
+            return names.register_name(number)
         case _:
             assert_never(expr)
 

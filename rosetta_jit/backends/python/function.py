@@ -2,7 +2,8 @@
 
     kernel(buffer, begin, end, state, lanes, row) -> int
 
-It takes and returns what `kernel.interpret.run` does. Each attempt is a function; what a message cannot be ends it with `Failed`.
+It takes and returns what `kernel.interpret.run` does; a kernel with registers has them as a parameter more. Each attempt is a function;
+what a message cannot be ends it with `Failed`.
 """
 
 from __future__ import annotations
@@ -70,6 +71,8 @@ HOST_IMPORTS = ("from rosetta_jit.kernel.host import RefusedError",)
 OF_DECIMALS = "from rosetta_jit.kernel.decimals import digits, nearest, scale"
 CALLED = frozenset(name.strip(",") for line in (*IMPORTS, *HOST_IMPORTS, OF_DECIMALS) for name in line.partition(" import ")[2].split())
 PARAMETERS = "buffer, begin, end, state, lanes, row"
+REGISTERS = ", registers"
+"""The parameter more of a kernel that has some."""
 
 
 def compile_python(kernel: Kernel, functions: Functions = NO_FUNCTIONS) -> Callable[..., int]:
@@ -104,17 +107,19 @@ def python_text(kernel: Kernel) -> str:
         writer.line()
         writer.line()
         _RoutineBody(kernel, routine, writer).write()
+    kept = REGISTERS if kernel.registers else ""
     for number, body in enumerate(kernel.bodies):
         writer.line()
         writer.line()
-        with writer.indented(f"def attempt_{number}({PARAMETERS}):"):
+        with writer.indented(f"def attempt_{number}({PARAMETERS}{kept}):"):
             _Attempt(kernel, body, writer).write()
     writer.line()
     writer.line()
-    with writer.indented(f"def kernel({PARAMETERS}):"):
+    with writer.indented(f"def kernel({PARAMETERS}{kept}):"):
         attempts = "".join(f"attempt_{number}, " for number in range(len(kernel.bodies))).rstrip()
         hidden = f", {kernel.lanes}, {kernel.strides[kernel.lanes :]}" if kernel.hidden else ""
-        writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row{hidden})")
+        given = ", registers=(registers,)" if kernel.registers else ""
+        writer.line(f"return run_attempts(({attempts}), (buffer, begin, end), state, lanes, row{hidden}{given})")
     return writer.text()
 
 
@@ -128,6 +133,7 @@ def _has_decimals(kernel: Kernel) -> bool:
 def _reserved(kernel: Kernel) -> frozenset[str]:
     lanes = range(len(kernel.strides))
     words = {f"{kind}_{lane}" for kind in ("used", "capacity") for lane in lanes}
+    words |= {"registers", *(f"register_{number}" for number in range(kernel.registers))}
     functions = {_function(routine.name) for routine in kernel.routines}
     names = {"bool", "bytes", "host", "indices", "int", "len", "min", "max", "range", "sites", "None", *PARAMETERS.split(", ")}
     return frozenset(keyword.kwlist) | CALLED | words | functions | names
@@ -156,6 +162,8 @@ class _Attempt:
             own, stride = lane < self.kernel.lanes, self.kernel.strides[lane]
             capacity = f"int(state[{lane_word(lane, CAPACITY)}])" if own else f"len(lanes[{lane}]) // {stride}"
             outer.line(f"capacity_{lane} = {capacity}")
+        for number in sorted(self.names.registers):
+            outer.line(f"register_{number} = int(registers[{number}])")
         outer.lines += self.writer.lines
         self.writer = outer
 
@@ -188,9 +196,11 @@ class _Attempt:
             case Fill(target, size, byte):
                 length = self._text(size)
                 self.writer.line(f"{part(self.names, target, length)} = bytes([{byte}]) * {length}")
-            case Return(position):
+            case Return(position, registers):
                 for lane in self.counted:
                     self.writer.line(f"state[{lane_word(lane, USED)}] = used_{lane}")
+                for number, value in registers:
+                    self.writer.line(f"registers[{number}] = {self._text(value)}")
                 self.writer.line(f"return {self._text(position)}")
             case For() | While() | If() | Switch():
                 self._nested(statement)

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 ROWS, BYTES, SCRATCH_BYTES = 64, 1024, 4096
 """Room in a `memory` where nothing bounds what a message needs: elements, bytes of texts, bytes of scratch."""
 
-WORDS = ("span", "holder", "memory", "error", "status", "decode", "borrow", "encode", "size", "use", "clear", "error_path", "status_text")
+WORDS = (
+    *("span", "holder", "memory", "state", "error", "status", "decode", "borrow", "encode", "size", "use", "clear", "reset"),
+    *("error_path", "status_text"),
+)
 
 
 def memory(unit: Unit, lanes: Lanes, hidden: int) -> str:
@@ -26,7 +29,8 @@ def memory(unit: Unit, lanes: Lanes, hidden: int) -> str:
     lines += ["/* Room for the lanes of one holder, where it need not grow. */", f"typedef struct {name}_memory {{"]
     lines += [f"    {lanes.type(lane)} {lanes.rows(lane)}[{_constant(unit, lanes, lane)}];" for lane in rooms]
     lines += [f"    int64_t scratch_{number}[({name.upper()}_SCRATCH_{number}_BYTES + 7) / 8];" for number in range(hidden)]
-    lines += [] if rooms or hidden else ["    unsigned char nothing;"]
+    lines += [f"    {name}_state state;"] if unit.state else []
+    lines += [] if rooms or hidden or unit.state else ["    unsigned char nothing;"]
     lines += [f"}} {name}_memory;", "", "/* Makes a holder an empty message with that memory. */"]
     lines += [f"static inline void {name}_use({name}_holder *holder, {name}_memory *memory)", "{"]
     for lane in range(1, lanes.own):
@@ -36,8 +40,9 @@ def memory(unit: Unit, lanes: Lanes, hidden: int) -> str:
     for number in range(hidden):
         lines.append(f"    holder->scratch[{number}].bytes = (unsigned char *)memory->scratch_{number};")
         lines.append(f"    holder->scratch[{number}].size = {name.upper()}_SCRATCH_{number}_BYTES;")
+    lines += [f"    {name}_reset(&memory->state);", "    holder->state = &memory->state;"] if unit.state else []
     lines += ["    holder->now = 0;", "    holder->number = 0;", f"    {name}_clear(holder);"]
-    return "\n".join([*lines, *([] if rooms or hidden else ["    (void)memory;"]), "}"])
+    return "\n".join([*lines, *([] if rooms or hidden or unit.state else ["    (void)memory;"]), "}"])
 
 
 def _constant(unit: Unit, lanes: Lanes, lane: int) -> str:

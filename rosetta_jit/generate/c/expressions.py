@@ -28,10 +28,12 @@ from rosetta_jit.kernel.ir import (
     Fits,
     Get,
     IsText,
+    Known,
     Load,
     Local,
     Nearest,
     Place,
+    Register,
     Scalar,
     Scale,
     Select,
@@ -61,7 +63,7 @@ class Scope:
 
     ``parameters`` are those that it must be given, ``touched`` the lanes whose rows it reads or writes, ``counted`` those whose rows in use
     it counts, ``moved`` those that it makes room in, ``support`` the functions of `support.c` that it calls, ``hidden`` the hidden lanes
-    that its kernel uses.
+    that its kernel uses, ``registers`` those that it reads.
     """
 
     locals: Namespace
@@ -72,6 +74,7 @@ class Scope:
     touched: set[int] = field(default_factory=set[int])
     counted: set[int] = field(default_factory=set[int])
     moved: set[int] = field(default_factory=set[int])
+    registers: set[int] = field(default_factory=set[int])
 
     def calls(self, function: str) -> str:
         """A function of the support, which will be part of the file."""
@@ -104,9 +107,20 @@ class Scope:
         self._note(lane)
         return self.lanes.capacity(lane)
 
+    def register(self, number: int) -> str:
+        """The constant with what a register holds when the function starts."""
+        self.parameters.add("holder")
+        self.registers.add(number)
+        return register_name(number)
+
     def _note(self, lane: int) -> None:
         if lane >= self.lanes.own:
             self.hidden.add(lane - self.lanes.own)
+
+
+def register_name(number: int) -> str:
+    """What the constant is called that has what a register holds when a function starts."""
+    return f"register_{number}"
 
 
 def expression(scope: Scope, expr: Expr) -> str:
@@ -120,7 +134,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             return _loaded(scope, type_, expression(scope, at), order)
         case Get(type_, place):
             return read(scope, type_, place)
-        case Used() | Capacity() | Told():
+        case Used() | Capacity() | Told() | Register():
             return _about_the_holder(scope, expr)
         case Unary(function, operand):
             return _unary(scope, function, type_of(operand), _wide(scope, operand))
@@ -146,7 +160,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             assert_never(expr)
 
 
-def _about_the_holder(scope: Scope, expr: Used | Capacity | Told) -> str:
+def _about_the_holder(scope: Scope, expr: Known) -> str:
     match expr:
         case Used(lane):
             return scope.used(lane)
@@ -154,6 +168,8 @@ def _about_the_holder(scope: Scope, expr: Used | Capacity | Told) -> str:
             return scope.capacity(lane)
         case Told(what):
             return f"{scope.takes('holder')}->{what}"
+        case Register(number):
+            return scope.register(number)
         case _:
             assert_never(expr)
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer, counted_lanes
-from rosetta_jit.generate.c.expressions import Scope, bare, expression
+from rosetta_jit.generate.c.expressions import Scope, bare, expression, register_name
+from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.statements import Callable, Function, leaves, moved, print_block, reached, read_names
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import C_TYPES
@@ -57,6 +58,7 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
     """
     writer, support, hidden, routines = Writer(), set[str](), set[int](), dict[str, Callable]()
     words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}
+    words |= {register_name(number) for number in range(kernel.registers)}
 
     def scope() -> Scope:
         return Scope(Namespace(words), lanes, support, hidden)
@@ -67,13 +69,13 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
         )
     numbers = {0: 0}
     attempts = tuple(
-        _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers, origins=origins))
+        _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers, origins=origins, role=role))
         for number in range(len(kernel.bodies))
     )
     return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden))
 
 
-def _attempt(writer: Writer, role: str, kernel: Kernel, number: int, function: Function) -> Attempt:
+def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, function: Function) -> Attempt:
     body, scope = reached(kernel.bodies[number]), function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
     finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted_lanes(kernel, body) if lane < scope.lanes.own}
@@ -86,6 +88,8 @@ def _attempt(writer: Writer, role: str, kernel: Kernel, number: int, function: F
     parameters = tuple(each for each in SHARED if each in scope.parameters)
     declared = ", ".join(_declared(parameters, kernel.direction, scope.lanes)) or "void"
     _head(writer, f"static int64_t {name}({declared})", scope, kernel.direction)
+    for each in sorted(scope.registers):
+        writer.line(f"    const int64_t {register_name(each)} = {register_word(role, each)};")
     for lane in sorted(scope.counted):
         start = _used_at_start(kernel, scope.lanes, lane)
         writer.line(f"    {'' if lane in advanced else 'const '}int64_t {scope.lanes.used(lane)} = {start};")

@@ -10,6 +10,7 @@ from rosetta_jit.errors import Kind
 from rosetta_jit.generate.c.accessors import accessors, memory
 from rosetta_jit.generate.c.lanes import C_ROWS, row_type
 from rosetta_jit.generate.c.rows import SpanType, Struct
+from rosetta_jit.generate.c.state import state_struct
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
 
@@ -42,6 +43,7 @@ def header(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], hidden: int) -
         statuses="\n".join(f"    {unit.name.upper()}_{status.upper()} = {number}," for number, status in enumerate(STATUSES)),
         structs="\n\n".join(struct_text(unit.name, lanes, struct) for struct in structs),
         root=lanes.type(0),
+        state="".join(f"{text}\n\n" for text in [state_struct(unit)] if text),
         members="\n".join(_members(unit, lanes, hidden)),
         declarations="\n\n".join(_calls(unit)),
         memory=memory(unit, lanes, hidden),
@@ -103,6 +105,7 @@ def _members(unit: Unit, lanes: Lanes, hidden: int) -> list[str]:
     if hidden:
         lines += ["    struct {", "        unsigned char *bytes;", "        int64_t size;"]
         lines.append(f"    }} scratch[{hidden}]; /* {lanes.own}: memory for the functions alone */")
+    lines += [f"    {unit.name}_state *state; /* of earlier messages */"] if unit.state else []
     lines += [f"    int64_t {word}; {comment(said)}" for word, said in TOLD.items()]
     return lines
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.generate.c.rows import Element
 
-OWN_WORDS = frozenset({"message", "now", "number", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem"})
+OWN_WORDS = frozenset({"message", "now", "number", "state", "scratch", "holder", "bytes", "end", "failure", "size", "error", "problem"})
 """What the functions call their parameters, and the holder its other members."""
 
 Dialect = Literal["c", "c++"]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.c.expressions import bare, expression, location, store, written
+from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.origins import origin_of
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.c.expressions import Scope
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.origins import Origin
+    from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Effect, Site
 
 
@@ -73,7 +75,7 @@ class Function:
 
     ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
     returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got, ``origins`` what
-    rules of the mapping name.
+    rules of the mapping name. ``role`` is what its kernel is for.
     """
 
     scope: Scope
@@ -84,6 +86,7 @@ class Function:
     is_routine: bool = False
     numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
     origins: Sequence[Origin] = ()
+    role: Role = "decode"
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
 
     def line(self, text: str) -> None:
@@ -165,9 +168,12 @@ def _statement(function: Function, stmt: Stmt) -> None:
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case Reserve() | Advance():
             _rows(function, stmt)
-        case Return(position):
+        case Return(position, registers):
             for line in function.finish:
                 function.line(line)
+            for number, value in registers:
+                scope.takes("holder")
+                function.line(f"{register_word(function.role, number)} = {bare(expression(scope, value))};")
             function.line(f"return {bare(expression(scope, position))};")
         case For() | While() | If() | Switch():
             _nested(function, stmt)

@@ -19,6 +19,7 @@ $declarations
     /* What `now()` (ns since 1970) and `counter()` say in the mapping. */
     std::int64_t now = 0;
     std::int64_t number = 0;
+$state
 
 private:
     struct memory;

@@ -8,6 +8,7 @@ rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::
     struct failure failure = {0, 0, {0, 0, 0, 0}};
     holder->now = now;
     holder->number = number;
+$kept
     holder->most = rosetta_jit::detail::most_rows(size);
     row = {};
 $reset
@@ -81,6 +82,7 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
     struct failure failure = {0, 0, {0, 0, 0, 0}};
     holder->now = now;
     holder->number = number;
+$kept
     gather(source, holder);
     const int64_t size = measured(holder, &failure);
     if (size < 0) {
@@ -94,6 +96,7 @@ rosetta_jit::result<std::size_t> codec::try_encode(const ::$name::holder &source
     ${name}_holder *const holder = memory_.get();
     holder->now = now;
     holder->number = number;
+$kept
     gather(source, holder);
 $measure
     return written(holder, static_cast<unsigned char *>(bytes), reach(capacity));

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.generate.c.header import made, struct_text
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.source import NO_ROOM, ORDER, run, site_text, without_unused
+from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Role, Unit
 
 FOLDER = Path(__file__).parent
+RESET = (
+    "    /* Forgets all messages: state is what the mapping says that it is at first. */",
+    "    void reset() { kept = state(); }",
+)
 SAID = """    if (where.scratch >= 0) { /* the mapping has put this text together */
         const std::size_t first = rosetta_jit::detail::indices_in(where.path);
         found.detail.assign(reinterpret_cast<const char *>(holder.scratch[where.scratch].bytes) + failure.indices[first],
@@ -56,9 +61,24 @@ def header(unit: Unit, manners: Manners) -> str:
         includes="\n".join(lines),
         classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
         declarations="\n".join(_declarations()[each] for each in declared),
+        state=_state(unit),
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
         around="\n".join(Template(text).substitute(words) for _, text in around),
     )
+
+
+def _state(unit: Unit) -> str:
+    """What a codec keeps from one message to the next, where the mapping declares state."""
+    if not unit.state:
+        return ""
+    names, words = (", ".join(map(str, some)) for some in zip(*((name, _word(word)) for name, word in unit.state), strict=True))
+    members = (f"        std::int64_t {member}[{len(unit.state)}] = {{{words}}};" for member in dict.fromkeys(MEMBERS.values()))
+    head = f"    /* What the mapping keeps from one message to the next, for each direction: {names}; floats by their bits. */"
+    return "\n".join([head, "    struct state {", *members, "    };", "    state kept;", *RESET])
+
+
+def _word(word: int) -> str:
+    return "INT64_MIN" if word == -(2**63) else f"INT64_C({word})"
 
 
 def class_of(unit: Unit, manners: Manners) -> str:
@@ -167,6 +187,7 @@ def _holder(unit: Unit, parts: Parts, containers: dict[int, str]) -> str:
         lines.append(f"    {kind} {lanes.rows(lane)};")
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
+    lines += ["    codec::state *state = nullptr;"] if unit.state else []
     return "\n".join([*lines, "};", ""])
 
 
@@ -231,7 +252,7 @@ def _methods(unit: Unit, parts: Parts, directs: dict[str, list[Direct]]) -> list
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
     known = dict(zip(sections[::2], sections[1::2], strict=True))
-    words = {"name": unit.name}
+    words = {"name": unit.name, "kept": "    holder->state = &kept;" if unit.state else ""}
     texts: list[str] = []
     lanes, printed = parts.lanes, parts.printed
     if "borrow" in printed:

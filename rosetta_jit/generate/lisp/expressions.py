@@ -30,10 +30,12 @@ from rosetta_jit.kernel.ir import (
     Fits,
     Get,
     IsText,
+    Known,
     Load,
     Local,
     Nearest,
     Place,
+    Register,
     Scalar,
     Scale,
     Select,
@@ -95,7 +97,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             return f"({access(type_, order)} data {expression(scope, at)})"
         case Get(type_, place):
             return got(scope, type_, place)
-        case Used() | Capacity() | Told():
+        case Used() | Capacity() | Told() | Register():
             return _known(scope, expr)
         case Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
@@ -120,7 +122,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             assert_never(expr)
 
 
-def _known(scope: Scope, expr: Used | Capacity | Told) -> str:
+def _known(scope: Scope, expr: Known) -> str:
     match expr:
         case Used(lane):
             return scope.used(lane)
@@ -128,6 +130,8 @@ def _known(scope: Scope, expr: Used | Capacity | Told) -> str:
             return "1" if lane == 0 else f"(the i64 (truncate (length {scope.rows(lane)}) {scope.lanes.stride(lane)}))"
         case Told(what):
             return f"(codec-state-{what} codec)"
+        case Register():
+            raise AssertionError("a unit with state is not printed in Lisp")
         case _:
             assert_never(expr)
 

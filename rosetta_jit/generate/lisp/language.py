@@ -43,6 +43,8 @@ def files(unit: Unit) -> dict[str, str]:
     """The texts of the system's files by their names."""
     if unit.holder not in ("", "own"):
         raise SchemaError((words.unknown_holder(unit.holder, (("own", "structures"),)),))
+    if unit.state:
+        raise SchemaError((words.not_in_language(unit.name, "state from message to message", "lisp"),))
     package = package_of(unit.name)
     made = _Source(unit)
     return {

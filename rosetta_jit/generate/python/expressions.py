@@ -30,10 +30,12 @@ from rosetta_jit.kernel.ir import (
     Fits,
     Get,
     IsText,
+    Known,
     Load,
     Local,
     Nearest,
     Place,
+    Register,
     Scalar,
     Scale,
     Select,
@@ -153,7 +155,7 @@ def expression(scope: Scope, expr: Expr) -> str:
         case Get(type_, place):
             text = scope.field(place.lane, expression(scope, place.row), place.offset, type_)
             return f"({text} != 0)" if type_ == "bool" else text
-        case Used() | Capacity() | Told():
+        case Used() | Capacity() | Told() | Register():
             return _known(scope, expr)
         case Unary(function, operand):
             return _unary(function, type_of(operand), expression(scope, operand))
@@ -177,7 +179,7 @@ def expression(scope: Scope, expr: Expr) -> str:
             assert_never(expr)
 
 
-def _known(scope: Scope, expr: Used | Capacity | Told) -> str:
+def _known(scope: Scope, expr: Known) -> str:
     match expr:
         case Used(lane):
             return scope.used(lane)
@@ -186,6 +188,9 @@ def _known(scope: Scope, expr: Used | Capacity | Told) -> str:
         case Told(what):
             scope.told.add(what)
             return f"told_{what}"
+        case Register(number):
+            scope.told.add("registers")
+            return f"told_registers[{number}]"
 
 
 def _is_text(scope: Scope, address: Address, size: str) -> str:

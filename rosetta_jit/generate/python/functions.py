@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 WORDS = frozenset(
     (*keyword.kwlist, *dir(builtins), "data", "end", "most", "sites", "indices", "math", "array", "self", "target", "functions", "now")
-)
+) | {f"told_{what}" for what in ("now", "number", "registers", "end")}
 
 
 def is_flat(kernel: Kernel, lanes: Lanes) -> bool:

@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.python.expressions import Scope
     from rosetta_jit.generate.python.functions import Attempt
     from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Kernel
+    from rosetta_jit.kernel.ir import Direction, Kernel
+
+REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
+"""The lists of the registers of each direction, in the module."""
 
 RUNTIME = Path(__file__).with_name("runtime.py")
 NO_MEMORY = "the message asks for more memory than its size allows"
@@ -51,6 +54,7 @@ class _Module:
         """All of it."""
         parts = [self._decoder()] if "borrow" in self.unit.kernels else []
         parts += [self._encoder()] if "encode" in self.unit.kernels else []
+        parts += [self._reset()] if self.unit.state else []
         runtime = RUNTIME.read_text("utf-8")
         runtime = runtime[runtime.index("import math") :].rstrip()
         made = "\n".join(
@@ -75,7 +79,18 @@ class _Module:
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
         if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
+        if self.unit.state:
+            words = "".join(f"    {word},  # {name}\n" for name, word in self.unit.state)
+            lines += ["# What is kept from one message to the next: integers as they are, floats by their bits.", f"_INITIAL = (\n{words})"]
+            lines += [f"{each} = list(_INITIAL)" for each in REGISTERS.values()]
         return "\n".join(lines)
+
+    def _reset(self) -> str:
+        writer = Writer()
+        with writer.indented("def reset() -> None:"):
+            writer.line('"""Forget all messages: state is what the mapping says that it is at first."""')
+            writer.line(" = ".join(f"{each}[:]" for each in REGISTERS.values()) + " = _INITIAL")
+        return writer.text()
 
     def _lanes(self, kernel: Kernel) -> Lanes:
         """Those of the unit, with the hidden ones of a kernel."""
@@ -119,7 +134,7 @@ class _Module:
         writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         writer.line("most = 1048576 + 64 * end")
-        self._told(writer, {each for attempt in attempts for each in attempt.needs})
+        self._told(writer, {each for attempt in attempts for each in attempt.needs}, "decode")
         for number, attempt in enumerate(attempts):
             writer.line("try:")
             writer.line(f"    return {attempt.name}({', '.join(['data', 'end', 'most', *attempt.needs])})")
@@ -132,7 +147,9 @@ class _Module:
         writer.line("raise _error(_BORROW_SITES, farthest, end)")
         return writer.text()
 
-    def _told(self, writer: Writer, needs: set[str]) -> None:
+    def _told(self, writer: Writer, needs: set[str], direction: Direction) -> None:
+        if "told_registers" in needs:
+            writer.line(f"told_registers = {REGISTERS[direction]}")
         if "told_now" in needs:
             writer.line("told_now = now()")
         if "told_number" in needs:
@@ -190,7 +207,7 @@ class _Module:
                     writer.line(f'{name}_{code} = memoryview({name}).cast("{code}")')
             if lane and f"{name}_used" in needs | {each.replace("_room", "_used") for each in needs}:
                 writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
-        self._told(writer, needs)
+        self._told(writer, needs, "encode")
         measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]
         bound = ", ".join(["needed", *measured]) + ("" if measured else ",")
         writer.line(f"{bound} = {self._measured(attempts['size'], hidden)}")

@@ -140,8 +140,14 @@ def _statement(function: Function, stmt: Stmt) -> None:
             _reserve(function, lane, function.text(count))
         case Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
-        case Return(position):
+        case Return(position, ()):
             function.line(f"return {function.result(function.scope, function.text(position))}")
+        case Return(position, registers):
+            function.scope.told.add("registers")
+            words = "".join(f"told_registers[{number}], " for number, _ in registers)
+            values = "".join(f"{function.text(value)}, " for _, value in registers)
+            function.line(f"{words}told_end = {values}{function.text(position)}")
+            function.line(f"return {function.result(function.scope, 'told_end')}")
         case For() | While() | If() | Switch():
             _nested(function, stmt)
         case Call():

@@ -26,6 +26,7 @@ from rosetta_jit.kernel.ir import (
     Local,
     Nearest,
     Place,
+    Register,
     Scale,
     Select,
     Told,
@@ -166,8 +167,9 @@ def evaluate(scope: Scope, expr: Expr) -> Typed:
         case Used(lane) | Capacity(lane):
             check_lane(scope, lane)
             return "i64", (scope.used if isinstance(expr, Used) else scope.capacity)[lane]
-        case Told(what):
-            return "i64", scope.facts.named(("told", what), *limits("i64"))
+        case Told(what) | Register(what):
+            kind = "told" if isinstance(expr, Told) else "register"
+            return "i64", scope.facts.named((kind, what), *limits("i64"))
         case Unary():
             return _unary(scope, expr)
         case Fits():

@@ -192,7 +192,9 @@ def _statement(walk: _Walk, stmt: Stmt) -> bool:
             new = _value(scope, value)
             demand(new[0] == scope.locals[name][0], f"{name} is no {new[0]}")
             scope.bind(name, new)
-        case Return(position):
+        case Return(position, registers):
+            for _, value in registers:
+                integer(scope, value)
             oblige(scope, integer(scope, position), claims.POSITION)
             return True
         case Store() | SetField() | Copy() | Fill():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.language.algebra.normal_form import rebuilt, renamed
 from rosetta_jit.language.algebra.polynomial import TooComplexError, polynomial_of
 from rosetta_jit.language.algebra.quotients import NOTHING, are_same, mentions, only_atom
-from rosetta_jit.language.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest
+from rosetta_jit.language.typed import BOOL, Access, Binary, Const, Convert, Has, IndexStep, LenOf, Local, Nearest, StateVariable
 from rosetta_jit.model.types import Int
 
 if TYPE_CHECKING:
@@ -62,6 +62,13 @@ def has_local(expr: Expr) -> bool:
     """Whether an expression depends on the round of a loop."""
     found = [isinstance(expr, Local)]
     rebuilt(expr, lambda part: found.append(has_local(part)) or part)
+    return any(found)
+
+
+def has_state(expr: Expr) -> bool:
+    """Whether an expression depends on what earlier messages have left."""
+    found = [isinstance(expr, StateVariable)]
+    rebuilt(expr, lambda part: found.append(has_state(part)) or part)
     return any(found)
 
 

@@ -33,6 +33,7 @@ from rosetta_jit.language.typed import (
     Local,
     Nearest,
     Search,
+    StateVariable,
     Unary,
 )
 from rosetta_jit.model.expr import Literal
@@ -187,8 +188,8 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(f"in {shown_shape(place.steps)}", *_indices(place.steps), polynomial_of(condition))
         case Choice() | Listed() | Given():
             return _chosen(expr)
-        case Const(value=value):
-            return atom(repr(value))
+        case Const() | StateVariable():
+            return atom(f"state {expr.name} of {expr.target}" if isinstance(expr, StateVariable) else repr(expr.value))
         case _:
             assert_never(expr)
 

@@ -5,6 +5,7 @@ To turn rules around takes a tenth of the compiler. Mappings that write down bot
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -18,5 +19,7 @@ def in_each_direction(mapping: Mapping, type_of: TypeOf, problems: list[Diagnost
     if mapping.rules is None:
         return mapping
     from rosetta_jit.language.both_ways.derive import derive
+    from rosetta_jit.language.both_ways.state import without_state
 
-    return derive(mapping, type_of, problems)
+    rules = without_state(mapping.rules, frozenset(each.name for each in mapping.state), problems)
+    return derive(replace(mapping, rules=rules), type_of, problems)

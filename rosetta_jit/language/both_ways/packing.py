@@ -24,7 +24,21 @@ from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
 from rosetta_jit.model.expr import Binary, Call, Held, Len, List, Literal, Path, Unary
-from rosetta_jit.model.mapping import Arranged, Assign, Default, For, Ignore, Reject, Relation, Rest, SameNames, SetLength, Several, When
+from rosetta_jit.model.mapping import (
+    Arranged,
+    Assign,
+    Default,
+    For,
+    Ignore,
+    Reject,
+    Relation,
+    Rest,
+    SameNames,
+    SetLength,
+    SetState,
+    Several,
+    When,
+)
 from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.walk import Field, fields_of, names_of, parts, path_of
 from rosetta_jit.startup.dataclass import dataclass
@@ -116,7 +130,7 @@ class Packing:
             case SameNames(but, span, renames=renames):
                 turned = tuple(replace(each, place=each.value, value=each.place) for each in renames)
                 return (SameNames(tuple(replace(path, side="wire") for path in but), span, both=True, renames=turned),)
-            case Assign() | SetLength() | Several():
+            case Assign() | SetLength() | Several() | SetState():
                 raise AssertionError(rule)
 
     def loop(self, rule: For[Rule, Expr], loops: Loops) -> tuple[Rule, ...]:

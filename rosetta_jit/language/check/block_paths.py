@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import check as words
 from rosetta_jit.language.limits import MAX_CHECKED_WAYS
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
 from rosetta_jit.model.types import Optional, Struct, Union
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def ways(rules: tuple[Rule, ...], problems: list[Diagnostic]) -> Ways:
 
 def _ways_of(rule: Rule, problems: list[Diagnostic]) -> Ways:
     match rule:
-        case Assign() | SetLength() | Default() | Ignore():
+        case Assign() | SetLength() | Default() | Ignore() | SetState():
             return [(rule,)]
         case Reject():
             return []

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import mapping as words
+from rosetta_jit.catalogue.state import in_used
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.check.causes import causes, relations_of, unclear
 from rosetta_jit.language.check.completeness import Missing, check_complete
@@ -17,11 +18,13 @@ from rosetta_jit.language.check.discriminators import discriminators_of
 from rosetta_jit.language.check.file_name import misnamed
 from rosetta_jit.language.check.left_out import left_out
 from rosetta_jit.language.check.rounding import rounded
+from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
 from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_others
 from rosetta_jit.language.imports.search import Reading
 from rosetta_jit.language.parameters.bind import bind, handed_on
+from rosetta_jit.language.parameters.state import NO_STATE, declared
 from rosetta_jit.language.resolve.rules import Resolved, derived, resolve
 from rosetta_jit.language.units.hand_factors import wrong_factors
 from rosetta_jit.language.units.side_files import annotated
@@ -36,12 +39,16 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.imports.declarations import Imported
     from rosetta_jit.language.imports.search import SearchPath
+    from rosetta_jit.language.parameters.state import Declared
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Others, Signature, Use
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.parsing.idl import FrontEnds
+
+
+SIDES: tuple[Side, ...] = ("holder", "wire")
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +68,7 @@ class Checked:
     warnings: tuple[Diagnostic, ...]
     uses: tuple[Use, ...] = ()
     notes: tuple[Diagnostic, ...] = ()
+    state: Declared = NO_STATE
 
 
 def check(
@@ -101,7 +109,8 @@ def check(
     complete = not _errors(problems)
     problems += [*_without_handed_on(bound, mapping, others), *underived]
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
-    resolved = resolve(mapping, schema, schema, others) if complete else ()
+    state = declared(mapping, problems)
+    resolved = resolve(mapping, schema, schema, others, {side: state.variables(side) for side in SIDES}) if complete else ()
     if not isinstance(resolved, Resolved):
         raise _error([*problems, *(_with_import(each, mapping, imports) for each in resolved)])
     problems += resolved.problems
@@ -110,13 +119,15 @@ def check(
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += _unused(imported, resolved)
     problems += misnamed(mapping, schema)
+    problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
+    problems += [in_used(other.state[0].span, other.source.name) for other in others.mappings() if other.state]
     if _errors(problems):
         raise _error(problems)
-    problems += _silent_losses(mapping, resolved, _blocks(written))
+    problems += [*_silent_losses(mapping, resolved, _blocks(written)), *idle(mapping)]
     unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
     functions, uses = dict(resolved.functions), tuple(others.uses)
     notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(warnings), uses, _sorted(notes))
+    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(warnings), uses, _sorted(notes), state)
 
 
 def _error(problems: Sequence[Diagnostic]) -> MappingError:

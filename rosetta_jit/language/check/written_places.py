@@ -20,7 +20,7 @@ from rosetta_jit.language.algebra.polynomial import (
 )
 from rosetta_jit.language.check.tiling import Run
 from rosetta_jit.language.places import field_names, places_in
-from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, When
+from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def writes_of(
                     found.append(Write(_steps(place), loops, value, None, span))
                 case Default(place, span):
                     found.append(Write(_steps(place), loops, None, None, span))
-                case Ignore():
+                case Ignore() | SetState():
                     pass
                 case SetLength(place, value, span):
                     found.append(Write(_steps(place), loops, None, polynomial_of(value), span))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.language.algebra.equality import given_back, reads_other, same_number
+from rosetta_jit.language.algebra.equality import given_back, has_state, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
 from rosetta_jit.language.laws.roundtrip import Result, Trip
@@ -162,6 +162,8 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
     match value:
         case None:
             return Lost("it is left out: 0, empty or absent")
+        case _ if has_state(value):
+            return Lost("it depends on state, which other messages have left")
         case Local("?"):
             return Lost("it cannot be shown by which block of a `when` it comes back")
         case Access(other) | LenOf(other) if other.side != place.side:

@@ -39,9 +39,10 @@ def bind(mapping: Mapping, given: Dictionary[str, object] | None, problems: list
     """
     binder = _Binder(_values(mapping, given, problems), problems)
     blocks = [None if block is None else binder.rules(block, ()) for block in (mapping.rules, mapping.unpack_rules, mapping.pack_rules)]
+    state = tuple(replace(each, initial=folded(binder.expr(each.initial))) for each in mapping.state)
     unused = [parameter for parameter in mapping.parameters if parameter.name not in binder.used]
     problems.extend(words.unused(parameter.span, parameter.name) for parameter in unused)
-    return replace(mapping, rules=blocks[0], unpack_rules=blocks[1], pack_rules=blocks[2])
+    return replace(mapping, rules=blocks[0], unpack_rules=blocks[1], pack_rules=blocks[2], state=state)
 
 
 def handed_on(mapping: Mapping, given: Dictionary[str, object] | None) -> Dictionary[str, object] | None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import mapping as words
 from rosetta_jit.errors import MappingError
 from rosetta_jit.language.limits import MAX_CHARACTERS, MAX_IMPORTS, MAX_LIMIT, MAX_LIMIT_DIGITS, MAX_NESTING, MAX_TOKENS
-from rosetta_jit.language.parse.rules import Context, read_parameter, read_rule, read_string
+from rosetta_jit.language.parse.rules import Context, read_parameter, read_rule, read_state, read_string
 from rosetta_jit.language.parse.templates import grammar
 from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
 from rosetta_jit.parsing.lalr import Token, Tree
@@ -39,8 +39,11 @@ NESTING = frozenset(
 ONLY_BEHIND = {"NAMES": ("_SAME",), "LIST": ("COLON",), "OF": ("LIST",), "WITH": ("NAMES",), "REST": ("IGNORE", "DEFAULT")}
 """Words that are words behind some tokens alone."""
 
-RULES = ("START", "LEN", "FOR", "WHEN", "REJECT", "IGNORE", "DEFAULT", "_SAME")
+RULES = ("START", "LEN", "FOR", "WHEN", "SET_STATE", "REJECT", "IGNORE", "DEFAULT", "_SAME")
 """Tokens that a rule begins with."""
+
+BLOCKS = ("RULES", "UNPACK_RULES", "PACK_RULES")
+"""Tokens that a block begins with: behind their colon stands no name of a type."""
 
 
 def parse(source: Source) -> Mapping:
@@ -75,6 +78,8 @@ def _told_apart(tokens: Iterator[Token]) -> Iterator[Token]:
             kind = "NAME"
         if kind in ONLY_BEHIND and kinds[1] not in ONLY_BEHIND[kind]:
             kind = "NAME"
+        if kind in {"STATE", "SET_STATE"} and kinds[1] == "COLON" and kinds[0] not in BLOCKS:
+            kind = "NAME"
         kinds = kinds[1], kind
         yield token if kind == token.type else token.of_kind(kind)
 
@@ -83,14 +88,13 @@ def _recovery() -> Recovery:
     statements = (
         "IMPORT",
         "PARAMETER",
+        "STATE",
         "FUNCTION",
         "DATA_HOLDER",
         "WIRE_SCHEMA",
         "LIMIT",
         "ROUNDING",
-        "RULES",
-        "UNPACK_RULES",
-        "PACK_RULES",
+        *BLOCKS,
         "END",
     )
     starts = {kind: kind for kind in statements} | dict.fromkeys(RULES, "FOR")
@@ -138,21 +142,23 @@ class _Reader:
             wire,
             self._rules(statements, "", Context(self.source, "holder", "wire", self.problems)),
             self._rules(statements, "unpack", Context(self.source, "holder", "wire", self.problems)),
-            self._rules(statements, "pack", Context(self.source, "wire", "holder", self.problems)),
+            self._rules(statements, "pack", self.writing),
             holder_span,
             wire_span,
             tuple(self._function(child) for child in statements if child.data == "function"),
-            tuple(
-                read_parameter(child, Context(self.source, "wire", "holder", self.problems))
-                for child in statements
-                if child.data == "parameter"
-            ),
+            tuple(read_parameter(child, self.writing) for child in statements if child.data == "parameter"),
             self._limit(statements),
             self._rounds(statements),
+            tuple(read_state(child, self.writing) for child in statements if child.data == "state"),
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
         return mapping
+
+    @property
+    def writing(self) -> Context:
+        """Of expressions that stand in statements; of rules to pack."""
+        return Context(self.source, "wire", "holder", self.problems)
 
     def _bound_depth(self, tree: Tree) -> None:
         """Refuse operator chains and paths that are too long, without recursion of our own."""

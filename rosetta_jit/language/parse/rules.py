@@ -43,7 +43,9 @@ from rosetta_jit.model.mapping import (
     Rest,
     SameNames,
     SetLength,
+    SetState,
     Several,
+    State,
     Via,
     When,
 )
@@ -101,6 +103,8 @@ def read_rule(tree: Tree, context: Context) -> Rule:
             return _same_names(tree, context, span)
         case "reject":
             return _reject(tree, context, span)
+        case "set_state":
+            return SetState(_name(tree), read_expression(_trees(tree)[0], context), span)
         case _:
             start, stop, *body = _trees(tree)
             variable = str(_tokens(tree)[0])
@@ -318,6 +322,17 @@ def read_parameter(tree: Tree, context: Context) -> Parameter:
     default = next((read_expression(value, context) for value in _trees(tree)), None)
     is_list = any(token.type == "LIST" for token in _tokens(tree))
     return Parameter(str(name), str(type_), is_list, default, context.span(tree))
+
+
+def read_state(tree: Tree, context: Context) -> State:
+    """A state variable with the name of its type, whatever that is."""
+    _, type_ = (token for token in _tokens(tree) if token.type == "NAME")
+    return State(_name(tree), str(type_), read_expression(_trees(tree)[0], context), context.span(tree))
+
+
+def _name(tree: Tree) -> str:
+    """The first name among the words of a statement or rule."""
+    return next(str(token) for token in _tokens(tree) if token.type == "NAME")
 
 
 def _trees(tree: Tree) -> list[Tree]:

@@ -110,6 +110,8 @@ def _name(expr: model.Name, scope: Scope) -> Expr | None:
         return Local(expr.name + scope.suffix, INT64, expr.span)
     if expr.name in scope.values:
         return Local(expr.name, scope.values[expr.name], expr.span)
+    if expr.name in scope.state:
+        return replace(scope.state[expr.name], span=expr.span)
     if expr.name in CONSTANTS:
         return Const(CONSTANTS[expr.name], FLOAT64, expr.span)
     found = scope.constants.find(expr.name)
@@ -127,7 +129,7 @@ def _unnamed(expr: model.Name, several: list[str], scope: Scope) -> Diagnostic:
     origin = scope.messages[scope.origin]
     if expr.name in members_of(origin.root, origin.schema):
         return words.undotted_field(expr.span, expr.name)
-    return words.unknown_name(expr.span, expr.name, {*scope.locals, *CONSTANTS, *scope.constants.full})
+    return words.unknown_name(expr.span, expr.name, {*scope.locals, *scope.state, *CONSTANTS, *scope.constants.full})
 
 
 def _length(expr: model.Len, scope: Scope) -> Expr | None:

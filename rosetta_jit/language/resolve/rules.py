@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import state as states
 from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.both_ways.directions import in_each_direction
@@ -43,8 +44,10 @@ from rosetta_jit.language.typed import (
     Default,
     For,
     Ignore,
+    Place,
     Reject,
     SetLength,
+    SetState,
     When,
 )
 from rosetta_jit.language.units.conversion import in_unit
@@ -61,7 +64,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.groups import Group
-    from rosetta_jit.language.typed import Expr, Place, Rule
+    from rosetta_jit.language.typed import Expr, Rule, StateVariable
     from rosetta_jit.language.uses import Others, Signature
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.types import Schema, Type
@@ -89,10 +92,12 @@ class Resolved:
     functions: Mapping[str, Signature]
 
 
-def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others) -> Resolved | tuple[Diagnostic, ...]:
+def resolve(
+    mapping: model.Mapping, holder: Schema, wire: Schema, others: Others, state: Mapping[Side, Mapping[str, StateVariable]]
+) -> Resolved | tuple[Diagnostic, ...]:
     """Type the rules of a mapping against the schemas of its two sides; only problems where a side has no message.
 
-    ``others`` are the mappings that its rules may use.
+    ``others`` are the mappings that its rules may use; ``state`` has its state variables, for the rules that fill each side.
     """
     problems: list[Diagnostic] = []
     holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
@@ -101,8 +106,8 @@ def resolve(mapping: model.Mapping, holder: Schema, wire: Schema, others: Others
         return tuple(problems)
     scope = _scope({"holder": holder_type, "wire": wire_type}, mapping, others, problems)
     try:
-        unpack = _block(mapping.unpack_rules, scope)
-        pack = _block(mapping.pack_rules, replace(scope, target="wire"))
+        unpack = _block(mapping.unpack_rules, replace(scope, state=state["holder"]))
+        pack = _block(mapping.pack_rules, replace(scope, target="wire", state=state["wire"]))
     except EnoughError:
         return tuple(problems)
     return Resolved(holder_type, wire_type, unpack, pack, frozenset(scope.named), tuple(problems), scope.functions)
@@ -233,6 +238,8 @@ class _Block:
                 return Reject(text, span, type_pieces(pieces, scope, type_expr), written=written)
             case model.Ignore(path) | model.Default(path):
                 return self.left_alone(rule, path, scope)
+            case model.SetState():
+                return self.set_state(rule, scope)
             case model.SameNames():
                 return None  # when all other rules of the block are known
             case model.Rest():
@@ -287,8 +294,8 @@ class _Block:
             value = in_unit(value, place, scope, packs=rule.by == "checked")
         if value is not None and rule.by == "checked":
             value = fitted(value, place.type)
-        elif value is not None and scope.rounds and is_single(place.type) and same(value.type, FLOAT64):
-            value = Convert(value, place.type, "nearest", value.span)
+        elif value is not None:
+            value = _rounded(value, place.type, scope)
         fitting = None if value is None else fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
@@ -307,6 +314,16 @@ class _Block:
             return None
         return SetLength(place, value, rule.span)
 
+    def set_state(self, rule: model.SetState[str, expr.Expr], scope: Scope) -> Rule | None:
+        variable = scope.state.get(rule.variable)
+        value = type_expr(rule.value, scope)
+        if variable is None:
+            scope.problems.append(states.unknown(rule.span, rule.variable, scope.state))
+        if variable is None or value is None:
+            return None
+        fitting = fit(_rounded(value, variable.type, scope), Place(scope.target, (), variable.type), scope)
+        return None if fitting is None else SetState(variable, fitting, rule.span)
+
     def place(self, rule: model.Assignment | model.SetLength[expr.Path, expr.Expr], scope: Scope) -> Place | None:
         place = resolve_path(rule.place, scope, type_index)
         if isinstance(place, Broken):
@@ -317,6 +334,8 @@ class _Block:
     def loop(self, rule: model.For[model.Rule, expr.Expr], scope: Scope) -> Rule | None:
         if rule.variable in scope.locals:
             scope.problems.append(words.shadowed(rule.span, rule.variable))
+        if rule.variable in scope.state:
+            scope.problems.append(states.repeated(rule.span, rule.variable, "a state variable"))
         start = type_integer(rule.start, scope, "where a loop starts")
         stop = type_integer(rule.stop, scope, "where a loop ends")
         body = self.rules(rule.body, scope.inside(rule.variable))
@@ -328,6 +347,12 @@ class _Block:
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
         return For(rule.variable + scope.suffix, start, stop, body, rule.span)
+
+
+def _rounded(value: Expr, target: Type, scope: Scope) -> Expr:
+    """A float64 as a float32 is set to it, where the mapping says that it is rounded."""
+    is_rounded = scope.rounds and is_single(target) and same(value.type, FLOAT64)
+    return Convert(value, target, "nearest", value.span) if is_rounded else value
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:

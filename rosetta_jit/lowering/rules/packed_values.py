@@ -163,7 +163,7 @@ def _array_places(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Place]:
         match rule:
             case typed.Assign(_, typed.Access(place)) if isinstance(place.type, Array | String | Bytes):
                 yield place
-            case typed.Assign(_, value) | typed.SetLength(_, value):
+            case typed.Assign(_, value) | typed.SetLength(_, value) | typed.SetState(_, value):
                 yield from _read(value)
             case typed.For(_, start, stop, body):
                 yield from _read(start, stop)

@@ -23,6 +23,7 @@ from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.key_search import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
+from rosetta_jit.lowering.rules.state import remember
 from rosetta_jit.lowering.rules.wire_side import WireSide, wire_key
 from rosetta_jit.lowering.texts.separated import count_of_parts, parts_of
 from rosetta_jit.lowering.texts.values import checked, text_of
@@ -71,6 +72,8 @@ class Runner:
                     here.reject(text, pieces)
                 case typed.Default(place):
                     self.leave(place, here)
+                case typed.SetState(variable, value):
+                    remember(self.writer, variable.number, here, value)
                 case typed.Ignore():
                     pass
                 case _:

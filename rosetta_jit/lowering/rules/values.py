@@ -36,6 +36,7 @@ from rosetta_jit.lowering.rules.host_calls import called
 from rosetta_jit.lowering.rules.key_search import number_in
 from rosetta_jit.lowering.rules.nearest import nearest
 from rosetta_jit.lowering.rules.rejections import reject_with
+from rosetta_jit.lowering.rules.state import remembered
 from rosetta_jit.lowering.texts.comparison import is_text
 from rosetta_jit.lowering.writer import MESSAGE, Where, Writer, block
 from rosetta_jit.model.layout import scalar_of
@@ -122,6 +123,8 @@ class Values:
                 return is_text(self, place, text.encode())
             case typed.Has() | typed.Search():
                 return self.source.present(value.place, self) if isinstance(value, typed.Has) else number_in(value, self)
+            case typed.StateVariable(_, number, _, type_):
+                return remembered(number, scalar_type(type_))
             case typed.Choice() | typed.Listed() | typed.Given():
                 return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
             case _:
