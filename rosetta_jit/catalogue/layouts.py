@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue.mapping import error
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
@@ -19,6 +21,10 @@ FORMS = {
     "interleaved": "`interleaved(array, channels)`, and behind it the elements of each",
     "rows": "`rows(array, count, size, stride)`",
     "padded_rows": "`padded_rows(array, count, size, stride)`",
+    "numbers": "`numbers(bytes, float32)`, and behind it a condition: whether the high byte of each comes first",
+    "number_bytes": "`number_bytes(numbers, float32)`, and behind it a condition: whether the high byte of each comes first",
+    "upper_triangle": "`upper_triangle(array, size)`",
+    "symmetric": "`symmetric(array, size)`",
 }
 """What a function of arrays takes."""
 
@@ -56,6 +62,29 @@ def no_size(span: Span | None) -> Diagnostic:
     """A count that is none."""
     help_ = "write how many elements, rows or channels there are, or a field that says it"
     return error("layout-size", "a count or a size must be an integer above 0", span, help_=help_)
+
+
+def no_number_type(span: Span | None, types: Iterable[str]) -> Diagnostic:
+    """Bytes of numbers that are of no type."""
+    listed = ", ".join(f"`{each}`" for each in types)
+    return error("number-type", "this is no type of numbers", span, notes=(f"types: {listed}",))
+
+
+def scattered_bytes(span: Span | None) -> Diagnostic:
+    """Numbers whose bytes do not lie one behind the other."""
+    help_ = "put numbers in another order, not their bytes: `planar(numbers(.data, uint16), 3)`"
+    return error("number-bytes", "the bytes of these numbers do not lie one behind the other", span, help_=help_)
+
+
+def bytes_inside(span: Span | None) -> Diagnostic:
+    """Bytes of numbers within another order."""
+    help_ = "put the numbers in another order: `number_bytes(reversed(.a), float32)`; only `padded_rows` may stand around it"
+    return error("number-bytes", "the bytes of numbers cannot be put in another order", span, help_=help_)
+
+
+def open_triangle(span: Span | None) -> Diagnostic:
+    """A triangle of a size that is not known when the mapping is compiled."""
+    return error("layout-size", "the size of a triangle must stand in the text", span, help_="for another size, write loops")
 
 
 def slice_step(span: Span | None) -> Diagnostic:

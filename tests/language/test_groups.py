@@ -324,3 +324,10 @@ def test_laws_name_what_does_not_come_back():
     assert {loss.place for loss in laws.messages.losses} == {".q.x", ".q.y", ".q.z", ".q.w"}
     assert all("negative" in loss.why for loss in laws.messages.losses)
     assert all("half a turn" in loss.why for loss in laws.holders.losses)
+
+
+def test_integers_are_the_nearest_ones():
+    rules = "rules:\n  .q <-> quaternion(0.0, radians(.pitch * 0.01), radians(.yaw * 0.01))\n"
+    both = pair('("pitch" :int) ("yaw" :int)', f"required Q q = 1; }} {TURN} message Z {{", rules)
+    for pitch, yaw in ((8999, -17999), (-1, 1), (1234, 5678)):
+        assert both.pack(**both.unpack(pitch=pitch, yaw=yaw)) == {"pitch": pitch, "yaw": yaw}

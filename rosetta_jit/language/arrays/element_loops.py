@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, minus, over, plus, times
-from rosetta_jit.language.arrays.layouts import PADDED, Axis, View
+from rosetta_jit.language.arrays.layouts import PADDED, SIZES, Axis, NumberType, View
 from rosetta_jit.language.arrays.parts import substituted
-from rosetta_jit.model.expr import Call, Index, Literal, Name, Path
+from rosetta_jit.model.expr import Binary, Call, Choice, Index, Literal, Name, Path
 from rosetta_jit.model.mapping import Assign, For
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -32,7 +32,8 @@ Padding = tuple["Expr", "Expr", "Expr"]
 class Moves:
     """The loops of one rule: what sets ``target`` from the elements of ``views``.
 
-    ``level`` is how many loops are around, ``variable`` names the one at a level, ``expanded`` gives the rules for one element.
+    ``level`` is how many loops are around, ``variable`` names the one at a level, ``expanded`` gives the rules for one element. Where the
+    target is filled with the bytes of numbers, ``packed`` is their type; else an element is one number.
     """
 
     rule: Assignment
@@ -43,6 +44,12 @@ class Moves:
     level: int
     variable: Callable[[int], str]
     expanded: Callable[[Assignment, int], tuple[Rule, ...]]
+    packed: NumberType | None = None
+
+    @property
+    def width(self) -> Expr:
+        """How many elements of the target are set for each of the source."""
+        return ONE if self.packed is None else self.packed.size
 
     def rules(self) -> tuple[Rule, ...]:
         views = (self.target, *self.views.values())
@@ -54,7 +61,8 @@ class Moves:
             return self.listed(views)
         name = self.variable(self.level)
         body = self.moved({source: [Name(name)] for source in self.views}, Name(name), self.level + 1)
-        return (For(name, ZERO, self.count, body, self.rule.span),)
+        rounds = self.count if self.packed is None else next(iter(self.views.values())).total
+        return (For(name, ZERO, rounds, body, self.rule.span),)
 
     def listed(self, views: tuple[View, ...]) -> tuple[Rule, ...]:
         """One rule an element."""
@@ -76,7 +84,7 @@ class Moves:
         view = self.only_view()
         first, *inner = view.axes
         call = self.rule.value if isinstance(self.rule.value, Call) else Call(PADDED, (), self.rule.span)
-        groups = over(size, reduce(times, (axis.count for axis in inner), ONE), call)
+        groups = over(size, reduce(times, (axis.count for axis in inner), self.width), call)
 
         def row(indices: list[Expr], level: int) -> tuple[Rule, ...]:
             (y,) = indices
@@ -84,10 +92,10 @@ class Moves:
             def element(within: list[Expr], level: int) -> tuple[Rule, ...]:
                 source = [plus(times(y, groups), within[0]), *within[1:]]
                 dense = _dense(within, (replace(first, count=groups), *inner))
-                return self.moved(dict.fromkeys(self.views, source), plus(times(y, stride), dense), level)
+                return self.moved(dict.fromkeys(self.views, source), dense, level, behind=times(y, stride))
 
             name = self.variable(level)
-            place = _element(self.target, [plus(times(y, stride), Name(name))])
+            place = _place(self.target, [plus(times(y, stride), Name(name))])
             fill: Rule = Assign(place, Literal(0, self.rule.span), self.rule.span)
             return (
                 *self.nest((replace(first, count=groups), *inner), element, level),
@@ -119,12 +127,25 @@ class Moves:
         body = self.around(axes, rest, inside, {**done, order[0]: Name(name)}, level + 1)
         return (For(name, ZERO, axis.count, body, self.rule.span),)
 
-    def moved(self, indices: dict[Path | Call, list[Expr]], number: Expr, level: int) -> tuple[Rule, ...]:
-        """The rule for one element; itself a loop, if its elements are arrays."""
-        elements: dict[Expr, Expr] = {source: _element(self.views[source], at) for source, at in indices.items()}
-        value = substituted(self.rule.value, elements, number)
-        rule = replace(self.rule, place=_element(self.target, [number]), value=value)
-        return self.expanded(rule, level)
+    def moved(self, indices: dict[Path | Call, list[Expr]], number: Expr, level: int, behind: Expr = ZERO) -> tuple[Rule, ...]:
+        """The rule for one element, ``behind`` so many others; itself a loop, if its elements are arrays, or the bytes of a number."""
+        elements: dict[Expr, Expr] = {source: element_at(self.views[source], at) for source, at in indices.items()}
+        value, first = substituted(self.rule.value, elements, number), plus(behind, times(number, self.width))
+        if self.packed is None:
+            return self.expanded(replace(self.rule, place=_place(self.target, [first]), value=value), level)
+        name = self.variable(level)
+        rule = replace(self.rule, place=_place(self.target, [plus(first, Name(name))]), value=byte_of(value, Name(name), self.packed))
+        return (For(name, ZERO, self.width, self.expanded(rule, level + 1), self.rule.span),)
+
+
+def byte_of(value: Expr, number: Expr, packed: NumberType) -> Expr:
+    """A byte of a number as its type has it, counted from the first that is written."""
+    last = Binary("-", Literal(SIZES[packed.name] - 1), number, value.span)
+    big = packed.big
+    which = (
+        number if big == Literal(value=False) else last if big == Literal(value=True) else Choice(((big, last),), number, span=value.span)
+    )
+    return Call("byte", (Call(packed.name, (value,), value.span), which), value.span)
 
 
 def _is_short(axis: Axis) -> bool:
@@ -132,7 +153,7 @@ def _is_short(axis: Axis) -> bool:
     return axis.listed is not None or (isinstance(axis.count, Literal) and int(axis.count.value) <= SHORT)
 
 
-def element_of(view: View, number: Expr) -> Path:
+def element_of(view: View, number: Expr) -> Expr:
     """The element of a number, of a view that is in one order.
 
     Raises
@@ -141,17 +162,29 @@ def element_of(view: View, number: Expr) -> Path:
     """
     if len(view.axes) != 1 or view.axes[0].listed is not None:
         raise LayoutError(words.asked_in_order(view.array.span))
-    return _element(view, [number])
+    return element_at(view, [number])
 
 
-def _element(view: View, indices: list[Expr]) -> Path:
-    """One element of a view. What the outer loops add comes first, so that it can be added outside of the inner ones."""
+def element_at(view: View, indices: list[Expr]) -> Expr:
+    """One element of a view: a field, or the number that begins at a byte."""
+    if view.number is None:
+        return _place(view, indices)
+    return Call(f"{view.number.name}_at", (view.array, _at(view, indices), view.number.big), view.array.span)
+
+
+def _place(view: View, indices: list[Expr]) -> Path:
+    """The place of an element of a view."""
+    return replace(view.array, steps=(*view.array.steps, Index(_at(view, indices), view.array.span), *view.rest))
+
+
+def _at(view: View, indices: list[Expr]) -> Expr:
+    """The number of an element. What the outer loops add comes first, so that it can be added outside of the inner ones."""
     parts = [(axis, _listed(axis, number)) for axis, number in zip(view.axes, indices, strict=True)]
     (axis, number), *rest = sorted(parts, key=lambda part: _is_short(part[0]))
     at = minus(view.first, number) if axis.step == Literal(-1) else plus(times(number, axis.step), view.first)
     for axis, number in rest:
         at = minus(at, number) if axis.step == Literal(-1) else plus(at, times(number, axis.step))
-    return replace(view.array, steps=(*view.array.steps, Index(at, view.array.span), *view.rest))
+    return at
 
 
 def _listed(axis: Axis, number: Expr) -> Expr:

@@ -12,9 +12,9 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import layouts as words
-from rosetta_jit.language.arrays.counts import LayoutError, times
+from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, PADDED, view_of
+from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, number_type, view_of
 from rosetta_jit.language.arrays.parts import has_each, is_many, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
 from rosetta_jit.language.limits import MAX_MADE
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.language.arrays.element_loops import Padding
-    from rosetta_jit.language.arrays.layouts import View
+    from rosetta_jit.language.arrays.layouts import NumberType, View
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Assignment, Rule
@@ -131,26 +131,29 @@ class _Expansion:
 
     def loops(self, rule: Assignment, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
         value, padding = _padded(rule.value)
-        sources = [_whole(value)] if whole or padding else list(dict.fromkeys(sources_in(value)))
+        value, packed = _packed(value)
+        is_whole = isinstance(value, Path) if packed else whole or padding
+        sources = [_whole(value)] if is_whole else list(dict.fromkeys(sources_in(value)))
         views = {source: view_of(source) for source in sources}
         place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
         target = view_of(place)
         if isinstance(self.type_of(target.array), Bool | Enum | Float | Int | Struct):
             raise LayoutError(words.one_value(rule.place.span))
-        given = [times(padding[0], padding[2])] if padding else [view.total for view in views.values()]
+        width = ONE if packed is None else packed.size
+        given = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
         before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
         number, counted = self.counted(rule, target, given, lengths)
         before += counted
         if padding:
-            before += _unless_equal(next(iter(views.values())).total, times(padding[0], padding[1]), rule.span)
+            before += _unless_equal(times(next(iter(views.values())).total, width), times(padding[0], padding[1]), rule.span)
 
         def expanded(element: Assignment, level: int) -> tuple[Rule, ...]:
             if next(self.made) > MAX_MADE:
                 raise LayoutError(words.too_many_rules(rule.span, MAX_MADE))
             return self.block((element,), lengths, level)
 
-        moves = Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded)
+        moves = Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded, packed)
         return (*before, *moves.rules())
 
     def counted(self, rule: Assignment, target: View, given: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
@@ -263,6 +266,15 @@ def _rounds(loop: For[Rule, Expr]) -> object:
     steps = loop.body[0].place.steps if loop.body and isinstance(loop.body[0], Assign) else ()
     number = next((number for number, step in enumerate(steps) if step == Index(Name(loop.variable))), None)
     return loop if number is None else (loop.start, loop.stop, steps[:number])
+
+
+def _packed(value: Expr) -> tuple[Expr, NumberType | None]:
+    """The numbers of which a value is the bytes, and their type."""
+    if not isinstance(value, Call) or value.function != NUMBER_BYTES:
+        return value, None
+    if not 2 <= len(value.arguments) <= 3:
+        raise LayoutError(words.arguments(value.span, NUMBER_BYTES, *ARGUMENTS[NUMBER_BYTES], len(value.arguments)))
+    return value.arguments[0], number_type(value)
 
 
 def _padded(value: Expr) -> tuple[Expr, Padding | None]:

@@ -16,6 +16,10 @@ another order. All numbers are expressions of the mapping, computed when the ker
 | `interleaved(a, c, k)`            | side by side; `c` channels of `k` lay one after another  | `planar(b, c, k)`                 |
 | `rows(a, n, size, stride)`        | `n` rows of `size` that begin `stride` apart, end to end | `padded_rows(b, n, size, stride)` |
 | `padded_rows(a, n, size, stride)` | `n` rows, with zeros from `size` to `stride` behind each | `rows(b, n, size, stride)`        |
+| `numbers(a, float32, big)`        | the numbers whose bytes these are                        | `number_bytes(b, float32, big)`   |
+| `number_bytes(a, float32, big)`   | the bytes of numbers (`language.arrays.number_bytes`)    | `numbers(b, float32, big)`        |
+| `upper_triangle(a, n)`            | of `n` rows of `n`, what stands in or right of the diagonal | `symmetric(b, n)`              |
+| `symmetric(a, n)`                 | `n` rows of `n` that are the same as its columns         | `upper_triangle(b, n)`            |
 """
 
 from __future__ import annotations
@@ -28,13 +32,14 @@ from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, ZERO, LayoutError, folded, minus, over, plus, times
 from rosetta_jit.language.folding import folded as literal
 from rosetta_jit.language.limits import MAX_LISTED
-from rosetta_jit.model.expr import Binary, Call, Each, Len, List, Literal, Path, Pick, Slice
+from rosetta_jit.model.expr import Binary, Call, Each, Len, List, Literal, Name, Path, Pick, Slice
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr, Step
 
 PADDED = "padded_rows"
+NUMBERS, NUMBER_BYTES = "numbers", "number_bytes"
 ARGUMENTS: dict[str, tuple[int, int]] = {
     "reversed": (1, 2),
     "permuted": (2, 2),
@@ -43,11 +48,24 @@ ARGUMENTS: dict[str, tuple[int, int]] = {
     "interleaved": (2, 3),
     "rows": (4, 4),
     PADDED: (4, 4),
+    NUMBERS: (2, 3),
+    NUMBER_BYTES: (2, 3),
+    "upper_triangle": (2, 2),
+    "symmetric": (2, 2),
 }
 """The functions of arrays, and how many arguments each takes, the array included."""
 
-OPPOSITE = {"planar": "interleaved", "interleaved": "planar", "rows": PADDED, PADDED: "rows"}
-KEEP_LENGTH = frozenset(ARGUMENTS) - {"rows", PADDED}
+OPPOSITE = {
+    "planar": "interleaved",
+    "interleaved": "planar",
+    "rows": PADDED,
+    PADDED: "rows",
+    NUMBERS: NUMBER_BYTES,
+    NUMBER_BYTES: NUMBERS,
+    "upper_triangle": "symmetric",
+    "symmetric": "upper_triangle",
+}
+KEEP_LENGTH = frozenset(("reversed", "permuted", "transposed", "planar", "interleaved"))
 """Functions that give an array as long as theirs."""
 
 
@@ -61,14 +79,31 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
+class NumberType:
+    """The type of numbers that lie in bytes; the high byte of each comes first where the condition ``big`` holds."""
+
+    name: str
+    big: Expr
+
+    @property
+    def size(self) -> Literal:
+        """How many bytes each number has."""
+        return Literal(SIZES[self.name])
+
+
+@dataclass(frozen=True, slots=True)
 class View:
-    """Elements of an array in some order, and the steps that follow each. ``refused`` is what must not hold, and why."""
+    """Elements of an array in some order, and the steps that follow each. ``refused`` is what must not hold, and why.
+
+    Where the elements are numbers within an array of bytes, ``number`` is their type, and an element begins at the byte that the axes say.
+    """
 
     array: Path
     axes: tuple[Axis, ...]
     first: Expr = ZERO
     rest: tuple[Step, ...] = ()
     refused: tuple[tuple[Expr, str], ...] = ()
+    number: NumberType | None = None
 
     @property
     def total(self) -> Expr:
@@ -93,7 +128,7 @@ def view_of(expr: Path | Call) -> View:
     array, *arguments = expr.arguments
     if not isinstance(array, Path | Call):
         raise LayoutError(words.not_an_array(array.span))
-    for argument in arguments:
+    for argument in () if expr.function == NUMBERS else arguments:
         if isinstance(argument, Literal) and (type(argument.value) is not int or argument.value < 1):
             raise LayoutError(words.no_size(argument.span))
     return _called(expr, view_of(array), arguments)
@@ -152,7 +187,7 @@ def _picked(view: View, indices: tuple[int, ...], step: Pick) -> View:
     return replace(view, axes=(_listed(indices, axis.step, step),))
 
 
-def _listed(indices: tuple[int, ...], step: Expr, where: Pick | List) -> Axis:
+def _listed(indices: tuple[int, ...], step: Expr, where: Pick | List | Call) -> Axis:
     if len(indices) > MAX_LISTED:
         raise LayoutError(words.long_list(where.span, MAX_LISTED))
     return Axis(Literal(len(indices)), step, indices)
@@ -174,6 +209,12 @@ def _called(call: Call, view: View, arguments: list[Expr]) -> View:
             return _transposed(view, rows, columns, *(size or [ONE]), call=call)
         case "rows", [count, size, stride]:
             return _rows(view, count, size, stride, call)
+        case "numbers", _:
+            return _numbers(view, number_type(call), call)
+        case "upper_triangle" | "symmetric" as function, [size]:
+            return _triangle(view, size, call, is_upper=function == "upper_triangle")
+        case "number_bytes", _:
+            raise LayoutError(words.bytes_inside(call.span))
         case _:
             raise LayoutError(words.padded_inside(call.span))
 
@@ -236,6 +277,45 @@ def _rows(view: View, count: Expr, size: Expr, stride: Expr, call: Call) -> View
     return replace(view, axes=axes, refused=(*view.refused, *refused))
 
 
+SIZES = {f"{kind}{bits}": bits // 8 for kind in ("int", "uint", "float") for bits in (8, 16, 32, 64) if kind != "float" or bits >= 32}
+"""The types of numbers that lie in bytes, and how many bytes each has."""
+
+
+def number_type(call: Call) -> NumberType:
+    """The type that `numbers` or `number_bytes` names."""
+    _, name, *big = call.arguments
+    if not isinstance(name, Name) or name.name not in SIZES:
+        raise LayoutError(words.no_number_type(name.span, SIZES))
+    return NumberType(name.name, big[0] if big else Literal(value=False, span=call.span))
+
+
+def _numbers(view: View, number: NumberType, call: Call) -> View:
+    """Each group of so many bytes as one element, which begins where the group does."""
+    *outer, last = view.axes
+    if view.number is not None or last.listed is not None or last.step != ONE or view.rest:
+        raise LayoutError(words.scattered_bytes(call.span))
+    return replace(view, axes=(*outer, Axis(over(last.count, number.size, call), number.size)), number=number)
+
+
+def _triangle(view: View, size: Expr, call: Call, *, is_upper: bool) -> View:
+    """The elements of a triangle of a square, row by row; or of the square that has it twice."""
+    axis = _flat(view, call)
+    if not isinstance(size, Literal):
+        raise LayoutError(words.open_triangle(size.span))
+    count = range(int(size.value))
+    places = [(row, column) for row in count for column in count if row <= column]
+    if is_upper:
+        numbers = tuple(row * len(count) + column for row, column in places)
+        total = len(count) ** 2
+    else:
+        numbers = tuple(places.index((min(row, column), max(row, column))) for row in count for column in count)
+        total = len(places)
+    wrong = (
+        () if axis.count == Literal(total) else ((Binary("!=", axis.count, Literal(total), call.span), f"there are not {total} elements"),)
+    )
+    return replace(view, axes=(_listed(numbers, axis.step, call),), refused=(*view.refused, *wrong))
+
+
 def put_back(call: Call, value: Expr) -> Call:
     """The function that puts the elements back."""
     _, *arguments = call.arguments
@@ -248,6 +328,18 @@ def put_back(call: Call, value: Expr) -> Call:
             return Call(call.function, (value, List(tuple(found), order.span)), call.span)
         case _:
             return Call(OPPOSITE.get(call.function, call.function), (value, *arguments), call.span)
+
+
+def rounded_bytes(expr: Expr) -> Expr:
+    """Bytes of integers that are computed in floats, each rounded to the nearest; any other expression as it is."""
+    match expr:
+        case Call(function, (value, Name(name), *_)) if function == NUMBER_BYTES and not name.startswith("float"):
+            nearest = Call(name, (value, Name("round", value.span)), value.span)
+            return replace(expr, arguments=(nearest, *expr.arguments[1:]))
+        case Call(function, (array, *_)) if function in ARGUMENTS:
+            return replace(expr, arguments=(rounded_bytes(array), *expr.arguments[1:]))
+        case _:
+            return expr
 
 
 def _flat(view: View, call: Call) -> Axis:

@@ -22,7 +22,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back
+from rosetta_jit.language.arrays.layouts import ARGUMENTS, put_back, rounded_bytes
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
 from rosetta_jit.language.groups import arguments_of, component, function_of
@@ -81,12 +81,23 @@ def solved(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
     NoInverseError
     """
     found = solve(expr, value, type_of)
+    if any(function_of(part) is not None for part in parts(expr)):
+        return nearest(found, type_of)
     if isinstance(found.place, Len) or not _may_round(expr):
         return found
     type_ = type_of(found.place)
     if not isinstance(type_, Int):
-        return found
+        return Solution(found.place, rounded_bytes(found.value))
     return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, type_, expr.span))
+
+
+def nearest(solution: Solution, type_of: TypeOf) -> Solution:
+    """A field that a function of several values gives: an integer is the nearest one."""
+    type_ = type_of(solution.place)
+    if not isinstance(type_, Int):
+        return solution
+    value, span = solution.value, solution.value.span
+    return Solution(solution.place, Call(f"{'' if type_.signed else 'u'}int{type_.bits}", (value, Name("round", span)), span))
 
 
 def _may_round(expr: Expr) -> bool:

@@ -20,7 +20,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, solve, undone_group
+from rosetta_jit.language.both_ways.inverse import CONVERSIONS, NoInverseError, Solution, fields_in, nearest, solve, undone_group
 from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import functions, written
 from rosetta_jit.language.groups import component, function_of
@@ -69,6 +69,8 @@ def part(expr: Expr, value: Expr, type_of: TypeOf) -> Parted:
     NoInverseError
     """
     found = _part(expr, value, type_of)
+    if any(function_of(each) is not None for each in parts(expr)):
+        found = Parted(tuple(nearest(each, type_of) for each in found.settings), found.digits)
     if len({setting.place for setting in found.settings}) < len(found.settings):
         raise NoInverseError(expr, "a field stands in it twice")
     return found

@@ -7,10 +7,11 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.arrays.counts import LayoutError
+from rosetta_jit.language.arrays.element_loops import element_at
 from rosetta_jit.language.arrays.layouts import view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
 from rosetta_jit.language.resolve.expressions import type_expr
-from rosetta_jit.model.expr import Index, Literal
+from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.mapping import For, When
 
 if TYPE_CHECKING:
@@ -47,9 +48,7 @@ def _of_first(expr: Expr) -> Expr:
         views = {source: view_of(source) for source in sources_in(expr)}
     except LayoutError:
         return expr
-    first: dict[Expr, Expr] = {
-        source: replace(view.array, steps=(*view.array.steps, Index(FIRST, source.span), *view.rest)) for source, view in views.items()
-    }
+    first: dict[Expr, Expr] = {source: element_at(view, [FIRST] * len(view.axes)) for source, view in views.items()}
     return substituted(expr, first, FIRST)
 
 
