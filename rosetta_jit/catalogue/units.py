@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten, warning
+from rosetta_jit.catalogue.resolve import written_at
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -67,7 +68,20 @@ def wrong_factor(span: Span | None, factor: float, source: str, target: str, rig
 def no_float(span: Span | None, found: str) -> Diagnostic:
     """Something else than a float whose unit has to change."""
     message = f"the units differ, and {found} is no float that could be converted"
-    return error("unit", message, span, help_="convert by hand: an integer with a rule, an array element by element")
+    return error("unit", message, span, help_="convert element by element: `.a[] = .b[]`, with a word where they are rounded")
+
+
+def wide_integer(span: Span | None, found: str) -> Diagnostic:
+    """An integer of more bits than the float has in which units are converted."""
+    message = f"the units differ, and float64, in which they are converted, does not hold every {found}"
+    return error("unit", message, span, help_=f"say that it may be rounded: `float64({written_at(span)})`")
+
+
+def fraction_of_unit(span: Span | None, known: str, wanted: str, target: str) -> Diagnostic:
+    """An integer that may be a fraction in the unit of its place."""
+    message = f"a whole number of {shorten(known)} need not be one of {shorten(wanted)}"
+    help_ = f"say how it is rounded: `{target}(float64({written_at(span)}), round)`, or `truncate`"
+    return error("unit", message, span, help_=help_)
 
 
 def one_sided(span: Span | None, unit: str, *, is_source: bool) -> Diagnostic:

@@ -66,9 +66,9 @@ def test_mistakes(tmp_path, source, target, rule, code):
     assert [problem.code for problem in error.value.diagnostics] == [code]
 
 
-def test_integers_are_converted_by_hand(tmp_path):
+def test_an_integer_that_may_become_a_fraction_takes_a_word(tmp_path):
     path = files(tmp_path, "mm", "m", "unpack-rules:\n  .y = .x\n", (":int", ":int"))
-    with pytest.raises(rj.MappingError, match="no float"):
+    with pytest.raises(rj.MappingError, match="a whole number of mm need not be one of m"):
         rj.check(path)
 
 

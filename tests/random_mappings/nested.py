@@ -263,8 +263,20 @@ def unit(relations: Relations, name: str) -> Part:
     is_array = not relations.is_counted and rng.random() < 0.4
     kind: Kind = Array(Scalar("float64")) if is_array else Scalar("float64")
     units = (f"Src.{name}: {origin}", f"Dst.{name}: {aim}")
+    if not is_array and rng.random() < 0.5:
+        return integer_units(relations, name, units, int(factor))
     function = (lambda a: [x * factor for x in a]) if is_array else (lambda x: x * factor)
     return Part({name: kind}, {name: kind}, f".{name} <-> .{name}\n", lambda fields: {name: function(fields[name])}, units=units)
+
+
+def integer_units(relations: Relations, name: str, units: tuple[str, ...], factor: int) -> Part:
+    """An integer that becomes a float, or another integer, by a whole factor."""
+    rng = relations.rng
+    kinds = {name: Scalar("int32")}
+    if rng.random() < 0.5:
+        function: Callable[[Values], Values] = lambda fields: {name: np.float64(fields[name]) * factor}
+        return Part(kinds, {name: Scalar("float64")}, f".{name} <-> .{name}\n", function, units=units)
+    return Part(kinds, kinds, f".{name} <-> .{name}\n", lambda fields: {name: fits(fields[name] * factor, "int32")}, units=units)
 
 
 def widened(relations: Relations, name: str) -> Part:

@@ -21,6 +21,10 @@ WHOLE = {
 """What becomes of a float that is made an integer."""
 
 
+FRACTION = 1e-6
+"""A factor farther from a whole number than that was meant to be none."""
+
+
 def as_whole(value: Value, rule: str) -> Value:
     """A float as an integer."""
     if not isinstance(value.source, Int):
@@ -34,6 +38,8 @@ def as_whole(value: Value, rule: str) -> Value:
     largest = float(1 << value.source.bits)
     off = sum(error.unit * (largest + error.floor) for error in value.errors) * value.size
     near = near_whole(value)
+    if not value.turns and abs(value.slope - round(value.slope)) > FRACTION and rule == "round":
+        raise LostError(WHOLE[rule])
     if near is None or off + near[1] >= 0.25 or largest > value.limit:
         raise LostError("large integers are rounded to a float")
     if rule == "exact":

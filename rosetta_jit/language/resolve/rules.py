@@ -284,7 +284,7 @@ class _Block:
     def assigned(self, place: Place, value: Expr | None, rule: model.Assignment, scope: Scope) -> Rule | None:
         """The rule that sets a place to a value, which becomes of its type."""
         if value is not None:
-            value = in_unit(value, place, scope)
+            value = in_unit(value, place, scope, packs=rule.by == "checked")
         if value is not None and rule.by == "checked":
             value = fitted(value, place.type)
         elif value is not None and scope.rounds and is_single(place.type) and same(value.type, FLOAT64):

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.language.conversions import FLOAT64, convert, describe
 from rosetta_jit.language.function import functions
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Const, Convert, Nearest, Unary
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Nearest, Unary
 from rosetta_jit.language.units.dimensions import conversion
+from rosetta_jit.language.units.numbers import exactly, nearest, scaled, scaled_before_rounding
 from rosetta_jit.language.units.places import Mixed, pairs_in_step, unit_at
 from rosetta_jit.model.types import Enum, Float, Int
 
@@ -25,16 +26,17 @@ if TYPE_CHECKING:
     from rosetta_jit.language.function import Function
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Expr, Place
+    from rosetta_jit.language.units.numbers import Factors
     from rosetta_jit.language.units.places import Unit
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
-Factors = tuple[float, float]
-"""What a value is multiplied by, and what is added then."""
 
+def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> Expr | None:
+    """The value in the unit of its place; None, and reported, where that cannot be.
 
-def in_unit(value: Expr, place: Place, scope: Scope) -> Expr | None:
-    """The value in the unit of its place; None, and reported, where that cannot be."""
+    ``packs`` is whether a rule for both directions, turned round, sets the place.
+    """
     if not isinstance(place.type, Int | Float | Enum):
         return value
     known, wanted = unit_of(value), unit_at(place)
@@ -51,10 +53,32 @@ def in_unit(value: Expr, place: Place, scope: Scope) -> Expr | None:
     if factors[1] and _is_computed(value):
         scope.problems.append(words.offset(value.span, known, wanted))
         return None
-    converted = scaled(value, place.type, factors)
+    converted = _converted(value, place.type, (known, wanted), factors, packs=packs)
     if converted is None:
-        scope.problems.append(words.no_float(value.span, describe(value.type if convert(value, FLOAT64) is None else place.type)))
+        scope.problems.append(_not_converted(value, place.type, known, wanted))
     return converted
+
+
+def _converted(value: Expr, target: Type, units: tuple[str, str], factors: Factors, *, packs: bool) -> Expr | None:
+    """A number in another unit; None where that takes a word."""
+    if not isinstance(target, Int):
+        return scaled(value, target, factors)
+    if isinstance(value.type, Int):
+        return scaled_before_rounding(value, factors) or exactly(value, target, factors, packs=packs)
+    back = conversion(units[1], units[0])
+    if packs and isinstance(value, Access) and isinstance(back, tuple):
+        return nearest(value, target, factors, back)
+    return scaled(value, FLOAT64, factors)  # which needs a word, as every float does
+
+
+def _not_converted(value: Expr, target: Type, known: str, wanted: str) -> Diagnostic:
+    """Why a number is not converted."""
+    source = describe(value.type)
+    if isinstance(value.type, Int) and isinstance(target, Float):
+        return words.wide_integer(value.span, source)
+    if isinstance(value.type, Int) and isinstance(target, Int):
+        return words.fraction_of_unit(value.span, known, wanted, describe(target))
+    return words.no_float(value.span, source if convert(value, FLOAT64) is None else describe(target))
 
 
 def factors_between(known: str, wanted: str, span: Span | None, problems: list[Diagnostic]) -> Factors | None:
@@ -66,18 +90,6 @@ def factors_between(known: str, wanted: str, span: Span | None, problems: list[D
     if factors is None:
         problems.append(words.incompatible(span, known, wanted))
     return factors
-
-
-def scaled(value: Expr, target: Type, factors: Factors) -> Expr | None:
-    """The value times the factor, plus the offset, in float64; None where one of the two is no float."""
-    wide = convert(value, FLOAT64)
-    if wide is None or not isinstance(target, Float):
-        return None
-    factor, offset = factors
-    result: Expr = Binary("*", wide, Const(factor, FLOAT64), FLOAT64, value.span)
-    if offset:
-        result = Binary("+", result, Const(offset, FLOAT64), FLOAT64, value.span)
-    return result if target.bits == FLOAT64.bits else Convert(result, target, "nearest", value.span)
 
 
 def unit_of(value: Expr) -> Unit:

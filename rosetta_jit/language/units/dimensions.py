@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"
+SCALE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?(?:[eE][+-]?[0-9]{1,2})?) ?\*? ?(?=[A-Za-z_°µΩ])")
+"""How many of a unit one is: `1e-7 degree`."""
+
 UNIT = rf"(1 ?/ ?)?{WORD}( ?[*/·] ?{WORD}| {WORD})*"
 """What is given to the library that knows units: words with small powers, multiplied and divided."""
 
@@ -73,8 +77,21 @@ def conversion(source: str, target: str, *, same: bool = True) -> tuple[float, f
     """
     if same and source == target:
         return 1.0, 0.0
-    unknown = next((unit for unit in (source, target) if len(unit) > MAX_UNIT or not re.fullmatch(UNIT, unit)), None)
-    return _conversion(source, target) if unknown is None else unknown
+    (many, one), (parts, other) = _scale(source), _scale(target)
+    unknown = next((unit for unit in (source, target) if len(unit) > MAX_UNIT), None)
+    unknown = unknown or next((unit for unit in (one, other) if not re.fullmatch(UNIT, unit)), None)
+    if unknown is not None or not many or not parts:
+        return unknown
+    found = _conversion(one, other)
+    if not isinstance(found, tuple) or many == parts == 1:
+        return found
+    return float(many * Fraction(found[0]) / parts), float(Fraction(found[1]) / parts)
+
+
+def _scale(unit: str) -> tuple[Fraction, str]:
+    """How many of a unit are meant, and which one."""
+    found = SCALE.match(unit)
+    return (Fraction(1), unit) if found is None else (Fraction(found[1]), unit[found.end() :])
 
 
 def _conversion(source: str, target: str) -> tuple[float, float] | str | None:

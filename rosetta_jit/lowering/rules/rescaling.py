@@ -10,7 +10,7 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.units.conversion import scaled
+from rosetta_jit.language.units.numbers import scaled
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.types import Array, Bool, Enum, Float, Int
 
