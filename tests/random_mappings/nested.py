@@ -274,8 +274,8 @@ def integer_units(relations: Relations, name: str, units: tuple[str, ...], facto
     rng = relations.rng
     kinds = {name: Scalar("int32")}
     if rng.random() < 0.5:
-        function: Callable[[Values], Values] = lambda fields: {name: np.float64(fields[name]) * factor}
-        return Part(kinds, {name: Scalar("float64")}, f".{name} <-> .{name}\n", function, units=units)
+        scaled = Scalar("float64")
+        return Part(kinds, {name: scaled}, f".{name} <-> .{name}\n", lambda fields: {name: np.float64(fields[name]) * factor}, units=units)
     return Part(kinds, kinds, f".{name} <-> .{name}\n", lambda fields: {name: fits(fields[name] * factor, "int32")}, units=units)
 
 
