@@ -46,7 +46,7 @@ class Scope:
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
     ``suffix`` tells its loop variables from those around. ``values`` are the types of what else has a name:
     `model.expr.NEAREST`, and what the definitions of a function of several values name.
-    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set.
+    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set, ``is_old`` that it is one of 2012.
     """
 
     messages: Mapping[Side, Message]
@@ -62,6 +62,7 @@ class Scope:
     suffix: str = ""
     values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])
     rounds: bool = False
+    is_old: bool = False
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))

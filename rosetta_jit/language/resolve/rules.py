@@ -31,7 +31,8 @@ from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.nested import nest
-from rosetta_jit.language.resolve.rest import defaulted, ignored
+from rosetta_jit.language.resolve.overriding import last_ones
+from rosetta_jit.language.resolve.rest import defaulted, elements_filled, ignored
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
 from rosetta_jit.language.resolve.types_of import types_of
 from rosetta_jit.language.scope import Broken, Message, Scope, enums_of, resolve_path
@@ -125,7 +126,7 @@ def _scope(messages: dict[Side, Message], mapping: model.Mapping, others: Others
     holder, wire = (messages[side].schema for side in ("holder", "wire"))
     enums, constants = enums_of(holder, wire), constants_of(*((holder,) if holder is wire else (holder, wire)))
     functions = signatures((mapping, *others.mappings()), problems)
-    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=mapping.rounds)
+    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=mapping.rounds, is_old=mapping.is_old)
 
 
 def _named(schema: Schema, name: str) -> Type | None:
@@ -155,7 +156,11 @@ class _Block:
         """All rules of one mapping for a direction."""
         written = tuple(rule for rule in rules if not isinstance(rule, model.Rest))
         found = self.rules(elementwise(numbered(written, scope), scope, self.broken), scope)
-        return (*found, *(made for rule in rules if isinstance(rule, model.Rest) for made in self.rest(rule, found, scope)))
+        rests = [rule for rule in rules if isinstance(rule, model.Rest)]
+        if scope.is_old and rules:
+            found = elements_filled(last_ones(found, scope), scope)
+            rests += [] if any(rest.word == "default" for rest in rests) else [model.Rest("default", rules[0].span, written=False)]
+        return (*found, *(made for rest in rests for made in self.rest(rest, found, scope)))
 
     def rest(self, rule: model.Rest, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
         """What the fields that no other rule reads, or sets, are said to be."""
@@ -287,8 +292,8 @@ class _Block:
             value = in_unit(value, place, scope, packs=rule.by == "checked")
         if value is not None and rule.by == "checked":
             value = fitted(value, place.type)
-        elif value is not None and scope.rounds and is_single(place.type) and same(value.type, FLOAT64):
-            value = Convert(value, place.type, "nearest", value.span)
+        elif value is not None and scope.rounds:
+            value = _rounded(value, place, scope)
         fitting = None if value is None else fit(value, place, scope)
         if fitting is None:
             self.broken.append(field_names(place))
@@ -336,6 +341,14 @@ def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | N
     block = _Block()
     typed = block.whole(rules, scope)
     return TypedRules(typed, tuple(block.broken))
+
+
+def _rounded(value: Expr, place: Place, scope: Scope) -> Expr:
+    """A value in a mapping that says so: a float64 is rounded where a float32 is set."""
+    if isinstance(value, Const) or not (is_single(place.type) and same(value.type, FLOAT64)):
+        return value
+    scope.problems.extend([words.rounded_silently(value.span)] if scope.is_old else [])
+    return Convert(value, place.type, "nearest", value.span)
 
 
 def _by_case(place: Place, value: Expr, span: Span | None) -> Rule:
