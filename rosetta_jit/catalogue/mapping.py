@@ -162,6 +162,12 @@ def rounding_type(span: Span, name: str) -> Diagnostic:
     return error("rounding", f"nothing is rounded to {shorten(name)}", span, "not a type to round to", help_="write `rounding: float32`")
 
 
+def unknown_edition(span: Span, year: str) -> Diagnostic:
+    """An edition of the language that there is not."""
+    help_ = "write `edition: 2012`, or leave it out: mappings of today have none"
+    return error("edition", f"there is no edition {shorten(year)} of the language", span, "not known", help_=help_)
+
+
 def limit_too_large(span: Span, most: int) -> Diagnostic:
     """Bytes that no machine has."""
     return error("number", f"a limit is at most {most} bytes", span, "too large", help_="write how many bytes a field may have in a holder")

@@ -348,6 +348,19 @@ def rest(span: Span | None, word: str, direction: str, fields: Sequence[str]) ->
     return note("rest", f"{direction} does not {what} {count}", span, f"`{word}` of each", notes=(f"they are: {shown}{more}",))
 
 
+def overridden(span: Span | None, place: str, first: Span | None) -> Diagnostic:
+    """A place that an earlier rule sets, too, in a mapping of 2012."""
+    message = f"`{shorten(place)}` is set before, too: this rule counts"
+    help_ = "leave the other rule out in a mapping of today"
+    return note("overridden", message, span, "the later one", notes=(f"set before at {first}",) if first else (), help_=help_)
+
+
+def rounded_silently(span: Span | None) -> Diagnostic:
+    """A float64 that becomes a float32 without a word, in a mapping of 2012."""
+    help_ = f"write `float32({written_at(span)})` in a mapping of today"
+    return note("rounded", "a float64 becomes a float32", span, "rounded to the nearest", help_=help_)
+
+
 def rest_in_block(span: Span | None, word: str) -> Diagnostic:
     """`ignore rest` in a block that does not always run."""
     help_ = "write it beside the `when` or the loop: it is about all rules of the mapping"

@@ -46,8 +46,8 @@ class Scope:
     Within a mapping that another one uses, a message is a part of that one's: ``bases`` are the places where its two messages lie, and
     ``suffix`` tells its loop variables from those around. ``values`` are the types of what else has a name:
     `model.expr.NEAREST`, and what the definitions of a function of several values name.
-    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set. ``state`` has the
-    direction's state variables.
+    ``rounds`` is whether the mapping says that float64 is rounded where float32 is set, ``is_old`` that it is one of 2012.
+    ``state`` has the direction's state variables.
     """
 
     messages: Mapping[Side, Message]
@@ -64,6 +64,7 @@ class Scope:
     values: Mapping[str, Type] = field(default_factory=dict["str", "Type"])
     rounds: bool = False
     state: Mapping[str, StateVariable] = field(default_factory=dict["str", "StateVariable"])
+    is_old: bool = False
 
     def inside(self, variable: str) -> Scope:
         return replace(self, locals=(*self.locals, variable))

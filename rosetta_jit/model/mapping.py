@@ -99,10 +99,14 @@ class Relation:
 
 @dataclass(frozen=True, slots=True)
 class Rest:
-    """``ignore rest``: it is meant that no rule reads what none reads; ``default rest``, that no rule sets what none sets."""
+    """``ignore rest``: it is meant that no rule reads what none reads; ``default rest``, that no rule sets what none sets.
+
+    One that is not ``written`` follows from the edition of the mapping.
+    """
 
     word: OneOf["ignore", "default"]
     span: Span | None = field(default=None, compare=False, repr=False)
+    written: bool = field(default=True, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +181,7 @@ class Mapping:
     """What a mapping file says. None as rules means that the block is missing, ``()`` that it is empty.
 
     ``limit`` is how many bytes of a holder's lane a message may ask for whatever its own size, where the mapping says so. ``rounds`` is
-    whether float64 becomes float32 without a word in each rule.
+    whether float64 becomes float32 without a word in each rule, ``is_old`` whether it is read as mappings of 2012 were.
     """
 
     source: Source
@@ -194,3 +198,4 @@ class Mapping:
     limit: int | None = None
     rounds: bool = False
     state: tuple[State, ...] = ()
+    is_old: bool = False

@@ -94,6 +94,7 @@ def _recovery() -> Recovery:
         "WIRE_SCHEMA",
         "LIMIT",
         "ROUNDING",
+        "EDITION",
         *BLOCKS,
         "END",
     )
@@ -135,6 +136,7 @@ class _Reader:
         statements = [child for child in tree.children if isinstance(child, Tree)]
         holder, holder_span = self._type_name(statements, "data_holder", "data-holder")
         wire, wire_span = self._type_name(statements, "wire_schema", "wire-schema")
+        is_old = self._is_old(statements)
         mapping = Mapping(
             self.source,
             tuple(self._import(child) for child in statements if child.data == "import_file"),
@@ -148,8 +150,9 @@ class _Reader:
             tuple(self._function(child) for child in statements if child.data == "function"),
             tuple(read_parameter(child, self.writing) for child in statements if child.data == "parameter"),
             self._limit(statements),
-            self._rounds(statements),
+            self._rounds(statements) or is_old,
             tuple(read_state(child, self.writing) for child in statements if child.data == "state"),
+            is_old,
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
@@ -209,6 +212,16 @@ class _Reader:
         type_ = next(child for child in found.children if isinstance(child, Token) and child.type == "NAME")
         if type_ != "float32":
             self.problems.append(words.rounding_type(self._token_span(type_), str(type_)))
+        return True
+
+    def _is_old(self, statements: list[Tree]) -> bool:
+        """Whether the mapping says that it is one of 2012."""
+        found = self._only(statements, "edition", "edition")
+        if found is None:
+            return False
+        year = next(child for child in found.children if isinstance(child, Token) and child.type == "INTEGER")
+        if year != "2012":
+            self.problems.append(words.unknown_edition(self._token_span(year), str(year)))
         return True
 
     def _rules(self, statements: list[Tree], direction: str, context: Context) -> tuple[Rule, ...] | None:

@@ -191,5 +191,14 @@ def _inside(mapping: model.Mapping, side: Side, place: Place, origin: Place, sco
     assert isinstance(target, Struct)
     assert isinstance(source, Struct)
     messages: dict[Side, Message] = {side: Message(target, schema), other: Message(source, schema)}
-    inner = replace(scope, messages=messages, bases={side: place, other: origin}, target=side, locals=(), rounds=mapping.rounds, state={})
+    inner = replace(
+        scope,
+        messages=messages,
+        bases={side: place, other: origin},
+        target=side,
+        locals=(),
+        rounds=mapping.rounds,
+        is_old=mapping.is_old,
+        state={},
+    )
     return rules_of((mapping.unpack_rules if side == "holder" else mapping.pack_rules) or (), inner)

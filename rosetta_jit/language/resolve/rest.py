@@ -5,19 +5,21 @@ A note says which fields they are, so that a field which a schema gets later is 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import resolve as words
-from rosetta_jit.language.places import field_names, shown_names, value_inside
-from rosetta_jit.language.typed import FieldStep, Ignore, Place
+from rosetta_jit.language.limits import MAX_DEFAULTS
+from rosetta_jit.language.places import field_names, places_in, shown_names, shown_place, value_inside
+from rosetta_jit.language.typed import INT64, Assign, Const, FieldStep, Ignore, IndexStep, Place, SetLength
 from rosetta_jit.language.untouched import never_set, unread
 from rosetta_jit.model.expr import Member, Path
 from rosetta_jit.model.mapping import Default, Rest
-from rosetta_jit.model.types import Array, Struct, Union
+from rosetta_jit.model.types import Array, Bool, Float, Int, Struct, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.language.scope import Message, Scope
-    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.typed import Expr, Rule
     from rosetta_jit.language.untouched import Names
     from rosetta_jit.source import Span
 
@@ -41,10 +43,40 @@ def defaulted(rest: Rest, rules: tuple[Rule, ...], broken: list[Names], scope: S
     return [Default(Path(side, tuple(Member(name) for name in names[len(within) :]), rest.span), rest.span) for names in found]
 
 
+def elements_filled(rules: tuple[Rule, ...], scope: Scope) -> tuple[Rule, ...]:
+    """``edition: 2012``: with 0 in place of each number of an array of known length that no rule sets, where all others are named."""
+    return (*rules, *(made for rule in rules if isinstance(rule, SetLength) for made in _filled(rule, rules, scope)))
+
+
+def _filled(rule: SetLength[Place, Expr], rules: tuple[Rule, ...], scope: Scope) -> list[Rule]:
+    array, length = rule.place, rule.value
+    type_ = array.type.element if isinstance(array.type, Array) else None
+    if not isinstance(length, Const) or not isinstance(type_, Int | Float | Bool) or int(length.value) > MAX_DEFAULTS:
+        return []
+    size = len(array.steps)
+    inside = [place for place in places_in(rules) if len(place.steps) > size and place.steps[:size] == array.steps]
+    named = {step.index.value for place in inside if isinstance(step := place.steps[size], IndexStep) and isinstance(step.index, Const)}
+    if len(named) < len(inside):
+        return []  # what loops set is known to the checks alone
+    left = [number for number in range(int(length.value)) if number not in named]
+    if left:
+        shown = [shown_place((*array.steps, IndexStep(Const(number, INT64)))) for number in left]
+        scope.problems.append(words.rest(rule.span, "default", _direction(scope), shown))
+    zero = Const(value=False if isinstance(type_, Bool) else 0, type=type_, span=rule.span)
+    number = replace(zero, value=0.0) if isinstance(type_, Float) else zero
+    places = (Place(array.side, (*array.steps, IndexStep(Const(each, INT64))), type_, rule.span) for each in left)
+    return [Assign(place, number, rule.span) for place in places]
+
+
+def _direction(scope: Scope) -> str:
+    return "unpacking" if scope.target == "holder" else "packing"
+
+
 def _note(rest: Rest, found: list[Names], within: Names, scope: Scope) -> None:
     side = scope.origin if rest.word == "ignore" else scope.target
     shown = [shown_names(names[len(within) :], scope.messages[side]) for names in found]
-    scope.problems.append(words.rest(rest.span, rest.word, "unpacking" if scope.target == "holder" else "packing", shown))
+    if shown or rest.written:
+        scope.problems.append(words.rest(rest.span, rest.word, _direction(scope), shown))
 
 
 def _place(names: Names, base: Place, message: Message, span: Span | None) -> Place:

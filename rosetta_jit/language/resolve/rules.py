@@ -32,7 +32,8 @@ from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
 from rosetta_jit.language.resolve.nested import nest
-from rosetta_jit.language.resolve.rest import defaulted, ignored
+from rosetta_jit.language.resolve.overriding import last_ones
+from rosetta_jit.language.resolve.rest import defaulted, elements_filled, ignored
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
 from rosetta_jit.language.resolve.types_of import types_of
 from rosetta_jit.language.scope import Broken, Message, Scope, enums_of, resolve_path
@@ -130,7 +131,7 @@ def _scope(messages: dict[Side, Message], mapping: model.Mapping, others: Others
     holder, wire = (messages[side].schema for side in ("holder", "wire"))
     enums, constants = enums_of(holder, wire), constants_of(*((holder,) if holder is wire else (holder, wire)))
     functions = signatures((mapping, *others.mappings()), problems)
-    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=mapping.rounds)
+    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=mapping.rounds, is_old=mapping.is_old)
 
 
 def _named(schema: Schema, name: str) -> Type | None:
@@ -160,7 +161,11 @@ class _Block:
         """All rules of one mapping for a direction."""
         written = tuple(rule for rule in rules if not isinstance(rule, model.Rest))
         found = self.rules(elementwise(numbered(written, scope), scope, self.broken), scope)
-        return (*found, *(made for rule in rules if isinstance(rule, model.Rest) for made in self.rest(rule, found, scope)))
+        rests = [rule for rule in rules if isinstance(rule, model.Rest)]
+        if scope.is_old and rules:
+            found = elements_filled(last_ones(found, scope), scope)
+            rests += [] if any(rest.word == "default" for rest in rests) else [model.Rest("default", rules[0].span, written=False)]
+        return (*found, *(made for rest in rests for made in self.rest(rest, found, scope)))
 
     def rest(self, rule: model.Rest, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
         """What the fields that no other rule reads, or sets, are said to be."""
@@ -351,8 +356,10 @@ class _Block:
 
 def _rounded(value: Expr, target: Type, scope: Scope) -> Expr:
     """A float64 as a float32 is set to it, where the mapping says that it is rounded."""
-    is_rounded = scope.rounds and is_single(target) and same(value.type, FLOAT64)
-    return Convert(value, target, "nearest", value.span) if is_rounded else value
+    if not scope.rounds or isinstance(value, Const) or not (is_single(target) and same(value.type, FLOAT64)):
+        return value
+    scope.problems.extend([words.rounded_silently(value.span)] if scope.is_old else [])
+    return Convert(value, target, "nearest", value.span)
 
 
 def _block(rules: tuple[model.Rule, ...] | None, scope: Scope) -> TypedRules | None:
