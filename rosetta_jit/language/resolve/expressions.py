@@ -152,8 +152,8 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     place = resolve_path(path, scope, type_index)
     if isinstance(place, Broken):
         return None
-    schema = scope.messages[place.side].schema
-    asked = is_found(place)
+    message = scope.messages[place.side]
+    schema, asked = message.schema, is_found(place, message)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
         asked.append(Has(place, span=span))
     if asked:
