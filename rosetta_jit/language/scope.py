@@ -174,7 +174,9 @@ def _sought(
     keys = _beside(step, outer, scope) if step.beside else array
     if isinstance(keys, Broken):
         return keys
-    element = message.value_type(element_type(keys.type)) if isinstance(keys.type, Array | Map) else None
+    element: Type | None = None
+    if isinstance(keys.type, Array | Map) or (step.beside and isinstance(keys.type, Bytes)):
+        element = message.value_type(element_type(keys.type))
     if not (isinstance(element, Struct) or (step.beside and element is not None and not step.names)):
         scope.problems.append(words.no_keys(step.span, describe(keys.type)))
         return Broken(())

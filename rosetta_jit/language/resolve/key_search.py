@@ -16,7 +16,7 @@ from rosetta_jit.language.scope import Broken, element_type, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, IndexStep, LenOf, Local, Place, Search
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.printer import show_expr
-from rosetta_jit.model.types import Array, Map
+from rosetta_jit.model.types import Array, Bytes, Map
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,7 +63,7 @@ def _key(sought: Sought, variable: Local, scope: Scope) -> Expr | None:
 
 def _element_type(array: Place, scope: Scope) -> Type:
     """The type of the keys of an array that has nothing else."""
-    assert isinstance(array.type, Array | Map)
+    assert isinstance(array.type, Array | Bytes | Map)
     return scope.messages[array.side].value_type(element_type(array.type))
 
 

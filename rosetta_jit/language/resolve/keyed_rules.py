@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
 
+    Loop = For[Rule, Expr]
+
 Key = tuple[tuple[str, ...], "Expr"]
 """The field of an element, and what it has."""
 
@@ -46,7 +48,7 @@ class _Keys:
 
     numbers: dict[Key, Index] = field(default_factory=dict["Key", "Index"])
     elements: dict[Path, None] = field(default_factory=dict["Path", None])
-    loop: For | None = None
+    loop: Loop | None = None
 
 
 @dataclass(slots=True)
@@ -56,7 +58,7 @@ class _Block:
     scope: Scope
     arrays: dict[Path, _Keys] = field(default_factory=dict["Path", "_Keys"])
     measured: set[Path] = field(default_factory=set["Path"])
-    loops: tuple[For, ...] = ()
+    loops: tuple[Loop, ...] = ()
 
     def rules(self, rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
         """All rules of a block, those for its arrays last."""
@@ -80,7 +82,7 @@ class _Block:
             case _:
                 return rule
 
-    def loop(self, rule: For[Rule, Expr]) -> Rule:
+    def loop(self, rule: Loop) -> Rule:
         """Arrays of which each round has its own are made in the loop; the others around it."""
         known, around, outer = len(self.arrays), self.scope, self.loops
         self.scope, self.loops = around.inside(rule.variable), (*outer, rule)
@@ -154,7 +156,7 @@ def _array_of_keys(array: Path, step: Keyed) -> Path:
     return replace(array, steps=(*array.steps[:within], *(Member(name, step.span) for name in step.beside)))
 
 
-def _is_item(value: Expr, loop: For) -> bool:
+def _is_item(value: Expr, loop: Loop) -> bool:
     """Whether a key is the item of a list that a loop over all of its numbers is at."""
     if loop.start != Literal(0):
         return False
