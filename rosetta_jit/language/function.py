@@ -60,6 +60,7 @@ OURS = (
     "spelling",
     "moments",
     "octets",
+    "checksums",
     "images",
     *GROUPS,
 )

@@ -10,6 +10,7 @@ import pytest
 
 from rosetta_jit.catalogue import bind as bind_words
 from rosetta_jit.catalogue import check as check_words
+from rosetta_jit.catalogue import checksums as checksums_words
 from rosetta_jit.catalogue import derive as derive_words
 from rosetta_jit.catalogue import functions as functions_words
 from rosetta_jit.catalogue import groups as groups_words
@@ -62,6 +63,7 @@ CATALOGUE = (
     number_bytes_words,
     groups_words,
     reductions_words,
+    checksums_words,
 )
 MAKERS = ("error", "warning", "note", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found")

@@ -138,7 +138,7 @@ class _Block:
         ]
         for (names, value), index in keys.numbers.items():
             members = tuple(Member(name, index.span) for name in names)
-            key = Assign(Path(array.side, (*array.steps, index, *members), index.span), value, index.span)
+            key: Rule = Assign(Path(array.side, (*array.steps, index, *members), index.span), value, index.span)
             found.append(key if keys.loop is None else replace(keys.loop, body=(key,)))
         return found
 
