@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import reductions as words
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
 from rosetta_jit.kernel.terms import index, type_of
-from rosetta_jit.language.conversions import FLOAT64
+from rosetta_jit.language.conversions import FLOAT64, bounds
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
 from rosetta_jit.language.typed import BOOL, INT64
 from rosetta_jit.lowering.arithmetic import binary
@@ -34,7 +35,7 @@ MEAN = Row(
 EXTREMES = Row(
     "elements",
     "`min(x[])`, `max(x[])`",
-    ("numbers", "of their type, int64 for integers; the first NaN where there is one; `range` of none"),
+    ("numbers", "of their type, int64 for integers; NaN where one is; `range` of none"),
 )
 CONDITIONS = Row(
     "elements",
@@ -82,18 +83,24 @@ def _lower_mean(elements: Elements) -> Expr:
 def lower_extreme(elements: Elements) -> Expr:
     """The least or the largest value; what is once NaN stays so."""
     writer, is_least = elements.writer, elements.reduce.function == "min"
-    found = writer.var("least" if is_least else "largest", _zero(elements))
-    is_first = writer.var("first", Const("bool", value=True))
+    found = writer.var("least" if is_least else "largest", _bound(elements, above=is_least))
     with elements.each() as value:
         number = writer.let("value", value)
-        is_nearer = Compare("lt" if is_least else "gt", number, found)
-        replaces: Expr = Binary("or", is_first, is_nearer)
+        replaces: Expr = Compare("lt" if is_least else "gt", number, found)
         if type_of(number) in ("f32", "f64"):
-            is_nan = Binary("and", Compare("ne", number, number), Compare("eq", found, found))
-            replaces = Binary("or", replaces, is_nan)
+            replaces = Binary("or", replaces, Compare("ne", number, number))
         writer.assign(found, Select(replaces, number, found))
-        writer.assign(is_first, Const("bool", value=False))
     return found
+
+
+def _bound(elements: Elements, *, above: bool) -> Const:
+    """A number of the type of the values that none of them is above, or below."""
+    type_ = elements.reduce.value.type
+    assert isinstance(type_, Int | Float)
+    scalar = scalar_name(scalar_of(type_))
+    if isinstance(type_, Float):
+        return Const(scalar, math.inf if above else -math.inf)
+    return Const(scalar, bounds(type_)[1 if above else 0])
 
 
 def _lower_joined(operator: Literal["and", "or"], elements: Elements) -> Expr:

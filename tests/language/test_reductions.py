@@ -52,7 +52,7 @@ def added(numbers):
 
 
 def extreme(choose, numbers):
-    """The first NaN, else the first of those that are the least or the largest."""
+    """NaN if one is, else the first of those that are the least or the largest."""
     return next((number for number in numbers if math.isnan(number)), choose(numbers))
 
 
