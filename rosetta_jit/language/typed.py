@@ -1,7 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
     Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Reduce | Call | HostCall | Choice
-        | Listed | Given                                              each with `type`
+         | Listed | Given | StateVariable                            each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
     Rule = those of `model.rules`, with Place and Expr: of int64 in a SetLength, of bool in a When; an Assign is `by` a Change

@@ -19,7 +19,7 @@ from rosetta_jit.language.function import written
 from rosetta_jit.language.functions.calls import type_numbers
 from rosetta_jit.language.functions.decisions import is_condition, type_condition
 from rosetta_jit.language.typed import Call, Local, Reduce
-from rosetta_jit.model.expr import Binary, Each, Name, Path
+from rosetta_jit.model.expr import Binary, Each, Name
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +59,7 @@ def type_reduction(call: model.Call, scope: Scope, type_expr: TypeExpr) -> Reduc
     return Reduce(function.name, Local(name + scope.suffix), number, found, type_, known, span=call.span)
 
 
-def _element(view: View, name: str, call: model.Call) -> Path:
+def _element(view: View, name: str, call: model.Call) -> model.Expr:
     """The element of a number."""
     if len(view.axes) != 1 or view.axes[0].listed is not None:
         raise LayoutError(words.in_order(call.span, call.function))

@@ -134,14 +134,24 @@ class Values:
                 return called(value, self)
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
-            case typed.Has():
-                return self.source.present(value.place, self)
-            case typed.Search() | typed.Reduce():
-                return number_in(value, self) if isinstance(value, typed.Search) else reduced(value, self)
+            case typed.Has() | typed.Search() | typed.Reduce():
+                return self.asked(value)
             case typed.StateVariable(_, number, _, type_):
                 return remembered(number, scalar_type(type_))
             case typed.Choice() | typed.Listed() | typed.Given():
                 return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
+            case _:
+                assert_never(value)
+
+    def asked(self, value: typed.Has | typed.Search | typed.Reduce) -> Expr:
+        """What is asked of a place, or of the elements of arrays."""
+        match value:
+            case typed.Has(place):
+                return self.source.present(place, self)
+            case typed.Search():
+                return number_in(value, self)
+            case typed.Reduce():
+                return reduced(value, self)
             case _:
                 assert_never(value)
 
