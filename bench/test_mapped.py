@@ -171,3 +171,97 @@ def test_cloud(effort, compare, record):
         ],
     )
     record(what, outcome.ratio(OURS, "numpy, unchecked"), None, "x numpy, unchecked", f"{outcome.took(OURS).median / 1000:.0f} µs")
+
+
+REDUCED_FILES = {
+    "lab/msg/Wire.msg": "float64[] numbers\nuint8[] data\nstring[] names\n",
+    "held.proto": 'syntax = "proto3"; message Held { double x = 1; int64 n = 2; }',
+}
+REDUCED_HEAD = 'import "lab/msg/Wire.msg"\nimport "held.proto"\ndata-holder: Held\nwire-schema: lab/Wire\nunpack-rules:\n'
+MANY = 100_000
+
+
+def norm(numbers):
+    total = 0.0
+    for number in numbers:
+        total += number * number
+    return math.sqrt(total)
+
+
+def least(numbers):
+    found = math.inf
+    for number in numbers:
+        if number < found or number != number:  # noqa: PLR0124 - NaN stays
+            found = number
+    return found
+
+
+def positive(numbers):
+    count = 0
+    for number in numbers:
+        count += number > 0
+    return count
+
+
+REDUCTIONS = {
+    f"mapping, the norm of {MANY:,} numbers": (".x = sqrt(sum(.numbers[] * .numbers[]))", norm, AT_MOST),
+    f"mapping, the least of {MANY:,} numbers": (".x = min(.numbers[])", least, AT_MOST),
+    f"mapping, how many of {MANY:,} numbers are positive": (".n = count(.numbers[] > 0)", positive, None),
+}
+
+
+@pytest.mark.parametrize("what", REDUCTIONS)
+def test_reductions(what, effort, compare, record):
+    """Against the same loop by hand: what is summed from the first to the last cannot be summed in vectors."""
+    rule, by_hand_, at_most = REDUCTIONS[what]
+    rest = "  .n = 0\n" if rule.startswith(".x") else "  .x = 0\n"
+    files = {**REDUCED_FILES, "m.mapping": f"{REDUCED_HEAD}  {rule}\n{rest}  ignore .data\n  ignore .names\n"}
+    decode, compiled = rj.Decoder("m.mapping", schema=files, encoding="ros1"), numba.njit(by_hand_)
+    numbers = np.random.default_rng(1).normal(size=MANY)
+    data = struct.pack("<I", MANY) + numbers.tobytes() + bytes(8)
+    found = decode(data)
+    assert found.x + found.n == compiled(numbers)
+    outcome = compare(
+        CHAPTER,
+        what,
+        [
+            Contender(OURS, "ours", "an object of another type, used again", effort.call(decode, data)),
+            Contender(BY_HAND, "limit", "a number", effort.call(compiled, numbers)),
+        ],
+    )
+    record(what, outcome.ratio(OURS, BY_HAND), at_most, "x numba by hand", f"{outcome.took(OURS).median / 1000:.0f} µs")
+
+
+def table_of(polynomial):
+    table = np.zeros(256, np.uint32)
+    for byte in range(256):
+        register = byte
+        for _ in range(8):
+            register = register >> 1 ^ (polynomial if register & 1 else 0)
+        table[byte] = register
+    return table
+
+
+def checksum(data, table):
+    register = np.uint32(0xFFFFFFFF)
+    for byte in data:
+        register = table[(register ^ byte) & np.uint32(255)] ^ (register >> np.uint32(8))
+    return register ^ np.uint32(0xFFFFFFFF)
+
+
+def test_checksum(effort, compare, record):
+    """Against a table of 256 entries by hand; kernels have no tables, and combine the bits of a byte."""
+    what, rules = f"mapping, the CRC-32 of {MANY:,} bytes", '  .n = crc(.data, "CRC-32")\n  .x = 0\n  ignore .numbers\n  ignore .names\n'
+    decode = rj.Decoder("m.mapping", schema={**REDUCED_FILES, "m.mapping": REDUCED_HEAD + rules}, encoding="ros1")
+    data, table, compiled = np.random.default_rng(1).integers(0, 256, MANY, np.uint8), table_of(0xEDB88320), numba.njit(checksum)
+    message_ = struct.pack("<II", 0, MANY) + data.tobytes() + bytes(4)
+    assert decode(message_).n == compiled(data, table)
+    outcome = compare(
+        CHAPTER,
+        what,
+        [
+            Contender(OURS, "ours", "an object of another type, used again", effort.call(decode, message_)),
+            Contender(BY_HAND, "limit", "a number", effort.call(compiled, data, table)),
+        ],
+    )
+    record(what, outcome.ratio(OURS, BY_HAND), None, "x a table by hand", f"{outcome.took(OURS).median / 1000:.0f} µs")

@@ -130,6 +130,7 @@ def test_every_function_is_told():
 TABLES = {
     "numbers": "| function | takes | gives |",
     "groups": "| function | takes | gives |",
+    "elements": "| function | takes | gives |",
     "texts": "| function | gives | else, an error of kind |",
     "bytes": "| function | gives | else, an error of kind |",
     "images": "| function | takes | gives |",

@@ -142,7 +142,13 @@ def number(span: Span, target: str) -> Diagnostic:
 
 def key_field(span: Span | None) -> Diagnostic:
     """A key that is no plain field of the elements."""
-    return error("key-field", "elements are known by a field, or a field of one", span, "this is none", help_='write `.a[.key = "x"]`')
+    return error(
+        "key-field",
+        "elements are known by a field, or a field of one",
+        span,
+        "this is none",
+        help_='write `.a[.key = "x"]`, or `.a[.keys[] = "x"]`',
+    )
 
 
 def via_of_several(span: Span) -> Diagnostic:

@@ -82,13 +82,27 @@ def not_a_struct(span: Span | None, name: str, found: str) -> Diagnostic:
 def no_keys(span: Span | None, found: str) -> Diagnostic:
     """A key of what has no elements with fields."""
     message = f"{shorten(found)} has no elements that a field tells apart"
-    return error("no-keys", message, span, "here", help_="name an array of messages, or a map")
+    help_ = 'name an array of messages, a map, or an array of keys beside: `.position[.name[] = "elbow"]`'
+    return error("no-keys", message, span, "here", help_=help_)
 
 
 def key_to_set(span: Span | None) -> Diagnostic:
     """An element that is set by a key that is not known."""
     help_ = "write the key down, or set the elements by their numbers, each with its key"
     return error("key-to-set", "a key of an element that is set must be known when the mapping is compiled", span, "here", help_=help_)
+
+
+def keys_of_list(span: Span | None) -> Diagnostic:
+    """Elements that are set by the items of a list, and by other keys."""
+    help_ = "put all keys of the array into one list, or write them all down"
+    return error("key-to-set", "an array has the keys of one list, in its order, and no others", span, "here", help_=help_)
+
+
+def key_twice(span: Span | None, key: str) -> Diagnostic:
+    """A list of keys that has one twice."""
+    return error(
+        "key-twice", f"the list has {shorten(key)} twice, and each key tells one element", span, "here", help_="remove one of them"
+    )
 
 
 def no_number_of(span: Span | None) -> Diagnostic:

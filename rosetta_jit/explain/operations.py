@@ -91,7 +91,7 @@ def _of_node(node: object) -> Iterator[Operation]:
             yield "predicate assignment"
             if otherwise is None:
                 yield "rejection"
-        case typed.Call(function):
+        case typed.Call(function) | typed.Reduce(function):
             yield functions()[function].operation
         case typed.HostCall() | typed.StateVariable():
             yield "generators"

@@ -6,10 +6,11 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import binary_of, unary_of
+from rosetta_jit.functions.reductions import EXTREMES, lower_extreme
 from rosetta_jit.kernel.ir import Binary, Unary
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Row, Units
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
 from rosetta_jit.language.typed import INT64
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.model.types import Float
@@ -68,13 +69,14 @@ FUNCTIONS = (
     *(
         Function(
             name,
-            Numbers(ANY, (2, None), "two or more values", fold),
+            Numbers(ANY, (2, None), "two or more values, or one with `[]`", fold),
             binary_of,
             SEVERAL,
             NOT_FOLLOWED,
-            (BOUNDS,),
+            (BOUNDS, EXTREMES),
             units=Units(keeps=True, joins=True),
+            reduction=Reduction(Numbers(ANY), lower_extreme, of_nothing=f"there is no value, so none is the {which}"),
         )
-        for name, fold in (("min", _fold_min), ("max", _fold_max))
+        for name, which, fold in (("min", "least", _fold_min), ("max", "largest", _fold_max))
     ),
 )

@@ -1,6 +1,6 @@
 """A function of the language: one record says all that is known of it.
 
-    Function = name, signature, units, lower, inverse | why there is none, law, rows of the reference, operation
+    Function = name, signature, units, lower, inverse | why there is none, law, rows of the reference, operation, reduction
 
 The records of the language stand in `rosetta_jit.functions`, one file a family, which is imported when a function is first looked up. An
 installed package offers records of its own by entry points of the group `rosetta_jit.functions`, a `Function` each. An operator of
@@ -49,6 +49,7 @@ GROUPS = ("rotations", "poses", "geodesy")
 OURS = (
     "angles",
     "numbers",
+    "reductions",
     "division",
     "counting",
     "clock",
@@ -59,6 +60,7 @@ OURS = (
     "spelling",
     "moments",
     "octets",
+    "checksums",
     "images",
     *GROUPS,
 )
@@ -91,6 +93,26 @@ class Texts:
     takes: tuple[str, ...]
     gives: Type | None
     optional: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Reduction:
+    """Of many values, which an expression with `[]` has: `sum(.a[] * 2)`.
+
+    Attributes
+    ----------
+    signature
+        The type that every value becomes; it is that of the result, too, unless ``gives`` is another. None of conditions.
+    lower
+        What it becomes in a kernel. It takes the elements (`rosetta_jit.lowering.elements`) and gives a kernel expression.
+    of_nothing
+        What is wrong with no value at all: the text of an error of kind ``range``. Empty where the function has a result for it.
+    """
+
+    signature: Numbers | None
+    lower: Callable[..., object]
+    gives: Type | None = None
+    of_nothing: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +215,7 @@ Operation = OneOf[
 
 # --- the record ----------------------------------------------------------------------------------------------------------
 
-Table = OneOf["numbers", "groups", "texts", "bytes", "images"]
+Table = OneOf["numbers", "groups", "elements", "texts", "bytes", "images"]
 """The tables of the reference."""
 
 
@@ -238,6 +260,8 @@ class Function:
         Whether a value that is computed once may serve several rules: not if the host is asked, or a text is made.
     changes
         Whether its value is another one for each message, so that none could be compared with it.
+    reduction
+        What a call of one expression with `[]` comes to; None where such a call is meant for each element.
     """
 
     name: str
@@ -253,6 +277,7 @@ class Function:
     remark: str = ""
     kept: bool = True
     changes: bool = False
+    reduction: Reduction | None = None
 
 
 # --- the table -----------------------------------------------------------------------------------------------------------

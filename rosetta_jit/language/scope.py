@@ -93,10 +93,10 @@ class Broken:
 
 @dataclass(frozen=True, slots=True)
 class Sought:
-    """An element that is known by a key: the array, the message of each element, and which one it is."""
+    """An element that is known by a key: the array whose elements have the keys, the message of each if they are, and which one it is."""
 
     array: Place
-    element: Message
+    element: Message | None
     step: Keyed
 
 
@@ -105,15 +105,17 @@ def resolve_path(path: Path, scope: Scope, index: Callable[[Untyped | Sought, Sc
     message, base = scope.messages[path.side], scope.base(path.side)
     type_: Type = message.root
     steps: list[Step] = [*base.steps]
+    outer = Place(base.side, base.steps, message.root, path.span)  # the message that the last field is in
     for step in path.steps:
         found: tuple[list[Step], Type] | Broken
         match step:
             case Member():
+                outer = Place(base.side, tuple(steps), type_, path.span)
                 found = _member(step, type_, message, scope, path.side)
             case Index():
                 found = _element(step, type_, scope, index)
             case Keyed():
-                found = _sought(step, Place(base.side, tuple(steps), type_, path.span), message, scope, index)
+                found = _sought(step, Place(base.side, tuple(steps), type_, path.span), outer, scope, index)
             case Slice() | Pick() | Each():
                 scope.problems.append(layouts.out_of_place(step.span))
                 found = Broken(())
@@ -167,14 +169,35 @@ def _element(step: Index, type_: Type, scope: Scope, typed: Callable[[Untyped, S
 
 
 def _sought(
-    step: Keyed, array: Place, message: Message, scope: Scope, typed: Callable[[Untyped | Sought, Scope], Expr | None]
+    step: Keyed, array: Place, outer: Place, scope: Scope, typed: Callable[[Untyped | Sought, Scope], Expr | None]
 ) -> tuple[list[Step], Type] | Broken:
-    element = message.value_type(element_type(array.type)) if isinstance(array.type, Array | Map) else None
-    if not isinstance(element, Struct):
-        scope.problems.append(words.no_keys(step.span, describe(array.type)))
+    message = scope.messages[array.side]
+    keys = _beside(step, outer, scope) if step.beside else array
+    if isinstance(keys, Broken):
+        return keys
+    element: Type | None = None
+    if isinstance(keys.type, Array | Map) or (step.beside and isinstance(keys.type, Bytes)):
+        element = message.value_type(element_type(keys.type))
+    if not (isinstance(element, Struct) or (step.beside and element is not None and not step.names)):
+        scope.problems.append(words.no_keys(step.span, describe(keys.type)))
         return Broken(())
-    index = typed(Sought(array, Message(element, message.schema), step), scope)
-    return Broken(()) if index is None else ([IndexStep(index, step.span)], element)
+    if not isinstance(array.type, Array | Bytes | Map):
+        scope.problems.append(words.not_indexable(step.span, describe(array.type)))
+        return Broken(())
+    index = typed(Sought(keys, Message(element, message.schema) if isinstance(element, Struct) else None, step), scope)
+    return Broken(()) if index is None else ([IndexStep(index, step.span)], element_type(array.type))
+
+
+def _beside(step: Keyed, outer: Place, scope: Scope) -> Place | Broken:
+    """The array of the keys: from the message that holds the array of the elements."""
+    message, steps, type_ = scope.messages[outer.side], [*outer.steps], outer.type
+    for name in step.beside:
+        found = _member(Member(name, step.span), type_, message, scope, outer.side)
+        if isinstance(found, Broken):
+            return found
+        steps += found[0]
+        type_ = message.value_type(found[1])
+    return Place(outer.side, tuple(steps), type_, step.span)
 
 
 def _in_range(index: Expr, type_: Array | Bytes | Map, scope: Scope) -> bool:

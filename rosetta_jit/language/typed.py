@@ -1,7 +1,7 @@
 """Rules and expressions whose names are resolved and whose types are known: what `lower` consumes.
 
-    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Call | HostCall | Choice | Listed
-         | Given | StateVariable                                     each with `type`
+    Expr = Const | Local | Access | LenOf | Unary | Binary | Convert | Nearest | IsText | Has | Search | Reduce | Call | HostCall | Choice
+         | Listed | Given | StateVariable                            each with `type`
     Place = side, Step*, type        Step = FieldStep(Field) | IndexStep(Expr of int64)
     Change = Rescale | EachElement | EachMember
     Rule = those of `model.rules`, with Place and Expr: of int64 in a SetLength, of bool in a When; an Assign is `by` a Change
@@ -195,6 +195,24 @@ class Search:
 
 
 @dataclass(frozen=True, slots=True)
+class Reduce:
+    """What a function makes of the values that ``value`` has for each ``variable`` from 0 to before ``count``, in this order.
+
+    Where a condition of ``refused`` holds the message is rejected, with the text beside it. Of no values some functions have no result,
+    which is an error of kind ``range``, unless this is not ``required``: then it is any number.
+    """
+
+    function: str
+    variable: Local
+    count: Expr
+    value: Expr
+    type: Type
+    refused: tuple[tuple[Expr, str], ...] = ()
+    required: bool = True
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class HostCall:
     """A function that the mapping declares and its user gives; the arguments have the types that it declares."""
 
@@ -268,6 +286,7 @@ Expr = (
     | IsText
     | Has
     | Search
+    | Reduce
     | Call
     | HostCall
     | Choice

@@ -109,7 +109,7 @@ def _in(value: Expr) -> Iterator[Place]:
             yield from _in_indices(place)
         case typed.Unary(_, operand) | typed.Convert(operand) | typed.Search(_, _, operand):
             yield from _in(operand)
-        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
+        case typed.Binary(_, left, right) | typed.Nearest(left, check=right) | typed.Reduce(_, _, left, right):
             yield from _in(left)
             yield from _in(right)
         case typed.Call(_, arguments) | typed.HostCall(_, arguments) | typed.Given(_, arguments):

@@ -7,13 +7,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+from rosetta_jit.startup.dataclass import dataclass
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from contextlib import AbstractContextManager
 
-    from rosetta_jit.kernel.ir import Address, Expr, Local, Scalar
+    from rosetta_jit.kernel.ir import Address, Expr, Local, Scalar, Stmt
     from rosetta_jit.language import typed
     from rosetta_jit.lowering.writer import Where, Writer
+
+
+@dataclass(frozen=True, slots=True)
+class Awaited:
+    """A value that the first round of a loop to ask for it computes: whether one has, what it found, and the block around the loop."""
+
+    is_known: Local
+    found: Local
+    block: list[Stmt]
 
 
 class Source(Protocol):
@@ -54,6 +65,11 @@ class Evaluation(Protocol):
         ...
 
     @property
+    def awaited(self) -> dict[typed.Expr, Awaited]:
+        """The values that loops around compute when they are first asked for."""
+        ...
+
+    @property
     def variables(self) -> Mapping[str, Expr]:
         """The loop variables around."""
         ...
@@ -86,6 +102,10 @@ class Evaluation(Protocol):
 
     def with_locals(self, numbers: Mapping[str, Expr]) -> Evaluation:
         """The same where these names alone have values, and nothing is decided yet."""
+        ...
+
+    def look_ahead(self, asked: tuple[typed.Expr, ...]) -> None:
+        """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
         ...
 
     def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Evaluation:

@@ -1,7 +1,7 @@
 """One expression language: mapping rules, counts, and constants that are computed.
 
     Expr = Literal | Name | Path | Len | Unary | Binary | Call | Choice | List | Item | Given | Held | Nearest
-    Path = Root, Step*         Step = Member(name) | Index(Expr) | Keyed(name*, Expr) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
+    Path = Root, Step*         Step = Member(name) | Index(Expr) | Keyed(name*, Expr, name*) | Slice(Expr, Expr, Expr) | Pick(int*) | Each
 
 A `Path` starts at one of the two sides of a mapping; which one is `side`. Inside a wire schema's own expressions (a computed
 constant) the side is always ``wire``.
@@ -63,11 +63,15 @@ class Index:
 
 @dataclass(frozen=True, slots=True)
 class Keyed:
-    """``[.key = value]``: the one element whose field has this value; ``names`` are those on the way to the field."""
+    """``[.key = value]``: the one element whose field has this value; ``names`` are those on the way to the field.
+
+    ``[.keys[].key = value]`` is the element of the same number as the one of ``beside`` has: of an array that lies in the same message.
+    """
 
     names: tuple[str, ...]
     value: Expr
     span: Span | None = field(default=None, compare=False, repr=False)
+    beside: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,8 +114,9 @@ def _step(step: expr.Step) -> str:
             return f".{name}"
         case expr.Index(index):
             return f"[{show_expr(index)}]"
-        case expr.Keyed(names, key):
-            return f"[{''.join(f'.{name}' for name in names)} = {show_expr(key)}]"
+        case expr.Keyed(names, key, _, beside):
+            array = f"{_names(beside)}[]" if beside else ""
+            return f"[{array}{_names(names)} = {show_expr(key)}]"
         case expr.Slice(start, stop, by):
             end = "" if stop is None else f" {show_expr(stop)}"
             return f"[{show_expr(start)} to{end}{'' if by == expr.Literal(1) else f' by {show_expr(by)}'}]"
@@ -125,6 +126,10 @@ def _step(step: expr.Step) -> str:
             return "[]"
         case _:
             assert_never(step)
+
+
+def _names(names: tuple[str, ...]) -> str:
+    return "".join(f".{name}" for name in names)
 
 
 def _subject(choice: expr.Choice) -> expr.Expr | None:

@@ -10,6 +10,7 @@ import pytest
 
 from rosetta_jit.catalogue import bind as bind_words
 from rosetta_jit.catalogue import check as check_words
+from rosetta_jit.catalogue import checksums as checksums_words
 from rosetta_jit.catalogue import derive as derive_words
 from rosetta_jit.catalogue import functions as functions_words
 from rosetta_jit.catalogue import groups as groups_words
@@ -18,6 +19,7 @@ from rosetta_jit.catalogue import layouts as layouts_words
 from rosetta_jit.catalogue import mapping as mapping_words
 from rosetta_jit.catalogue import nested as nested_words
 from rosetta_jit.catalogue import number_bytes as number_bytes_words
+from rosetta_jit.catalogue import reductions as reductions_words
 from rosetta_jit.catalogue import resolve as resolve_words
 from rosetta_jit.catalogue import texts as texts_words
 from rosetta_jit.catalogue import unit_files as unit_files_words
@@ -60,6 +62,8 @@ CATALOGUE = (
     bind_words,
     number_bytes_words,
     groups_words,
+    reductions_words,
+    checksums_words,
 )
 MAKERS = ("error", "warning", "note", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
+from operator import xor
 from typing import TYPE_CHECKING, Any
 
 from tests.random_mappings.fields import some_value
-from tests.random_mappings.meaning import Refused
+from tests.random_mappings.meaning import Refused, fits
 from tests.random_mappings.values import Maker
 
 if TYPE_CHECKING:
@@ -38,13 +40,15 @@ class Arrays:
 
     def of(self, name: str, type_: str, depth: int = 2) -> Rules:
         """Rules for an array of "float64", "int64" or "string"."""
-        choice = self.rng.randrange(6)
+        choice = self.rng.randrange(7)
         if choice == 0 and depth:
             return self.block(name, type_, depth)
         if choice == 1:
             return self.loop(name, type_)
         if choice == 2 and type_ != "string":
             return self.each(name, type_)
+        if choice == 6 and type_ != "string":
+            return self.reduced(name, type_)
         return self.members(name, type_) if choice == 3 or type_ == "string" else self.ordered(name, type_)
 
     def block(self, name: str, type_: str, depth: int) -> Rules:
@@ -67,6 +71,11 @@ class Arrays:
         return Rules(f"len(.{name}) = {text}\nfor i from 0 to {text}\n.{name}[i] = {value.text}\nend", evaluate)
 
     def each(self, name: str, type_: str) -> Rules:
+        made = self.of_each(type_)
+        return Rules(f".{name}[] = {made.text}", made.evaluate)
+
+    def of_each(self, type_: str) -> Rules:
+        """An expression of the elements of an array, and what it is for each."""
         array, element = ("xs", "float64") if type_ == "float64" else ("ks", "int32")
         place = f"{array}[]"
         made = Maker(self.rng, {**self.scalars, place: element}).live(type_, 2)
@@ -79,7 +88,21 @@ class Arrays:
                 found.append(left if (left > right if operator[:3] == "max" else left < right) else right)
             return found
 
-        return Rules(f".{name}[] = {operator.format(made.text, '.' + place)}", evaluate)
+        return Rules(operator.format(made.text, "." + place), evaluate)
+
+    def reduced(self, name: str, type_: str) -> Rules:
+        """A reduction that is the same in each round of a loop, beside what is not."""
+        made, of_floats = self.of_each(type_), type_ == "float64"
+        function = self.rng.choice(["sum", "min", "max", "mean"] if of_floats else ["sum", "min", "max", "count", "xor"])
+        text = f"{function}({made.text} > 0)" if function == "count" else f"{function}({made.text})"
+        limit = self.rng.choice([0, 2])
+
+        def evaluate(fields: Fields) -> list[Any]:
+            zero = 0.0 if of_floats else 0
+            return [reduced(function, made.evaluate(fields), zero) if k > limit else zero for k in fields["ks"]]
+
+        zero = "0.0" if of_floats else "0"
+        return Rules(f".{name}[] = {text} if .ks[] > {limit} else {zero}", evaluate)
 
     def members(self, name: str, type_: str) -> Rules:
         member = {"float64": "x", "int64": "n", "string": "s"}[type_]
@@ -103,6 +126,25 @@ class Arrays:
         ]
         text, function = self.rng.choice(forms)
         return Rules(f".{name} = {text}", lambda fields: function(fields[array]))
+
+
+def reduced(function: str, values: list[Any], zero: float) -> Any:
+    """What a reduction makes of values, from the first to the last."""
+    if function in ("sum", "mean"):
+        total = zero
+        for value in values:
+            total = fits(total + value) if isinstance(zero, int) else total + value
+        if function == "mean" and not values:
+            raise refused("range")
+        return total / len(values) if function == "mean" else total
+    if function == "count":
+        return sum(value > 0 for value in values)
+    if function == "xor":
+        return reduce(xor, values, 0)
+    if not values:
+        raise refused("range")
+    nan = next((value for value in values if value != value), None)  # noqa: PLR0124 - it is what NaN is known by
+    return nan if nan is not None else (min if function == "min" else max)(values)
 
 
 def at(array: list[Any], index: int) -> Any:

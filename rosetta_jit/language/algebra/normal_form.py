@@ -24,6 +24,7 @@ from rosetta_jit.language.typed import (
     Listed,
     Local,
     Nearest,
+    Reduce,
     Reject,
     Search,
     SetLength,
@@ -45,6 +46,9 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
             return replace(expr, place=placed(place, change))
         case Search(place, _, condition):
             return replace(expr, place=placed(place, change), condition=change(condition))
+        case Reduce(count=count, value=value, refused=refused):
+            checks = tuple((change(condition), why) for condition, why in refused)
+            return replace(expr, count=change(count), value=change(value), refused=checks)
         case Unary(operand=operand) | Convert(operand=operand):
             return replace(expr, operand=change(operand))
         case Binary(left=left, right=right):

@@ -32,6 +32,7 @@ from rosetta_jit.language.typed import (
     Listed,
     Local,
     Nearest,
+    Reduce,
     Search,
     StateVariable,
     Unary,
@@ -184,12 +185,23 @@ def polynomial_of(expr: Expr) -> Polynomial:
             return atom(f"{shown_shape(place.steps)} == {text!r}", *_indices(place.steps))
         case Has(place):
             return atom(f"has {shown_shape(place.steps)}", *_indices(place.steps))
-        case Search(place, _, condition):
-            return atom(f"in {shown_shape(place.steps)}", *_indices(place.steps), polynomial_of(condition))
+        case Search() | Reduce():
+            return _of_elements(expr)
         case Choice() | Listed() | Given():
             return _chosen(expr)
         case Const() | StateVariable():
             return atom(f"state {expr.name} of {expr.target}" if isinstance(expr, StateVariable) else repr(expr.value))
+        case _:
+            assert_never(expr)
+
+
+def _of_elements(expr: Search | Reduce) -> Polynomial:
+    """What is found among elements, or made of them."""
+    match expr:
+        case Search(place, _, condition):
+            return atom(f"in {shown_shape(place.steps)}", *_indices(place.steps), polynomial_of(condition))
+        case Reduce(function, _, count, value):
+            return atom(f"{function} of each", polynomial_of(count), polynomial_of(value))
         case _:
             assert_never(expr)
 

@@ -15,7 +15,7 @@ from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, number_type, view_of
-from rosetta_jit.language.arrays.parts import has_each, is_many, sources_in, substituted
+from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
 from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
@@ -77,7 +77,7 @@ class _Expansion:
                 return tuple(made for target, value in pairs for made in self.assign(Assign(target, value, span), lengths, level))
             case For(body=body):
                 return (replace(rule, body=self.block(body, lengths, level)),)
-            case When(condition, (Reject() as refusal,), ()) if any(map(has_each, parts(condition))):
+            case When(condition, (Reject() as refusal,), ()) if any(map(has_each, open_parts(condition))):
                 return self.refused(rule, refusal, level)
             case When(then=then, otherwise=otherwise):
                 return (replace(rule, then=self.block(then, lengths, level), otherwise=self.block(otherwise, lengths, level)),)
@@ -89,9 +89,9 @@ class _Expansion:
             return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
         if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.by == "checked"):
             rule = _each(rule, rule.value)
-        if not any(is_many(part) for side in (rule.place, rule.value) for part in parts(side)):
+        if not any(is_many(part) for side in (rule.place, rule.value) for part in open_parts(side)):
             return (rule,)
-        is_each = any(has_each(part) for side in (rule.place, rule.value) for part in parts(side))
+        is_each = any(has_each(part) for side in (rule.place, rule.value) for part in open_parts(side))
         try:
             if isinstance(rule.value, Choice) and not is_each:
                 return self.chosen(rule, rule.value, lengths, level)

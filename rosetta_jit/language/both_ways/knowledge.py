@@ -11,7 +11,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.language.limits import MAX_PARTS
-from rosetta_jit.model.expr import Call, Each, Expr, Held, Index, Len, Name, Path
+from rosetta_jit.model.expr import Call, Each, Expr, Held, Index, Keyed, Len, Name, Path
 from rosetta_jit.model.walk import Field, names_of, parts, path_of, rebuilt, renamed, with_indices
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -136,8 +136,9 @@ def key_of(place: Field, loops: Loops) -> tuple[Key, dict[str, Name]]:
     variables = {loop.variable: loop for loop in loops}
     used: dict[str, Loop] = {}
     for step in path.steps:
-        if isinstance(step, Index):
-            used |= {name: variables[name] for name in _names(step.index) if name in variables}
+        if isinstance(step, Index | Keyed):
+            told = step.index if isinstance(step, Index) else step.value
+            used |= {name: variables[name] for name in _names(told) if name in variables}
     names = {name: Name(f"#{number}") for number, name in enumerate(used)}
     plain = with_indices(path, lambda index: renamed(index, names))
     ranges = tuple((loop.start, loop.stop) for loop in used.values())

@@ -68,7 +68,7 @@ def type_function(function: Function, expr: model.Call, arguments: list[Expr], s
     """The typed call of a function, by its signature."""
     match function.signature:
         case Numbers() as signature:
-            return _type_numbers(function, signature, expr, arguments, scope)
+            return type_numbers(function, signature, expr, arguments, scope)
         case Texts() as signature:
             return type_texts(expr, arguments, scope, signature)
         case own:
@@ -158,7 +158,8 @@ def _converted(value: Expr, target: Type, rule: ConversionRule, expr: model.Call
             return Convert(value, target, rule, expr.span)
 
 
-def _type_numbers(function: Function, signature: Numbers, expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | None:
+def type_numbers(function: Function, signature: Numbers, expr: model.Call, arguments: list[Expr], scope: Scope) -> Expr | None:
+    """The typed call of a function of numbers, or what it gives of those that are known."""
     least, most = signature.count
     if len(arguments) < least or (most is not None and len(arguments) > most):
         scope.problems.append(words.arguments(expr.span, expr.function, signature.takes, len(arguments)))

@@ -271,7 +271,7 @@ def _step(step: Tree | Token, context: Context) -> Step:
     span, parts = context.span(step), [read_expression(part, context) for part in _trees(step)]
     match str(step.data), parts:
         case "keyed", [Path(steps=steps, span=place), value]:
-            return Keyed(_names(steps, place, context), value, span)
+            return _keyed(steps, place, value, context, span)
         case "each", _:
             return Each(span)
         case "slice", [start, *bounds]:
@@ -283,6 +283,14 @@ def _step(step: Tree | Token, context: Context) -> Step:
             return Index(index, span)
         case _:
             raise AssertionError(step)
+
+
+def _keyed(steps: tuple[Step, ...], place: Span | None, value: Expr, context: Context, span: Span) -> Keyed:
+    """An element by a field of it, or by the element of the same number of an array beside."""
+    number = next((number for number, step in enumerate(steps) if isinstance(step, Each)), None)
+    if number is None:
+        return Keyed(_names(steps, place, context), value, span)
+    return Keyed(_names(steps[number + 1 :], place, context), value, span, _names(steps[:number], place, context))
 
 
 def _names(steps: tuple[Step, ...], span: Span | None, context: Context) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from functools import reduce
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.language.arrays.parts import is_reduction
 from rosetta_jit.language.constants import constant_of
 from rosetta_jit.language.conversions import FLOAT64, as_int64, as_single, convert, describe, in_single, is_single
 from rosetta_jit.language.functions.calls import type_call
@@ -24,6 +25,7 @@ from rosetta_jit.language.resolve.groups import type_component
 from rosetta_jit.language.resolve.held_values import type_held, type_nearest
 from rosetta_jit.language.resolve.key_search import is_found, type_search
 from rosetta_jit.language.resolve.list_items import compared_text, type_listed
+from rosetta_jit.language.resolve.reductions import type_reduction
 from rosetta_jit.language.scope import Broken, Sought, members_of, resolve_path
 from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, Has, IndexStep, Local, Search, Unary
 from rosetta_jit.language.units.conversion import check_agree
@@ -70,7 +72,7 @@ def type_expr(expr: model.Expr, scope: Scope) -> Expr | None:
         case model.Call("has" | "index" as function, (model.Path() as path,)):
             return _presence(path, expr.span, scope) if function == "has" else _number_of(path, expr.span, scope)
         case model.Call():
-            return type_call(expr, scope, type_expr)
+            return type_reduction(expr, scope, type_expr) if is_reduction(expr) else type_call(expr, scope, type_expr)
         case model.Choice():
             return type_choice(expr, scope, type_expr)
         case model.List() | model.Item() | model.Given():
@@ -150,8 +152,8 @@ def _presence(path: model.Path, span: Span | None, scope: Scope) -> Expr | None:
     place = resolve_path(path, scope, type_index)
     if isinstance(place, Broken):
         return None
-    schema = scope.messages[place.side].schema
-    asked = is_found(place)
+    message = scope.messages[place.side]
+    schema, asked = message.schema, is_found(place, message)
     if any(isinstance(step, FieldStep) and isinstance(schema.resolve(step.field.type), Optional | Union) for step in place.steps):
         asked.append(Has(place, span=span))
     if asked:

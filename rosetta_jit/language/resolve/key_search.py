@@ -12,16 +12,18 @@ from rosetta_jit.language.functions.decisions import type_comparison
 from rosetta_jit.language.limits import MAX_KEY_SHOWN
 from rosetta_jit.language.resolve.absent_texts import text_there
 from rosetta_jit.language.resolve.list_items import compared_text
-from rosetta_jit.language.scope import Broken, resolve_path
-from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, IndexStep, Local, Place, Search
+from rosetta_jit.language.scope import Broken, element_type, resolve_path
+from rosetta_jit.language.typed import BOOL, INT64, Binary, Const, FieldStep, IndexStep, LenOf, Local, Place, Search
 from rosetta_jit.model import expr as model
 from rosetta_jit.model.printer import show_expr
+from rosetta_jit.model.types import Array, Bytes, Map
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosetta_jit.language.scope import Scope, Sought
+    from rosetta_jit.language.scope import Message, Scope, Sought
     from rosetta_jit.language.typed import Expr
+    from rosetta_jit.model.types import Type
 
     TypeExpr = Callable[[model.Expr, Scope], Expr | None]
 
@@ -49,6 +51,9 @@ KEY, VALUE = model.Name("key"), model.Name("value")
 def _key(sought: Sought, variable: Local, scope: Scope) -> Expr | None:
     """The key of the element of a number."""
     array, step = sought.array, sought.step
+    if sought.element is None:
+        place = Place(array.side, (*array.steps, IndexStep(variable)), _element_type(array, scope), step.span)
+        return text_there(place, step.span)
     element = Place(array.side, (*array.steps, IndexStep(variable)), sought.element.root, step.span)
     path = model.Path(array.side, tuple(model.Member(name, step.span) for name in step.names), step.span)
     within = replace(scope, messages={**scope.messages, array.side: sought.element}, bases={**scope.bases, array.side: element})
@@ -56,18 +61,41 @@ def _key(sought: Sought, variable: Local, scope: Scope) -> Expr | None:
     return None if isinstance(found, Broken) else text_there(found, step.span)
 
 
+def _element_type(array: Place, scope: Scope) -> Type:
+    """The type of the keys of an array that has nothing else."""
+    assert isinstance(array.type, Array | Bytes | Map)
+    return scope.messages[array.side].value_type(element_type(array.type))
+
+
 def _wanted(step: model.Keyed) -> str:
     name = "".join(f".{name}" for name in step.names)
+    which = f"whose `{name}` is" if name else "that is"
     if not isinstance(step.value, model.Literal | model.Name):
-        return f"whose `{name}` is what is looked for"
+        return f"{which} what is looked for"
     shown = show_expr(step.value)
-    return f"whose `{name}` is {shown if len(shown) <= MAX_KEY_SHOWN else f'{shown[:MAX_KEY_SHOWN]}...'}"
+    return f"{which} {shown if len(shown) <= MAX_KEY_SHOWN else f'{shown[:MAX_KEY_SHOWN]}...'}"
 
 
-def is_found(place: Place) -> list[Expr]:
-    """For each element on the way to a place that is known by a key: whether there is one, or several."""
-    return [
-        Binary("!=", replace(step.index, required=False), Const(-1, INT64), BOOL, step.span)
-        for step in place.steps
-        if isinstance(step, IndexStep) and isinstance(step.index, Search)
-    ]
+def is_found(place: Place, message: Message) -> list[Expr]:
+    """For each element on the way to a place that is known by a key: whether there is one, or several.
+
+    Where the keys are in an array beside, the array of the elements may end before.
+    """
+    found: list[Expr] = []
+    for number, step in enumerate(place.steps):
+        if isinstance(step, IndexStep) and isinstance(step.index, Search):
+            sought = replace(step.index, required=False)
+            found.append(Binary("!=", sought, Const(-1, INT64), BOOL, step.span))
+            if step.index.place.steps != place.steps[:number]:
+                found.append(Binary("<", sought, _length(place, number, message), BOOL, step.span))
+    return found
+
+
+def _length(place: Place, number: int, message: Message) -> Expr:
+    """How many elements the array has whose element is step ``number`` of a place."""
+    last = place.steps[number - 1]
+    assert isinstance(last, FieldStep)
+    type_ = message.value_type(last.field.type)
+    if isinstance(type_, Array) and type_.fixed is not None:
+        return Const(type_.fixed, INT64)
+    return LenOf(Place(place.side, place.steps[:number], type_))

@@ -1,7 +1,9 @@
 """Elements that rules set by a key: `.values[.key = "speed"].value = .speed` sets the first element that is set so, the next key the next.
 
 The keys of an array that rules of a block name are its first elements, in the order of the text. Each gets its key, and the array a length
-of as many, unless a rule sets that.
+of as many, unless a rule sets that. Where the keys are in an array beside, `.position[.name[] = "elbow"]`, all arrays that have elements by
+its keys get this length. A loop over a list of keys, `for i from 0 to len(joints) .position[.name[] = joints[i]] = ... end`, sets the
+elements of the loop's numbers.
 """
 
 from __future__ import annotations
@@ -14,8 +16,9 @@ from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.resolve.expressions import type_index
 from rosetta_jit.language.scope import Broken, resolve_path
-from rosetta_jit.model.expr import Index, Keyed, Literal, Member, Name, Path
+from rosetta_jit.model.expr import Given, Index, Item, Keyed, List, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, Default, For, SetLength, When
+from rosetta_jit.model.printer import show_expr
 from rosetta_jit.model.types import Array
 from rosetta_jit.model.walk import parts
 from rosetta_jit.startup.dataclass import dataclass
@@ -24,6 +27,8 @@ if TYPE_CHECKING:
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule
+
+    Loop = For[Rule, Expr]
 
 Key = tuple[tuple[str, ...], "Expr"]
 """The field of an element, and what it has."""
@@ -35,12 +40,25 @@ def numbered(rules: tuple[Rule, ...], scope: Scope) -> tuple[Rule, ...]:
 
 
 @dataclass(slots=True)
+class _Keys:
+    """The keys that rules name of an array, each with its number, and the arrays whose elements they tell: itself, or some beside.
+
+    Where they are the items of a list, ``loop`` is a loop over its numbers.
+    """
+
+    numbers: dict[Key, Index] = field(default_factory=dict["Key", "Index"])
+    elements: dict[Path, None] = field(default_factory=dict["Path", None])
+    loop: Loop | None = None
+
+
+@dataclass(slots=True)
 class _Block:
-    """The arrays of a block whose elements are set by keys, and those whose length a rule sets."""
+    """The arrays of a block that have keys, those whose length a rule sets, and the loops around."""
 
     scope: Scope
-    arrays: dict[Path, dict[Key, Index]] = field(default_factory=dict["Path", "dict[Key, Index]"])
+    arrays: dict[Path, _Keys] = field(default_factory=dict["Path", "_Keys"])
     measured: set[Path] = field(default_factory=set["Path"])
+    loops: tuple[Loop, ...] = ()
 
     def rules(self, rules: tuple[Rule, ...]) -> tuple[Rule, ...]:
         """All rules of a block, those for its arrays last."""
@@ -64,16 +82,16 @@ class _Block:
             case _:
                 return rule
 
-    def loop(self, rule: For[Rule, Expr]) -> Rule:
+    def loop(self, rule: Loop) -> Rule:
         """Arrays of which each round has its own are made in the loop; the others around it."""
-        known, around = len(self.arrays), self.scope
-        self.scope = around.inside(rule.variable)
+        known, around, outer = len(self.arrays), self.scope, self.loops
+        self.scope, self.loops = around.inside(rule.variable), (*outer, rule)
         body = [self.rule(each) for each in rule.body]
         own = [array for array in islice(self.arrays, known, None) if _varies(array, rule.variable)]
         body += [each for array in own for each in self.made(array)]
         for array in own:
             del self.arrays[array]
-        self.scope = around
+        self.scope, self.loops = around, outer
         return replace(rule, body=tuple(body))
 
     def placed(self, path: Path) -> Path:
@@ -86,26 +104,76 @@ class _Block:
     def number(self, array: Path, step: Keyed) -> Index:
         """Which element of its array a key has; the first to name it says so."""
         value = folded(step.value)
-        if not is_constant(value):
-            self.scope.problems.append(words.key_to_set(step.value.span))
-        keys = self.arrays.setdefault(array, {})
-        return keys.setdefault((step.names, value), Index(Literal(len(keys), step.span), step.span))
+        keys = self.arrays.setdefault(_array_of_keys(array, step), _Keys())
+        keys.elements[array] = None
+        key = step.names, value
+        if key not in keys.numbers:
+            keys.numbers[key] = self.next_number(keys, value, step)
+        return keys.numbers[key]
+
+    def next_number(self, keys: _Keys, value: Expr, step: Keyed) -> Index:
+        """The number of a key that no rule before has named: the next one, or the one that its list has it by."""
+        loop = next((loop for loop in self.loops if _is_item(value, loop)), None)
+        if loop is None:
+            if not is_constant(value):
+                self.scope.problems.append(words.key_to_set(step.value.span))
+            elif keys.loop is not None:
+                self.scope.problems.append(words.keys_of_list(step.value.span))
+            return Index(Literal(len(keys.numbers), step.span), step.span)
+        if keys.numbers:
+            self.scope.problems.append(words.keys_of_list(step.value.span))
+        if isinstance(value, Item) and (twice := _repeated(value)) is not None:
+            self.scope.problems.append(words.key_twice(step.value.span, twice))
+        keys.loop = loop
+        return Index(Name(loop.variable, step.span), step.span)
 
     def made(self, array: Path) -> list[Rule]:
-        """The rules for the keys of an array, and for its length."""
+        """The rules for the keys of an array, and for the lengths of those whose elements they tell."""
         keys = self.arrays[array]
-        found: list[Rule] = []
-        if array not in self.measured and not self.is_fixed(array):
-            found.append(SetLength(array, Literal(len(keys)), array.span))
-        for (names, value), index in keys.items():
+        count: Expr = Literal(len(keys.numbers)) if keys.loop is None else keys.loop.stop
+        found: list[Rule] = [
+            SetLength(each, count, each.span)
+            for each in dict.fromkeys((array, *keys.elements))
+            if each not in self.measured and not self.is_fixed(each)
+        ]
+        for (names, value), index in keys.numbers.items():
             members = tuple(Member(name, index.span) for name in names)
-            found.append(Assign(Path(array.side, (*array.steps, index, *members), index.span), value, index.span))
+            key: Rule = Assign(Path(array.side, (*array.steps, index, *members), index.span), value, index.span)
+            found.append(key if keys.loop is None else replace(keys.loop, body=(key,)))
         return found
 
     def is_fixed(self, array: Path) -> bool:
         """Whether the type says how long an array is; one that is not there is reported with the rules for its elements."""
         place = resolve_path(array, replace(self.scope, problems=[]), type_index)
         return isinstance(place, Broken) or (isinstance(place.type, Array) and place.type.fixed is not None)
+
+
+def _array_of_keys(array: Path, step: Keyed) -> Path:
+    """The array whose elements have the keys: the array of the elements, or one in the same message."""
+    if not step.beside:
+        return array
+    within = max(number for number, each in enumerate(array.steps) if isinstance(each, Member))
+    return replace(array, steps=(*array.steps[:within], *(Member(name, step.span) for name in step.beside)))
+
+
+def _is_item(value: Expr, loop: Loop) -> bool:
+    """Whether a key is the item of a list that a loop over all of its numbers is at."""
+    if loop.start != Literal(0):
+        return False
+    match value:
+        case Item(List(items), Name(name)):
+            return name == loop.variable and folded(loop.stop) == Literal(len(items)) and all(map(is_constant, items))
+        case Given(name, (Name(variable),)):
+            stop = folded(loop.stop)
+            return variable == loop.variable and isinstance(stop, Given) and stop.name == f"len({name})"
+        case _:
+            return False
+
+
+def _repeated(value: Item) -> str | None:
+    """The first item of a list that stands in it before."""
+    items = [show_expr(folded(each)) for each in value.items.items] if isinstance(value.items, List) else []
+    return next((each for number, each in enumerate(items) if each in items[:number]), None)
 
 
 def _varies(array: Path, variable: str) -> bool:

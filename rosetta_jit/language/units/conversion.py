@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import units as words
 from rosetta_jit.language.conversions import FLOAT64, convert, describe
 from rosetta_jit.language.function import functions
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Nearest, Unary
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Nearest, Reduce, Unary
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.numbers import exactly, nearest, scaled, scaled_before_rounding
 from rosetta_jit.language.units.places import Mixed, pairs_in_step, unit_at
@@ -104,6 +104,8 @@ def unit_of(value: Expr) -> Unit:
         case Call(function, arguments):
             units = functions()[function].units
             return next((unit for argument in arguments if (unit := unit_of(argument))), None) if units.keeps else units.gives
+        case Reduce(function, value=value):
+            return unit_of(value) if functions()[function].units.keeps else None
         case Choice(cases, otherwise):
             return next((unit for case in (*(value for _, value in cases), otherwise) if case and (unit := unit_of(case))), None)
         case _:
@@ -148,10 +150,12 @@ def _in_step(value: Expr, place: Place) -> bool:
 
 
 def _is_computed(value: Expr) -> bool:
-    """Whether two values with units were added or subtracted: a difference has no offset."""
+    """Whether values with units were added or subtracted: a sum has another offset, and a difference none."""
     match value:
         case Binary(_, left, right):
             return unit_of(left) is not None and unit_of(right) is not None
+        case Reduce("sum", value=each):
+            return unit_of(each) is not None
         case Unary(_, operand) | Convert(operand):
             return _is_computed(operand)
         case _:

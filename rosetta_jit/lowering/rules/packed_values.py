@@ -194,7 +194,7 @@ def _read_by(expr: typed.Expr) -> list[typed.Place]:
             return _indexed(place)
         case typed.Unary(_, operand) | typed.Convert(operand, _, _) | typed.Search(_, _, operand):
             return _read(operand)
-        case typed.Binary(_, left, right) | typed.Nearest(left, check=right):
+        case typed.Binary(_, left, right) | typed.Nearest(left, check=right) | typed.Reduce(_, _, left, right):
             return _read(left, right)
         case typed.Call(_, arguments) | typed.HostCall(_, arguments):
             texts = [each.place for each in arguments if isinstance(each, typed.Access) and is_textual(each.type)]

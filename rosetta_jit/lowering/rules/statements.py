@@ -20,7 +20,7 @@ from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.rules.copies import copy, is_endless
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
-from rosetta_jit.lowering.rules.key_search import look_ahead
+from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of
 from rosetta_jit.lowering.rules.rescaling import element_rule, names_of_elements
 from rosetta_jit.lowering.rules.state import remember

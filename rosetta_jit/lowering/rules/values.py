@@ -34,7 +34,9 @@ from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.fields import converted, scalar_name
 from rosetta_jit.lowering.rules.host_calls import called
 from rosetta_jit.lowering.rules.key_search import number_in
+from rosetta_jit.lowering.rules.look_ahead import look_ahead_of
 from rosetta_jit.lowering.rules.nearest import nearest
+from rosetta_jit.lowering.rules.reductions import reduced
 from rosetta_jit.lowering.rules.rejections import reject_with
 from rosetta_jit.lowering.rules.state import remembered
 from rosetta_jit.lowering.texts.comparison import is_text
@@ -48,7 +50,7 @@ if TYPE_CHECKING:
     from typing import TypeGuard
 
     from rosetta_jit.kernel.ir import Block, Stmt
-    from rosetta_jit.lowering.evaluation import Source
+    from rosetta_jit.lowering.evaluation import Awaited, Source
     from rosetta_jit.model.expr import Operator
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
@@ -67,10 +69,13 @@ class Values:
     groups: dict[typed.Expr, tuple[list[Stmt], Mapping[str, Expr]]] = field(
         default_factory=dict["typed.Expr", "tuple[list[Stmt], Mapping[str, Expr]]"]
     )
+    awaited: dict[typed.Expr, Awaited] = field(default_factory=dict["typed.Expr", "Awaited"])
 
     def of(self, value: typed.Expr) -> Expr:
         """The kernel expression of a number. Choices and searches are made once where they are known: nothing that rules read changes."""
-        is_kept = isinstance(value, typed.Search) or (isinstance(value, typed.IsText | typed.Choice) and not asks_others(value))
+        if isinstance(value, typed.Reduce) and value in self.awaited and self.writer.is_around(self.awaited[value].block):
+            return self.first_time(value, self.awaited[value])
+        is_kept = isinstance(value, typed.Search) or (isinstance(value, KEPT) and not asks_others(value))
         if not is_kept:
             return self.computed(value)
         block, found = self.decided.get(value, (None, None))
@@ -88,6 +93,14 @@ class Values:
             block, found = self.writer.block, compute()
             self.groups[value] = block, found
         return found
+
+    def first_time(self, value: typed.Reduce, awaited: Awaited) -> Expr:
+        """A value that is computed here unless it is known."""
+        with self.source.forgetting(), self.writer.nested() as body:
+            self.writer.assign(awaited.found, self.computed(value))
+            self.writer.assign(awaited.is_known, Const("bool", value=True))
+        self.writer.emit(If(Unary("not", awaited.is_known), block(body)))
+        return awaited.found
 
     def computed(self, value: typed.Expr) -> Expr:
         match value:
@@ -121,12 +134,24 @@ class Values:
                 return called(value, self)
             case typed.IsText(place, text):
                 return is_text(self, place, text.encode())
-            case typed.Has() | typed.Search():
-                return self.source.present(value.place, self) if isinstance(value, typed.Has) else number_in(value, self)
+            case typed.Has() | typed.Search() | typed.Reduce():
+                return self.asked(value)
             case typed.StateVariable(_, number, _, type_):
                 return remembered(number, scalar_type(type_))
             case typed.Choice() | typed.Listed() | typed.Given():
                 return self.choice(value) if isinstance(value, typed.Choice) else self.listed(value)
+            case _:
+                assert_never(value)
+
+    def asked(self, value: typed.Has | typed.Search | typed.Reduce) -> Expr:
+        """What is asked of a place, or of the elements of arrays."""
+        match value:
+            case typed.Has(place):
+                return self.source.present(place, self)
+            case typed.Search():
+                return number_in(value, self)
+            case typed.Reduce():
+                return reduced(value, self)
             case _:
                 assert_never(value)
 
@@ -201,14 +226,18 @@ class Values:
         good = Const("bool", value=False) if when is None else Unary("not", when)
         self.writer.expect(good, "rejected", self.where, reason, line=self.line)
 
+    def look_ahead(self, asked: tuple[typed.Expr, ...]) -> None:
+        """Before a loop that computes some expressions: what is the same in each round, and takes a loop of its own."""
+        look_ahead_of(asked, self)
+
     def with_local(self, name: str, number: Expr, *, afresh: bool = False) -> Values:
         """The same where a loop variable has a value; ``afresh`` where what was decided may be something else for it."""
         variables = {**self.variables, name: number}
-        return replace(self, variables=variables, decided={}, groups={}) if afresh else replace(self, variables=variables)
+        return replace(self, variables=variables, decided={}, groups={}, awaited={}) if afresh else replace(self, variables=variables)
 
     def with_locals(self, numbers: Mapping[str, Expr]) -> Values:
         """The same where these names alone have values, and nothing is decided yet."""
-        return replace(self, variables=numbers, decided={}, groups={})
+        return replace(self, variables=numbers, decided={}, groups={}, awaited={})
 
     def at_rule(self, span: Span | None) -> Values:
         """The same, with the rule's line for errors; without the folder, so that a kernel is the same wherever its mapping lies."""
@@ -308,6 +337,9 @@ class Values:
     def expect(self, condition: Expr, target: str) -> None:
         self.writer.expect(condition, "range", self.where, f"the value does not fit {NAMES.get(target, target)}", line=self.line)
 
+
+KEPT = (typed.IsText, typed.Choice, typed.Reduce)
+"""Values that take a loop, or statements."""
 
 FAILING = (Require, Expect, HostCall, Call)
 """Statements that may refuse a message."""

@@ -47,8 +47,12 @@ class WireSide:
         return Load(region.scalar, at, ">" if region.order == ">" else "<")
 
     def count(self, place: typed.Place, values: Evaluation) -> Expr:
+        """How many elements or bytes there are; how many an element has is known only while the walk is there."""
         del values
-        return self.root.size_of(wire_key(place)[0])
+        key, indices = wire_key(place)
+        if indices:
+            raise NotInPlaceError(key)
+        return self.root.size_of(key)
 
     def address(self, place: typed.Place, values: Evaluation) -> Address:
         """Where the bytes of a string or bytes field begin."""

@@ -120,6 +120,11 @@ CASES = {
         joints(name=["a", ""], position=[0.5, -0.25]),
         joints(made=True, name=["a", ""], position=[0.5, -0.25]),
     ),
+    "joint_angles": (
+        {"angles": [0.5, -0.25, 8.0]},
+        joints(name=["torso_roll", "neck", "torso_pitch", "torso_yaw"], position=[-0.25, 1.0, 8.0, 0.5], velocity=[1.0]),
+        joints(made=True, name=["torso_yaw", "torso_roll", "torso_pitch"], position=[0.5, -0.25, 8.0]),
+    ),
     "joint_torques": (ANGLES, joints(effort=EFFORTS), joints(made=True, effort=np.float32(EFFORTS).astype(float))),
     "trajectory_point": (ANGLES, trajectory(), trajectory(made=True)),
     "meta_data": ({"key": "k", "value": "é"}, *twice(theirs("diagnostic_msgs/KeyValue", key="k", value="é"))),

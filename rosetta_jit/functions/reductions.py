@@ -1,0 +1,152 @@
+"""Reductions: one value of many, which an expression with `[]` has. `min` and `max` of an array stand with those of several values."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue import reductions as words
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
+from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.language.conversions import FLOAT64, bounds
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
+from rosetta_jit.language.typed import BOOL, INT64
+from rosetta_jit.lowering.arithmetic import binary
+from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import Float, Int
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.language import typed
+    from rosetta_jit.language.scope import Scope
+    from rosetta_jit.lowering.elements import Elements
+    from rosetta_jit.model import expr as model
+
+NUMBERS = Numbers((INT64, Float(32), FLOAT64))
+
+SUM = Row("elements", "`sum(x[])`", ("numbers", "of their type, int64 for integers: added from the first to the last; 0 of none"))
+MEAN = Row(
+    "elements", "`mean(x[])`", ("numbers", "float64: the sum of the values as float64, divided by how many there are; `range` of none")
+)
+EXTREMES = Row(
+    "elements",
+    "`min(x[])`, `max(x[])`",
+    ("numbers", "of their type, int64 for integers; NaN where one is; `range` of none"),
+)
+CONDITIONS = Row(
+    "elements",
+    "`any(c[])`, `all(c[])`, `count(c[])`",
+    ("conditions", "whether one holds, whether each does: bool; how many do: int64. Of none: false, true, 0"),
+)
+BITS = Row("elements", "`xor(n[])`", ("integers", "int64: exclusive or of all, 0 of none"))
+
+
+# --- types ---------------------------------------------------------------------------------------------------------------
+
+
+def _type_single(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    """Whatever is no expression with `[]`."""
+    del arguments
+    scope.problems.append(words.not_of_each(call.span, call.function))
+    return None
+
+
+# --- kernels -------------------------------------------------------------------------------------------------------------
+
+
+def _zero(elements: Elements) -> Const:
+    """0 as a number of the type of the values."""
+    type_ = elements.reduce.value.type
+    assert isinstance(type_, Int | Float)
+    scalar = scalar_name(scalar_of(type_))
+    return Const(scalar, 0.0 if isinstance(type_, Float) else 0)
+
+
+def _lower_sum(elements: Elements) -> Expr:
+    """The sum from the first value to the last; of integers it never wraps."""
+    writer, values = elements.writer, elements.values
+    total = writer.var("sum", _zero(elements))
+    with elements.each() as value:
+        writer.assign(total, binary(writer, "+", total, value, values.where, values.line))
+    return total
+
+
+def _lower_mean(elements: Elements) -> Expr:
+    total = _lower_sum(elements)
+    return Binary("div", total, Convert("f64", elements.count))
+
+
+def lower_extreme(elements: Elements) -> Expr:
+    """The least or the largest value; what is once NaN stays so."""
+    writer, is_least = elements.writer, elements.reduce.function == "min"
+    found = writer.var("least" if is_least else "largest", _bound(elements, above=is_least))
+    with elements.each() as value:
+        number = writer.let("value", value)
+        replaces: Expr = Compare("lt" if is_least else "gt", number, found)
+        if type_of(number) in ("f32", "f64"):
+            replaces = Binary("or", replaces, Compare("ne", number, number))
+        writer.assign(found, Select(replaces, number, found))
+    return found
+
+
+def _bound(elements: Elements, *, above: bool) -> Const:
+    """A number of the type of the values that none of them is above, or below."""
+    type_ = elements.reduce.value.type
+    assert isinstance(type_, Int | Float)
+    scalar = scalar_name(scalar_of(type_))
+    if isinstance(type_, Float):
+        return Const(scalar, math.inf if above else -math.inf)
+    return Const(scalar, bounds(type_)[1 if above else 0])
+
+
+def _lower_joined(operator: Literal["and", "or"], elements: Elements) -> Expr:
+    """Whether conditions hold: each is looked at."""
+    writer = elements.writer
+    found = writer.var(elements.reduce.function, Const("bool", value=operator == "and"))
+    with elements.each() as holds:
+        writer.assign(found, Binary(operator, found, holds))
+    return found
+
+
+def _lower_count(elements: Elements) -> Expr:
+    writer, values = elements.writer, elements.values
+    found = writer.var("count", index(0))
+    with elements.each() as holds:
+        writer.assign(found, writer.checked("add", found, Select(holds, index(1), index(0)), values.where, line=values.line))
+    return found
+
+
+def _lower_xor(elements: Elements) -> Expr:
+    found = elements.writer.var("xor", index(0))
+    with elements.each() as value:
+        elements.writer.assign(found, Binary("xor", found, value))
+    return found
+
+
+# --- records -------------------------------------------------------------------------------------------------------------
+
+
+def _lower_none(_call: typed.Call, _values: object) -> Expr:
+    raise AssertionError("only expressions with `[]` are reduced")
+
+
+of_each = partial(Function, signature=_type_single, lower=_lower_none, inverse=SEVERAL, law=NOT_FOLLOWED)
+FUNCTIONS = (
+    of_each("sum", rows=(SUM,), units=Units(keeps=True), reduction=Reduction(NUMBERS, _lower_sum)),
+    of_each(
+        "mean", rows=(MEAN,), units=Units(keeps=True), reduction=Reduction(Numbers((FLOAT64,)), _lower_mean, of_nothing="there is no value")
+    ),
+    *(
+        of_each(name, rows=(CONDITIONS,), operation="predicate assignment", reduction=Reduction(None, lower, gives))
+        for name, lower, gives in (
+            ("any", partial(_lower_joined, "or"), BOOL),
+            ("all", partial(_lower_joined, "and"), BOOL),
+            ("count", _lower_count, INT64),
+        )
+    ),
+    of_each("xor", rows=(BITS,), reduction=Reduction(Numbers((INT64,)), _lower_xor)),
+)

@@ -1,0 +1,128 @@
+"""What is the same in each round of a loop, and takes a loop of its own: it is computed once.
+
+What cannot fail is computed before the loop. A reduction that can fail is computed in the first round that asks for it, so that a loop
+without rounds, and a round that does not ask, fail as they would alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosetta_jit.kernel.ir import Const
+from rosetta_jit.language import typed
+from rosetta_jit.language.algebra.normal_form import rebuilt
+from rosetta_jit.lowering.evaluation import Awaited
+from rosetta_jit.lowering.rules.reductions import zero_of
+from rosetta_jit.model.expr import COMPARISONS, LOGIC
+from rosetta_jit.model.types import Float
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosetta_jit.lowering.evaluation import Evaluation
+
+
+def look_ahead(rules: tuple[typed.Rule, ...], values: Evaluation) -> None:
+    """Before a loop over rules."""
+    look_ahead_of(tuple(_in_rules(rules)), values)
+
+
+def look_ahead_of(asked: tuple[typed.Expr, ...], values: Evaluation) -> None:
+    """Before a loop that computes some expressions."""
+    for each in (part for expr in asked for part in _parts(expr)):
+        if not all(name in values.variables for name in _free_variables(each)):
+            continue
+        if isinstance(each, typed.Search) and _finds(each):
+            values.of(replace(each, required=False))
+        elif isinstance(each, typed.Reduce) and _reduces(each):
+            values.of(replace(each, required=False, refused=()))
+        elif isinstance(each, typed.Reduce) and each not in values.awaited:
+            known = values.writer.var("known", Const("bool", value=False))
+            values.awaited[each] = Awaited(known, values.writer.var("reduced", zero_of(each)), values.writer.block)
+
+
+def _finds(search: typed.Search) -> bool:
+    """Whether a search cannot fail: for a text or number that is written down, as the key of an array of the message itself."""
+    match search.condition:
+        case typed.IsText():
+            return _is_plain(search.place)
+        case typed.Binary(_, typed.Access(), typed.Const()):
+            return _is_plain(search.place)
+        case _:
+            return False
+
+
+def _reduces(reduce: typed.Reduce) -> bool:
+    """Whether a reduction of as many elements as there are cannot fail, but where there must be one."""
+    is_sum_of_integers = reduce.function == "sum" and not isinstance(reduce.type, Float)
+    plain_count = isinstance(reduce.count, typed.LenOf) and _is_plain(reduce.count.place)
+    return plain_count and not reduce.refused and not is_sum_of_integers and _computes(reduce.value, reduce)
+
+
+def _computes(value: typed.Expr, reduce: typed.Reduce) -> bool:
+    """Whether a value of an element cannot fail."""
+    match value:
+        case typed.Const():
+            return True
+        case typed.Access(place):
+            return _is_element(place, reduce)
+        case typed.Unary(operator, operand):
+            return (operator == "not" or isinstance(value.type, Float)) and _computes(operand, reduce)
+        case typed.Convert(operand, _, "widen" | "nearest" | "wrap"):
+            return _computes(operand, reduce)
+        case typed.Binary(operator, left, right):
+            is_safe = isinstance(value.type, Float) or operator in COMPARISONS | LOGIC
+            return is_safe and _computes(left, reduce) and _computes(right, reduce)
+        case _:
+            return False
+
+
+def _is_element(place: typed.Place, reduce: typed.Reduce) -> bool:
+    """Whether a place is an element of the array that is reduced, or a field of one that need not be there."""
+    if not isinstance(reduce.count, typed.LenOf):
+        return False
+    array = reduce.count.place.steps
+    element, fields = place.steps[len(array) : len(array) + 1], place.steps[len(array) + 1 :]
+    if place.steps[: len(array)] != array or element != (typed.IndexStep(reduce.variable),):
+        return False
+    return all(isinstance(step, typed.FieldStep) and not step.field.required for step in fields)
+
+
+def _is_plain(place: typed.Place) -> bool:
+    """Whether a place is reached without looking for an element."""
+    return not any(isinstance(step, typed.IndexStep) for step in place.steps)
+
+
+def _free_variables(expr: typed.Expr) -> set[str]:
+    """The loop variables that an expression depends on."""
+    found = list(_parts(expr))
+    bound = {each.variable for each in found if isinstance(each, typed.Search | typed.Reduce)}
+    return {each.name for each in found if isinstance(each, typed.Local) and each not in bound}
+
+
+def _in_rules(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Expr]:
+    """The expressions that rules compute."""
+    for rule in rules:
+        match rule:
+            case typed.Assign(place, value) | typed.SetLength(place, value):
+                yield value
+                yield from (step.index for step in place.steps if isinstance(step, typed.IndexStep))
+            case typed.For(_, start, stop, body):
+                yield from (start, stop)
+                yield from _in_rules(body)
+            case typed.When(condition, then, otherwise):
+                yield condition
+                yield from _in_rules((*then, *otherwise))
+            case typed.Reject(pieces=pieces):
+                yield from pieces
+            case _:
+                pass
+
+
+def _parts(expr: typed.Expr) -> Iterator[typed.Expr]:
+    yield expr
+    below: list[typed.Expr] = []
+    rebuilt(expr, lambda part: below.append(part) or part)
+    for part in below:
+        yield from _parts(part)

@@ -1,0 +1,41 @@
+"""Reductions: one value of many. What is wrong with their elements is checked before them, where a value is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.kernel.ir import Compare, Const
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.language.function import functions
+from rosetta_jit.lowering.codec.fields import scalar_name
+from rosetta_jit.lowering.elements import Elements
+from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.types import Bool, Enum, Float, Int
+
+if TYPE_CHECKING:
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.language import typed
+    from rosetta_jit.lowering.evaluation import Evaluation
+
+
+def reduced(reduce: typed.Reduce, values: Evaluation) -> Expr:
+    """The value that a reduction has, if it is required an error where there is none."""
+    reduction = functions()[reduce.function].reduction
+    assert reduction is not None
+    if not reduce.required:
+        count = values.writer.let("count", values.of(reduce.count))
+        return cast("Expr", reduction.lower(Elements(reduce, count, values)))
+    for condition, why in reduce.refused:
+        values.reject(why, when=values.of(condition))
+    if reduction.of_nothing:
+        is_some = Compare("gt", values.of(reduce.count), index(0))
+        values.writer.expect(is_some, "range", values.where, reduction.of_nothing, line=values.line)
+    return values.of(replace(reduce, required=False, refused=()))
+
+
+def zero_of(reduce: typed.Reduce) -> Const:
+    """A number of the type of a reduction."""
+    assert isinstance(reduce.type, Bool | Enum | Float | Int)
+    scalar = scalar_name(scalar_of(reduce.type))
+    return Const(scalar, value=False if scalar == "bool" else 0.0 if scalar in ("f32", "f64") else 0)
