@@ -213,12 +213,12 @@ def import_not_found(span: Span | None, name: str, folders: Iterable[str]) -> Di
 
 
 def import_name(span: Span | None, name: str, why: str) -> Diagnostic:
-    """An import that is not a relative name within the search path."""
+    """An import that is not within the search path."""
     return error(
         "import-name",
         f'"{shorten(name)}" cannot be imported: {why}',
         span,
-        help_="imports are relative to the search path and stay within it",
+        help_="name a file of a folder on the search path, which ROSETTA_JIT_PATH adds to; or a type that such a file declares",
     )
 
 

@@ -22,7 +22,7 @@ from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.function import files_of_offered
-from rosetta_jit.language.imports.search import Reading, SearchPath
+from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
 from rosetta_jit.language.parse.unit_file import SUFFIX
 from rosetta_jit.lowering.lower import Mapped, lower
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.writer import References
     from rosetta_jit.pipeline.request import GivenFunction, Request
     from rosetta_jit.pipeline.stages import Made
-    from rosetta_jit.source import Span
+    from rosetta_jit.source import Source, Span
     from rosetta_jit.wire.codec import Encoding
 
 
@@ -367,9 +367,8 @@ def _imported(build: Build) -> Schema:
     types: dict[str, Any] = {}
     constants: dict[str, Any] = {}
     left_out: dict[str, Any] = {}
-    find = build.search.named if request.imports else build.search.find
     for name in names:
-        source = find(name)
+        source = _named(name, readers, build.search) if request.imports else build.search.find(name)
         if source is not None:
             build.reading.record(name, None, source)
             end = readers.find(source.name)
@@ -384,6 +383,13 @@ def _imported(build: Build) -> Schema:
         elif request.imports:
             raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
     return Schema(types, constants=constants, left_out=left_out)
+
+
+def _named(name: str, readers: Readers, search: SearchPath) -> Source | None:
+    """The file that the user names: by its path, or by a type that it declares."""
+    found = search.named(name)
+    homes = () if found is not None or readers.find(name) is not None else readers.homes(name)
+    return found or next((source for home in homes if not refusal(home) and (source := search.find(home)) is not None), None)
 
 
 def plain_site(site: Site) -> list[Any]:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import rosetta_jit as rj
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.language.imports.search import Reading, SearchPath, shipped_folders
 from rosetta_jit.language.limits import MAX_FILE_BYTES
@@ -55,8 +56,29 @@ def test_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert text_of(search.find("rst/vision/Image.proto")) != "here"
     assert text_of(search.named("rst/vision/Image.proto")) == "here"
     assert search.named("../none.proto") is None
-    with pytest.raises(SchemaError):
-        search.find(str(tmp_path / "x.proto"))
+    assert text_of(search.find(str(tmp_path / "x.proto"))) == text_of(search.named("x.proto")), "an absolute path in the current folder"
+    with pytest.raises(SchemaError, match="outside of the search path"):
+        search.find(str(tmp_path.parent / "x.proto"))
+    with pytest.raises(SchemaError, match="leaves the search path"):
+        search.find(f"{tmp_path}/../x.proto")
+
+
+def test_types_are_names_of_their_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    put(tmp_path / "lab" / "msg", "Spot.msg", "float64 x\n")
+    put(tmp_path, "point.proto", 'syntax = "proto2"; message Point { required double x = 1; }')
+    head = "data-holder: Point\nwire-schema: lab/msg/Spot\nrules:\n  .x <-> .x\n"
+    monkeypatch.chdir(tmp_path)
+    for number, names in enumerate([("lab/msg/Spot", "point.proto"), ("lab/Spot", str(tmp_path / "point.proto"))]):
+        put(tmp_path, f"m{number}.mapping", "".join(f'import "{name}"\n' for name in names) + head)
+        decode, encode = (kind(f"m{number}.mapping", encoding="cdr", backend="interpreter") for kind in (rj.Decoder, rj.Encoder))
+        assert decode(encode(encode.holder_type.from_dict({"x": 0.5}))).x == 0.5
+    for name in ("lab/msg/Spot", "lab/msg/Spot.msg", str(tmp_path / "lab/msg/Spot.msg")):
+        write = rj.Encoder.of("lab/msg/Spot", imports=[name], encoding="cdr", backend="interpreter")
+        assert write(write.holder_type.from_dict({"x": 0.5}))
+    shipped = rj.Encoder.of("sensor_msgs/msg/Imu", imports=["sensor_msgs/msg/Imu"], encoding="cdr", backend="interpreter")
+    assert shipped.holder_type.__name__ == "Imu"
+    with pytest.raises(SchemaError, match="lab/msg/Spots"):
+        rj.Encoder.of("lab/msg/Spot", imports=["lab/msg/Spots"], encoding="cdr")
 
 
 @pytest.mark.parametrize("name", ["../x", "a/../../x", "/etc/passwd", "", "a\0b", "a\nb", "c:/x", "a\\b", "~/x", "."])

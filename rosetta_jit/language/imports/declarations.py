@@ -49,8 +49,15 @@ class Imports:
         names = (name for name in self.front_ends.homes(type_) if not refusal(name))
         return next((name for name in names if self.search.find(name, self.importer) is not None), None)
 
+    def file(self, name: str) -> str:
+        """The file that is imported by a name: its own, or that of a type which it declares."""
+        is_file = self.front_ends.find(name) is not None or name.endswith(unit_file.SUFFIX)
+        if is_file or (not refusal(name) and self.search.find(name, self.importer) is not None):
+            return name
+        return self.home(name) or name
+
     def read(self, statement: Import) -> Imported | Diagnostic:
-        source = self.search.loader(self.reading, self.importer)(statement.path)
+        source = self.search.loader(self.reading, self.importer)(self.file(statement.path))
         if source is None:
             return words.import_not_found(statement.span, statement.path, map(str, self.search.folders))
         if source.name.endswith(unit_file.SUFFIX):

@@ -2,7 +2,8 @@
 
 In this order: texts given by the caller, the importing file's folder, the user's folders (argument, then the environment
 variable ROSETTA_JIT_PATH), what is shipped with the package, and the current folder. A file that the user names himself, in an
-argument, may also be a path of any form; one that a text imports never leaves the search path.
+argument, may also be a path of any form; one that a text imports never leaves the search path, whether it is named from a folder of that
+or by an absolute path.
 """
 
 from __future__ import annotations
@@ -89,15 +90,15 @@ class SearchPath:
         SchemaError
             The name leaves the search path, or the file or text is too large or no text.
         """
-        why = refusal(name)
+        texts = dict(self.files)
+        beside = (Path(importer.name).parent,) if importer and importer.name not in texts else ()
+        folders = (*beside, *self.folders)
+        why = refusal(name) or ("" if not _is_absolute(name) or _lies_in(name, folders) else "it lies outside of the search path")
         if why:
             raise SchemaError((words.import_name(None, name, why),))
-        texts = dict(self.files)
         if name in texts:
             return _given(name, texts[name])
-        beside = (Path(importer.name).parent,) if importer and importer.name not in texts else ()
-        candidates = (folder / name for folder in (*beside, *self.folders))
-        return next((_read(path) for path in candidates if _is_file(path)), None)
+        return next((_read(path) for path in (folder / name for folder in folders) if _is_file(path)), None)
 
     def preferred(self, lookup: Lookup) -> tuple[str, ...]:
         """The paths at which a file would have been found before the one that was."""
@@ -118,7 +119,9 @@ class SearchPath:
         texts = dict(self.files)
         if name in texts:
             return _given(name, texts[name])
-        return _read(Path(name)) if _is_file(Path(name)) else None if refusal(name) else self.find(name)
+        if _is_file(Path(name)):
+            return _read(Path(name))
+        return None if refusal(name) or _is_absolute(name) else self.find(name)
 
     def open(self, path: str | os.PathLike[str]) -> Source:
         """The mapping that the user names, as `named` finds it.
@@ -154,11 +157,20 @@ def refusal(name: str) -> str:
     parts = PurePosixPath(name).parts
     if not parts or not name.isprintable():
         return "it is not a file name"
-    if name.startswith(("/", "~")) or "\\" in name or ":" in parts[0]:
-        return "it is not relative"
+    if name.startswith("~") or "\\" in name or ":" in parts[0]:
+        return "it is no path that all systems have"
     if ".." in parts:
         return "it leaves the search path"
     return ""
+
+
+def _is_absolute(name: str) -> bool:
+    return PurePosixPath(name).is_absolute()
+
+
+def _lies_in(name: str, folders: tuple[Path, ...]) -> bool:
+    """Whether an absolute path names something in one of some folders."""
+    return any(Path(name).is_relative_to(place) for folder in folders for place in (folder.absolute(), folder.resolve()))
 
 
 def shipped_folders() -> tuple[Path, ...]:
