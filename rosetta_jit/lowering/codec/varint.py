@@ -221,10 +221,15 @@ def write_varint(writer: Writer, value: Expr, where: Where) -> None:
         for byte in varint_bytes(int(value.value)):
             writer.store(Const("u8", byte), where)
     elif writer.direction == "size":
-        (size,) = writer.call("varint_size", _size, (value,), where)
-        writer.advance(size)
+        writer.advance(size_of_varint(writer, value, where))
     else:
         (writer.position,) = writer.call("write_varint", _write, (writer.position, value), where)
+
+
+def size_of_varint(writer: Writer, value: Expr, where: Where) -> Local:
+    """How many bytes a u64 takes: one to `MAX_BYTES`."""
+    (size,) = writer.call("varint_size", _size, (value,), where)
+    return size
 
 
 def _write(writer: Writer) -> Contract:

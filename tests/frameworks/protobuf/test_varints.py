@@ -72,6 +72,27 @@ def test_values_of_many_messages(backend):
     assert bytes(encode.many(rows)[0]) == b"".join(messages)
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("kind", ["uint64", "sint32", "bool", "int32"])
+def test_arrays_are_measured_and_written(kind, backend):
+    """Behind a nested message, whose length takes the array's into account, and in front of another field."""
+    lines = (
+        f"message Inner {{ repeated {kind} numbers = 3; string name = 4; }}\nmessage Outer {{ Inner inner = 1; repeated {kind} more = 2; }}"
+    )
+    schema = {"o.proto": f"syntax = 'proto3';\n{lines}\n"}
+    encode = rj.Encoder.of("Outer", encoding="protobuf", schema=schema, backend=backend)
+    decode = rj.Decoder.of("Outer", encoding="protobuf", schema=schema, backend=backend)
+    numbers = {"uint64": values(23, 0), "sint32": [0, -1, 63, -65, 2**31 - 1, -(2**31)], "bool": [True, False], "int32": [-1, 0, 127, 128]}
+    for count in range(len(numbers[kind]) + 1):
+        holder = encode.new()
+        holder.inner.numbers.extend(numbers[kind][:count])
+        holder.inner.name = "n"
+        holder.more.extend(numbers[kind][count:])
+        message = encode(holder)
+        assert encode.size(holder) == len(message)
+        assert decode(message) == holder
+
+
 @pytest.mark.parametrize("fields", [2, MANY])
 def test_what_ends_too_early_or_never(fields):
     """Kind, field and place of a failure are the interpreter's, in every backend."""
