@@ -7,29 +7,34 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.c.statements import reached
 from rosetta_jit.generate.python.classes import classes, names_of
-from rosetta_jit.generate.python.expressions import CODES, view_name
+from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
 from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
+from rosetta_jit.generate.python.groups import grouped, scalar_of, undamaged
 from rosetta_jit.generate.python.objects import Collect, Make
-from rosetta_jit.kernel.ir import Advance, Const, Return
+from rosetta_jit.generate.python.statements import together
+from rosetta_jit.kernel.ir import WIDTH, Advance, Const, Require, Return, Store
 from rosetta_jit.kernel.shape import is_told, statements
+from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.python.expressions import Scope
     from rosetta_jit.generate.python.functions import Attempt
     from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Direction, Kernel
+    from rosetta_jit.kernel.ir import Direction, Kernel, Stmt
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
 
 RUNTIME = Path(__file__).with_name("runtime.py")
+DECIMALS = Path(__file__).with_name("decimals.py")
+OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
 
 
@@ -57,6 +62,9 @@ class _Module:
         parts += [self._reset()] if self.unit.state else []
         runtime = RUNTIME.read_text("utf-8")
         runtime = runtime[runtime.index("import math") :].rstrip()
+        if any(function in part for function in OF_DECIMALS for part in parts):
+            decimals = DECIMALS.read_text("utf-8")
+            runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
@@ -74,9 +82,11 @@ class _Module:
             if verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
             else:
-                method = "unpack_from" if verb == "load" else "pack_into"
+                method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
                 lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
+        if "encode" in self.unit.kernels and self._whole() is None:
+            lines += ["_room = [256]", '"""The room that messages took."""']
         if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
         if self.unit.state:
@@ -157,7 +167,46 @@ class _Module:
 
     # --- encoding --------------------------------------------------------------------------------------------------------------------
 
+    def _whole(self) -> list[Stmt] | None:
+        """The statements that write a message which is nothing but numbers one behind the other."""
+        kernel = self.unit.kernels["encode"]
+        *first, last = undamaged(reached(kernel.bodies[0]), kernel.sites)
+        stores = [stmt for stmt in first if isinstance(stmt, Store)]
+        if (
+            None in map(scalar_of, stores)
+            or not stores
+            or not isinstance(last, Return)
+            or not all(isinstance(stmt, Require | Store) for stmt in first)
+        ):
+            return None
+        size = sum(WIDTH[type_of(stmt.value)] for stmt in stores)
+        are_all = last.position == Const("i64", size) and stores[0].at == Const("i64", 0)
+        flat = is_flat(kernel, self._lanes(kernel))
+        return [*stores] if are_all and flat and len([*grouped(tuple(stores))]) == 1 else None
+
+    def _encode_whole(self, stores: list[Stmt]) -> str:
+        kernel = self.unit.kernels["encode"]
+        lanes = self._lanes(kernel)
+        scope = Scope(Namespace(WORDS), lanes, flat=True, loads=self.loads, name=kernel.name, paths=self.paths)
+        collect = Collect(self.unit, lanes, self.structs, Writer(depth=2))
+        packed = together(scope, stores)
+        collect.root(scope.rows, flat=True)
+        return "\n".join(
+            [
+                f"def encode(target: {self.root}) -> bytes:",
+                '    """The message; raises `EncodeError`."""',
+                "    try:",
+                *collect.writer.lines,
+                f"        return {packed}",
+                "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",
+                '        raise EncodeError("range", "", str(error)) from error',
+            ]
+        )
+
     def _encoder(self) -> str:
+        whole = self._whole()
+        if whole is not None:
+            return self._encode_whole(whole)
         roles: tuple[Role, ...] = ("size", "encode")
         kernels: dict[Role, Kernel] = {role: self.unit.kernels[role] for role in roles}
         flat = all(is_flat(kernel, self._lanes(kernel)) for kernel in kernels.values())
@@ -208,23 +257,49 @@ class _Module:
             if lane and f"{name}_used" in needs | {each.replace("_room", "_used") for each in needs}:
                 writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
         self._told(writer, needs, "encode")
+        writer.lines = [line for line in writer.lines if line not in collect.replaced]
+        self.loads |= collect.wholes
         measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]
         bound = ", ".join(["needed", *measured]) + ("" if measured else ",")
-        writer.line(f"{bound} = {self._measured(attempts['size'], hidden)}")
-        lines = list(writer.lines)
         return "\n".join(
             [
                 f"def encode(target: {self.root}) -> bytes:",
                 '    """The message; raises `EncodeError`."""',
                 "    sites = _SIZE_SITES",
                 "    try:",
-                *lines,
-                "        sites, data = _ENCODE_SITES, bytearray(needed)",
-                f"        written = {attempts['encode'].name}({', '.join(['data', 'needed', '1 << 60', *attempts['encode'].needs])})",
+                *writer.lines,
+                *self._written(f"{bound} = {self._measured(attempts['size'], hidden)}", attempts["encode"], lanes),
                 "    except _Failed as failed:",
                 "        raise _error(sites, failed, None) from None",
                 "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",
                 '        raise EncodeError("range", "", str(error)) from error',
-                "    return bytes(data if written == needed else data[:written])",
+                "    return bytes(data) if written == len(data) else bytes(memoryview(data)[:written])",
             ]
         )
+
+    def _written(self, measure: str, encode: Attempt, lanes: Lanes) -> list[str]:
+        """Statements that write the message: measured first, where its size is known or the encoder needs what measuring finds.
+
+        Else a guess is tried, the room that other messages took: most fit, and what fails there is measured, and fails again with a reason.
+        """
+
+        def written(room: str) -> str:
+            return f"written = {encode.name}({', '.join(['data', room, '1 << 60', *encode.needs])})"
+
+        known = isinstance(self.unit.kernels["size"].bodies[0][0], Return)
+        if known or any(lanes.rows(lane) in encode.needs for lane in range(lanes.own, len(lanes.all))):
+            lines = [measure, "sites, data = _ENCODE_SITES, bytearray(needed)", written("needed")]
+            return [f"        {line}" for line in lines]
+        lines = [
+            "data = bytearray(_room[0])",
+            "try:",
+            f"    {written('len(data)')}",
+            "except _Failed:",
+            f"    {measure}",
+            "    sites, data = _ENCODE_SITES, bytearray(needed)",
+            f"    {written('needed')}",
+            "    _room[0] = needed",
+            "if len(data) > 4096 + 16 * written:",
+            "    _room[0] = written",
+        ]
+        return [f"        {line}" for line in lines]

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
 
+MOST_AT_ONCE = 40
+"""Numbers of an array of a fixed length that are packed by a function of its own."""
+
 OUTSIDE = 2
 """How deep the statements of `encode` are that stand in no loop."""
 
@@ -148,13 +151,18 @@ class Make:
 
 @dataclass(slots=True)
 class Collect:
-    """Statements that take an object apart: its numbers become locals, or parts of rows that are packed."""
+    """Statements that take an object apart: its numbers become locals, or parts of rows that are packed.
+
+    ``replaced`` are lines that begin lanes with no rows, in vain; ``wholes`` are functions that pack arrays of a fixed length.
+    """
 
     unit: Unit
     lanes: Lanes
     structs: dict[str, str]
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
     number: int = 0
+    replaced: set[str] = field(default_factory=set[str])
+    wholes: set[str] = field(default_factory=set[str])
 
     def name(self, what: str) -> str:
         self.number += 1
@@ -234,6 +242,7 @@ class Collect:
         if not isinstance(type_, Map) and isinstance(element, Number):
             size = WIDTH[element.scalar]
             if self.writer.depth == OUTSIDE and not self.unit.layout.recursive:  # nothing else is in that lane
+                self.replaced.add(f"{self.writer.depth * '    '}{lane} = bytearray()")
                 self.writer.line(f"{lane} = {self._raw(type_, element.scalar, at)}")
                 self._span(slot, "0", f"len({lane}){f' // {size}' if size > 1 else ''}", found)
                 return
@@ -257,8 +266,11 @@ class Collect:
                 return f'{at}.encode("utf-8", "surrogateescape")'
             case Bytes():
                 return at
+            case Array(_, int(length)) if 0 < length <= MOST_AT_ONCE:
+                self.wholes.add(whole := f"_whole_{CODES[scalar] * length}")
+                return f'{whole}(*{at}) if len({at}) == {length} else _packed("{CODES[scalar]}", {at})'
             case Array():
-                return f'array("{CODES[scalar]}", {at}).tobytes()'
+                return f'_packed("{CODES[scalar]}", {at})'
 
     def _rows(self, type_: Type, lane: int, at: str, start: str, count: str) -> None:
         """Rows for the elements of a list, which are reserved before any is filled."""

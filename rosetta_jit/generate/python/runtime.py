@@ -1,6 +1,7 @@
 """What generated modules have in common: it becomes part of each of them, so that a module needs the standard library alone."""
 # ruff: noqa: F401, N812, N818 - the classes use what this part does not; what ends an attempt is no error
 # pyright: reportUnusedImport=false, reportUnusedFunction=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+# pyright: reportUnknownArgumentType=false
 
 import math
 from array import array
@@ -10,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import count as _count
 from struct import Struct
 from struct import error as _StructError
+from struct import pack as _pack
 from time import time_ns as _time_ns
 from typing import Any
 
@@ -83,6 +85,13 @@ def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -
     grown = bytearray(wanted * size)
     grown[: len(lane)] = lane
     return grown, wanted
+
+
+def _packed(code: str, numbers: Any) -> bytes:
+    """The bytes of numbers as they lie in memory."""
+    if isinstance(numbers, array) and numbers.typecode == code:
+        return numbers.tobytes()
+    return _pack(f"={len(numbers)}{code}", *numbers)
 
 
 def _turned(part: Any, code: str) -> bytes:
