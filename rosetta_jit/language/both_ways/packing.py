@@ -16,6 +16,7 @@ from rosetta_jit.catalogue import derive as words
 from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
+from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
@@ -48,8 +49,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.inverse_parts import Digit
-    from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule, Way
     from rosetta_jit.source import Span
@@ -306,18 +305,6 @@ def _changes(call: Call) -> bool:
 def _is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:
     names = names_of(path_of(place))
     return any(all(a == b for a, b in zip(names, other, strict=False)) for other in fields)
-
-
-def checks_of(beside: Beside) -> tuple[Rule, ...]:
-    """Checks of what must hold besides a relation."""
-    span = beside.rule.span
-    return tuple(_within(digit, span) for digit in beside.digits)
-
-
-def _within(digit: Digit, span: Span | None) -> Rule:
-    is_below, is_above = Binary("<", digit.value, Literal(0, span), span), Binary(">=", digit.value, Literal(digit.below, span), span)
-    reason = words.no_digit(show_expr(digit.value), digit.below)
-    return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
 
 
 def with_known_indices(place: Field | List, known: Knowledge, loops: Loops) -> Field | List:
