@@ -16,6 +16,10 @@ MAX_SHOWN = 5
 """Fields that one report lists."""
 
 
+OTHER_PARTS = "the text has another number of parts than the mapping reads"
+"""Why a message is refused that would come back with other parts."""
+
+
 def disagrees(place: str, wanted: str) -> str:
     """Why a holder is refused that no message could have been unpacked to."""
     return f"`{shorten(place)}` is not `{shorten(wanted)}`, as the mapping says"

@@ -215,7 +215,9 @@ def _unary(frame: Frame, function: str, value: ir.Value, type_: Scalar) -> ir.Va
         if function == "neg":
             return builder.fneg(value)
         if function in ANGULAR:
-            return builder.call(intrinsic(frame.module, function, kind, [kind]), [value])
+            library = intrinsic(frame.module, function, kind, [kind])
+            library.attributes.add("readnone")  # so that the sine and the cosine of an angle are computed together
+            return builder.call(library, [value])
         name = {"abs": "fabs"}.get(function, function)
         return builder.call(intrinsic(frame.module, f"llvm.{name}.{type_}", kind, [kind]), [value])
     match function:

@@ -10,8 +10,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import derive as words
+from rosetta_jit.language.both_ways.checks import checks_of
 from rosetta_jit.language.both_ways.inverse import condition_in
-from rosetta_jit.language.both_ways.packing import Packing, checks_of
+from rosetta_jit.language.both_ways.packing import Packing
 from rosetta_jit.language.groups import component
 from rosetta_jit.language.limits import MAX_CONDITIONS
 from rosetta_jit.model.expr import Len, List, Path

@@ -201,7 +201,7 @@ def put_together(first: Expr, its: Expr, second: Expr, rest: Expr, type_of: Type
     call, other = taken_part(first), taken_part(second)
     assert call is not None
     assert other is not None
-    high, low = _until(first, its, call, type_of), _until(second, rest, other, type_of)
+    high, low = until(first, its, call, type_of), until(second, rest, other, type_of)
     function, limit = _whole_of(call), below(call)
     assert function is not None
     assert function.whole is not None
@@ -210,7 +210,7 @@ def put_together(first: Expr, its: Expr, second: Expr, rest: Expr, type_of: Type
     return solve(inner, whole, type_of), Digit(low, limit) if limit else None
 
 
-def _until(expr: Expr, value: Expr, call: Call, type_of: TypeOf) -> Expr:
+def until(expr: Expr, value: Expr, call: Call, type_of: TypeOf) -> Expr:
     """What a call within an expression must be, so that the expression is ``value``."""
     mark = Path("wire", ())
     return solve(_marked(expr, call, mark), value, lambda part: type_of(_marked(part, mark, call))).value

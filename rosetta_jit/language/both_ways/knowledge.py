@@ -53,6 +53,8 @@ class Beside:
     rule: Relation
     side: Side
     digits: tuple[Digit, ...]
+    refused: tuple[tuple[Expr, str], ...] = ()
+    """Conditions that must not hold, and why."""
 
 
 @dataclass(slots=True)

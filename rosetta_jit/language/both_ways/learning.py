@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import derive as words
 from rosetta_jit.language.both_ways.array_relations import equal_lengths
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solved
 from rosetta_jit.language.both_ways.inverse_parts import below, part, plain, put_together, rest_of, taken_part
 from rosetta_jit.language.both_ways.knowledge import Beside, Knowledge, Loop, Loops, key_of
+from rosetta_jit.language.both_ways.text_parts import numbers_of_texts
 from rosetta_jit.language.function import Affine, written
 from rosetta_jit.model.expr import Binary, Call, Choice, Len, Literal, Name, Path, Unary
 from rosetta_jit.model.mapping import Arranged, For, Relation
@@ -27,7 +29,7 @@ def learn(known: Knowledge, rules: tuple[Rule, ...], loops: Loops, is_assigned: 
     must pass them. What ``is_assigned`` is set by rules to pack.
     """
     relations = [each for each in _relations(rules, loops) if not _is_left(each[0], is_assigned)]
-    done = _pairs(known, relations)
+    done = _pairs(known, relations) | _texts(known, relations, is_assigned)
     done |= {id(rule) for rule, around in sorted(relations, key=_loss) if id(rule) not in done and _solve(known, rule, around)}
     later = [each for each in relations if id(each[0]) not in done]
     for _ in range(2):
@@ -138,6 +140,24 @@ def _put_together(known: Knowledge, rule: Relation, other: Relation, loops: Loop
     _say(known, rule, solution.place, solution.value, loops)
     known.beside[id(other)] = Beside(other, "holder", digits)
     return True
+
+
+def _texts(known: Knowledge, relations: list[tuple[Relation, Loops]], is_assigned: Callable[[Field], bool]) -> set[int]:
+    """Relations that together name all numbers of a text set it together; gives the relations for which that is so."""
+    done: set[int] = set()
+    for text in numbers_of_texts(relations):
+        (first, loops), *others = text.relations
+        if any(map(is_assigned, fields_in(text.text))):
+            continue
+        try:
+            solution = text.solved(known.type_of)
+        except NoInverseError:
+            continue
+        _say(known, first, solution.place, solution.value, loops)
+        known.beside[id(first)] = Beside(first, "wire", (), ((text.too_many, words.OTHER_PARTS),))
+        known.beside.update({id(rule): Beside(rule, "holder", ()) for rule, _ in others})
+        done |= {id(rule) for rule, _ in text.relations}
+    return done
 
 
 def _solve_choice(known: Knowledge, rule: Relation, parts: tuple[Expr, Expr, Expr], place: Expr, loops: Loops) -> bool:

@@ -16,14 +16,15 @@ from rosetta_jit.catalogue import derive as words
 from rosetta_jit.catalogue import groups, layouts
 from rosetta_jit.language.both_ways.array_relations import with_layouts
 from rosetta_jit.language.both_ways.branches import asked_of_holder, facts_of, test_between
+from rosetta_jit.language.both_ways.checks import agreement, checks_of, guard
 from rosetta_jit.language.both_ways.inverse import NoInverseError, condition_in, fields_in, solve
 from rosetta_jit.language.both_ways.knowledge import Knowledge, Loop, Loops, key_of
 from rosetta_jit.language.both_ways.learning import learn
-from rosetta_jit.language.folding import FALSE, TRUE, folded
+from rosetta_jit.language.folding import folded
 from rosetta_jit.language.function import written
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_BLOCKS
-from rosetta_jit.model.expr import Binary, Call, Held, Len, List, Literal, Path, Unary
+from rosetta_jit.model.expr import Binary, Call, Held, Len, List, Literal, Path
 from rosetta_jit.model.mapping import (
     Arranged,
     Assign,
@@ -48,8 +49,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.both_ways.inverse import TypeOf
-    from rosetta_jit.language.both_ways.inverse_parts import Digit
-    from rosetta_jit.language.both_ways.knowledge import Beside
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Rule, Way
     from rosetta_jit.source import Span
@@ -161,7 +160,7 @@ class Packing:
             self.problems.append(groups.compared(rule.span))
             return ()
         if not missing:
-            return _check(place, wanted, rule)
+            return agreement(place, wanted, rule)
         conditional = condition_in(rule.value)
         if conditional is not None and not fields_of(place, "wire"):
             return self.split(rule, conditional, loops)
@@ -267,7 +266,7 @@ class Packing:
             if fields_of(condition, "wire"):
                 left.append(owed)
             else:
-                guards += _guard(condition, owed.rule, holds=owed.holds)
+                guards += guard(condition, owed.rule, holds=owed.holds)
         self.owed = tuple(left)
         return guards
 
@@ -308,18 +307,6 @@ def _is_among(place: Field, fields: frozenset[tuple[str, ...]]) -> bool:
     return any(all(a == b for a, b in zip(names, other, strict=False)) for other in fields)
 
 
-def checks_of(beside: Beside) -> tuple[Rule, ...]:
-    """Checks of what must hold besides a relation."""
-    span = beside.rule.span
-    return tuple(_within(digit, span) for digit in beside.digits)
-
-
-def _within(digit: Digit, span: Span | None) -> Rule:
-    is_below, is_above = Binary("<", digit.value, Literal(0, span), span), Binary(">=", digit.value, Literal(digit.below, span), span)
-    reason = words.no_digit(show_expr(digit.value), digit.below)
-    return When(Binary("or", is_below, is_above, span), (Reject(reason, span),), (), span)
-
-
 def with_known_indices(place: Field | List, known: Knowledge, loops: Loops) -> Field | List:
     """A place of the holder, or several, whose indices packing can compute."""
     match place:
@@ -333,22 +320,6 @@ def with_known_indices(place: Field | List, known: Knowledge, loops: Loops) -> F
 
 def _setting(place: Path, value: Expr, span: Span | None, *, length: bool, way: Way = "checked") -> Rule:
     return SetLength(place, value, span) if length else Assign(place, value, span, way)
-
-
-def _check(place: Field | List, wanted: Expr, rule: Relation) -> tuple[Rule, ...]:
-    """That a holder has what unpacking is going to give, to the bit: -0 is not what 0 is unpacked to."""
-    held = Held(place, wanted, rule.span) if isinstance(place, Path) and not isinstance(wanted, Path) else wanted
-    reason = words.disagrees(show_expr(place), show_expr(wanted))
-    return (When(Binary("differs", place, held, rule.span), (Reject(reason, rule.span),), (), rule.span),)
-
-
-def _guard(condition: Expr, rule: When[Rule, Expr], *, holds: bool) -> tuple[Rule, ...]:
-    """That unpacking is going to take this block."""
-    if condition == (TRUE if holds else FALSE):
-        return ()
-    wrong = Unary("not", condition, rule.condition.span) if holds else condition
-    reason = words.other_block(show_expr(rule.condition), holds=holds)
-    return (When(wrong, (Reject(reason, rule.span),), (), rule.span),)
 
 
 def _is_tested(rule: Rule, test: Expr) -> bool:

@@ -1,17 +1,21 @@
 """Rules for several places: `.roll, .pitch, .yaw = euler(.q)` as one rule a place.
 
-The value is a group of as many numbers (`language.groups`), of which each place gets one; or a list, of which each gets an item. For both
+The value is a group of as many numbers (`language.groups`), of which each place gets one; or a list, of which each gets an item; or it is
+computed from the parts of a text, `number(split(.t, ","))`, of which each place gets one. For both
 directions a group stays whole, for it is turned round as a whole: a `Relation` with a list of places.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import groups as words
+from rosetta_jit.catalogue.derive import OTHER_PARTS
 from rosetta_jit.language.groups import component, group_of
-from rosetta_jit.model.expr import List
-from rosetta_jit.model.mapping import Assign, Relation
+from rosetta_jit.model.expr import Binary, Call, List, Literal
+from rosetta_jit.model.mapping import Assign, Reject, Relation, When
+from rosetta_jit.model.walk import parts, rebuilt
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
@@ -26,6 +30,8 @@ def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:
         values: tuple[Expr, ...] = tuple(component(rule.value, number) for number in range(len(group.components)))
     elif isinstance(rule.value, List):
         values = rule.value.items
+    elif any(_is_split(part) for part in parts(rule.value)):
+        values = tuple(_with_part(rule.value, number) for number in range(len(rule.places)))
     else:
         problems.append(words.no_group(rule.value.span))
         return ()
@@ -38,4 +44,22 @@ def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:
     pairs = tuple(zip(rule.places, values, strict=True))
     if rule.is_relation:
         return tuple(Relation(place, value, rule.span) for place, value in pairs)
-    return tuple(Assign(place, value, rule.span) for place, value in pairs)
+    checks = tuple(_other_parts(part, len(pairs)) for part in parts(rule.value) if isinstance(part, Call) and _is_split(part))
+    return (*checks, *(Assign(place, value, rule.span) for place, value in pairs))
+
+
+def _is_split(expr: Expr) -> bool:
+    return isinstance(expr, Call) and expr.function == "split"
+
+
+def _with_part(expr: Expr, number: int) -> Expr:
+    """An expression of all parts of a text as one of a single part."""
+    if isinstance(expr, Call) and _is_split(expr):
+        return replace(expr, function="part", arguments=(*expr.arguments, Literal(number, expr.span)))
+    return rebuilt(expr, lambda each: _with_part(each, number))
+
+
+def _other_parts(split: Call, count: int) -> Rule:
+    """A rejection of texts with another number of parts than there are places."""
+    other = Binary("!=", replace(split, function="parts"), Literal(count, split.span), split.span)
+    return When(other, (Reject(OTHER_PARTS, split.span),), (), split.span)

@@ -1,0 +1,95 @@
+"""Relations to the numbers of one text: `.x <-> number(part(.t, ",", 0))` and `.y <-> number(part(.t, ",", 1))` together say what `.t` is.
+
+Packing writes the numbers with the separators between them. Unpacking rejects a text that has more parts than relations.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosetta_jit.language.both_ways.inverse import Solution, fields_in, solve
+from rosetta_jit.language.both_ways.inverse_parts import until
+from rosetta_jit.model.expr import Binary, Call, Literal
+from rosetta_jit.model.walk import fields_of, parts
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.language.both_ways.inverse import TypeOf
+    from rosetta_jit.language.both_ways.knowledge import Loops
+    from rosetta_jit.model.expr import Expr
+    from rosetta_jit.model.mapping import Relation
+
+SPELT = frozenset("0123456789+-.einfa")
+"""Characters of numbers as text: none of them separates numbers."""
+
+Related = tuple["Relation", "Loops"]
+
+
+@dataclass(frozen=True, slots=True)
+class NumbersOfText:
+    """A text, and the relations to the numbers in it, by their place."""
+
+    text: Expr
+    separator: Literal
+    relations: tuple[Related, ...]
+
+    def solved(self, type_of: TypeOf) -> Solution:
+        """The text that has these numbers.
+
+        Raises
+        ------
+        NoInverseError
+        """
+        whole: Expr | None = None
+        for rule, _ in self.relations:
+            call = _numbered_part(rule)
+            assert call is not None
+            spelt = until(rule.value, rule.place, call, type_of)
+            whole = spelt if whole is None else Binary("+", Binary("+", whole, self.separator, rule.span), spelt, rule.span)
+        assert whole is not None
+        return solve(self.text, whole, type_of)
+
+    @property
+    def too_many(self) -> Expr:
+        """That a text has other numbers of parts than relations."""
+        span = self.text.span
+        return Binary("!=", Call("parts", (self.text, self.separator), span), Literal(len(self.relations), span), span)
+
+
+def numbers_of_texts(relations: list[Related]) -> list[NumbersOfText]:
+    """The texts of which relations name all numbers, from the first on."""
+    found: defaultdict[object, dict[int, Related]] = defaultdict(dict)
+    for rule, loops in relations:
+        call = _numbered_part(rule)
+        if call is not None:
+            text, separator, number = call.arguments
+            assert isinstance(number, Literal)
+            found[text, separator, loops].setdefault(int(number.value), (rule, loops))
+    whole = [numbered for numbered in found.values() if sorted(numbered) == list(range(len(numbered))) and len(numbered) > 1]
+    return [_of(tuple(numbered[number] for number in sorted(numbered))) for numbered in whole]
+
+
+def _of(relations: tuple[Related, ...]) -> NumbersOfText:
+    call = _numbered_part(relations[0][0])
+    assert call is not None
+    text, separator, _ = call.arguments
+    assert isinstance(separator, Literal)
+    return NumbersOfText(text, separator, relations)
+
+
+def _numbered_part(rule: Relation) -> Call | None:
+    """The part of a text that a relation reads a number from, where the only field is in the text."""
+    if len(fields_in(rule.value)) != 1 or fields_of(rule.place, "wire"):
+        return None
+    for each in parts(rule.value):
+        match each:
+            case Call("number" | "integer", (Call("part", (_, Literal(str(separator)), Literal(int()))) as call,)) if _separates(separator):
+                return call
+            case _:
+                pass
+    return None
+
+
+def _separates(text: str) -> bool:
+    return bool(text) and not SPELT & set(text)
