@@ -19,6 +19,7 @@ ORDER = (
     "native_image",
     "reorder",
     "groups",
+    "state",
     "mapped",
     "bridges",
     "peers",

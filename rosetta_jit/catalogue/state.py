@@ -81,4 +81,5 @@ def never_set(span: Span | None, name: str) -> Diagnostic:
 
 def never_read(span: Span | None, name: str) -> Diagnostic:
     """A state variable that no rule reads."""
-    return warning("state-never-read", f"no rule reads `{shorten(name)}`", span, help_="remove it")
+    title = f"no rule reads `{shorten(name)}`, but to set it again"
+    return warning("state-never-read", title, span, help_="remove it")

@@ -128,8 +128,9 @@ class Channel:
     def parts(
         self, *, start: Moment | None = None, end: Moment | None = None, pieces: range | None = None, on_error: OnError = "raise"
     ) -> Iterator[Part]:
-        """The messages, decoded some megabytes at a time into one batch that is filled again and again."""
+        """The messages, decoded some megabytes at a time into one batch that is filled again and again. State begins anew."""
         decoder, staging, batch, first = self.decoder, Staging(), None, 0
+        decoder.reset()
         for staged in staging.filled(ahead(self._blocks(start, end, pieces))):
             part = decoded_staged(decoder, staged, batch, on_error, first)
             batch = part.batch

@@ -156,13 +156,23 @@ class Share:
 
 
 def shares_of(paths: Sequence[str], reading: Reading, tasks: int) -> list[Share]:
-    """At least so many shares, if the logs have as many pieces. With as many logs as tasks, each log is one, and none is opened."""
+    """At least so many shares, if the logs have as many pieces. With as many logs as tasks, each log is one, and none is opened.
+
+    A log is not taken apart where the mapping keeps state: what a message becomes depends on all before it.
+    """
     if len(paths) >= tasks:
         return [Share(each) for each in paths]
     found = [(path, *_pieces(path, reading)) for path in paths]
     total = sum(each.size for _, pieces, _ in found for each in pieces.values())
     room = max(total // max(tasks, 1), LEAST_BYTES)
-    return [share for path, pieces, rows in found for share in _split(path, pieces, rows, room)]
+    shares = [share for path, pieces, rows in found for share in _split(path, pieces, rows, room)]
+    return [Share(each) for each in dict.fromkeys(share.path for share in shares)] if _keeps_state(shares, reading) else shares
+
+
+def _keeps_state(shares: Sequence[Share], reading: Reading) -> bool:
+    """Whether what a message becomes depends on those before it."""
+    by_mapping = reading.target is not None and reading.target.endswith(".mapping")
+    return by_mapping and bool(shares) and bool(reading.channel(shares[0].path).decoder.state)
 
 
 def _pieces(path: str, reading: Reading) -> tuple[dict[int, Piece], int | None]:

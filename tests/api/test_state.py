@@ -530,6 +530,17 @@ def test_a_function_that_calls_its_own_decoder_is_refused():
     assert [decode(message()).seen, decode(message()).seen] == [0, 1]
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_functions_of_ones_own_get_it_as_any_value(backend):
+    """Other threads may run while such a function does, so that all calls take the slow path, which keeps them out."""
+    text = MAPPING.replace("data-holder: M", "function half(float64): float64\ndata-holder: M")
+    text = text.replace(".low = low +", ".low = half(low) +")
+    options = {"encoding": "yarp4", "functions": {"half": lambda x: x / 2}, "backend": backend}
+    decode = rj.Decoder("m.mapping", schema=files(text), **options)
+    assert [(each.seen, each.low) for each in (decode(message(4.0)) for _ in range(2))] == [(0, 1.0), (1, 1.25)]
+    assert decode.many([message(4.0)] * 2).seen.tolist() == [2, 3]
+
+
 def test_compiled_code_of_ones_own_is_refused():
     with pytest.raises(ValueError, match="keeps state"):
         _ = decoder("llvm").kernel

@@ -21,6 +21,7 @@ from rosetta_jit.catalogue import nested as nested_words
 from rosetta_jit.catalogue import number_bytes as number_bytes_words
 from rosetta_jit.catalogue import reductions as reductions_words
 from rosetta_jit.catalogue import resolve as resolve_words
+from rosetta_jit.catalogue import state as state_words
 from rosetta_jit.catalogue import texts as texts_words
 from rosetta_jit.catalogue import unit_files as unit_files_words
 from rosetta_jit.catalogue import units as units_words
@@ -54,6 +55,7 @@ CATALOGUE = (
     derive_words,
     units_words,
     layouts_words,
+    state_words,
     texts_words,
     nested_words,
     functions_words,
@@ -66,8 +68,8 @@ CATALOGUE = (
     checksums_words,
 )
 MAKERS = ("error", "warning", "note", "placed", "in_one_way")
-OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found")
-"""What takes files: tests/language/test_search_path.py and tests/parsing/test_budget.py have it."""
+OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found", "in_used")
+"""What takes files: tests/language/test_search_path.py, tests/parsing/test_budget.py and tests/api/test_state.py have it."""
 
 OF_BOTH_WAYS = ("alike_blocks", "too_complex", "too_many_blocks", "unknown_condition")
 """What rules for both directions cannot decide: test_both_ways.py and test_hostile_mappings.py have it."""

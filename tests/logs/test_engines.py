@@ -63,6 +63,32 @@ def test_each_message_is_in_one_share(folder, name, tasks):
     assert all(table.schema == schema for each in found for table in each.tables(reading))
 
 
+STEPS = """import "t/msg/Point.msg"
+import "t/msg/Step.msg"
+state last: float64 = -0.25
+data-holder: t/msg/Step
+wire-schema: t/msg/Point
+unpack-rules:
+  ignore .name
+  .x = .x - last
+  state last = .x
+"""
+
+
+def test_a_log_is_whole_where_the_mapping_keeps_state(folder, tmp_path):
+    """Each message comes behind the one before it; another reading begins anew."""
+    (tmp_path / "t" / "msg").mkdir(parents=True)
+    for name, text in (("t/msg/Point.msg", POINT), ("t/msg/Step.msg", "float64 x\n"), ("step.mapping", STEPS)):
+        (tmp_path / name).write_text(text)
+    reading = Reading("/a", "step.mapping", options={"search_path": (str(tmp_path),)})
+    (share,) = shares_of([str(folder / "one.mcap")], reading, 7)
+    assert share.pieces is None
+    for _ in range(2):
+        assert numbers(share.tables(reading)) == [0.25] * COUNT
+    channel = rj.open(folder / "one.mcap", search_path=(str(tmp_path),))["/a", "step.mapping"]
+    assert [channel.to_arrow()["x"].to_pylist() for _ in range(2)] == [[0.25] * COUNT] * 2
+
+
 def test_the_count_of_a_log_that_is_one_share(folder, monkeypatch):
     monkeypatch.setattr(shares, "LEAST_BYTES", 1 << 20)
     (whole,) = shares_of([str(folder / "one.mcap")], Reading("/a"), 2)

@@ -50,16 +50,21 @@ def _set_in(rules: tuple[Rule, ...], before: Set, loop: str | None, problems: li
 
 
 def idle(mapping: model.Mapping) -> list[Diagnostic]:
-    """Warnings about variables that no rule of either direction sets, or reads."""
+    """Warnings about variables that no rule of either direction sets, or reads for anything but to set them again."""
     if not mapping.state:
         return []
     every = [*_every(mapping.unpack_rules or ()), *_every(mapping.pack_rules or ())]
     changed = {rule.variable for rule in every if isinstance(rule, model.SetState)}
-    read = {part.name for rule in every for expr in expressions_of(rule) for part in parts(expr) if isinstance(part, Name)}
+    read = {name for rule in every for name in _names(rule) if not (isinstance(rule, model.SetState) and rule.variable == name)}
     return [
         *(words.never_read(each.span, each.name) for each in mapping.state if each.name not in read),
         *(words.never_set(each.span, each.name) for each in mapping.state if each.name in read - changed),
     ]
+
+
+def _names(rule: model.Rule) -> set[str]:
+    """What the expressions of a rule name."""
+    return {part.name for expr in expressions_of(rule) for part in parts(expr) if isinstance(part, Name)}
 
 
 def _every(rules: tuple[model.Rule, ...]) -> Iterator[model.Rule]:
