@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import rosetta_jit as rj
-from rosetta_jit.api.options import type_request
+from rosetta_jit.api.options import request_of, type_request
 
 VECTORS = Path(__file__).resolve().parents[1] / "vectors"
 OPENRTM = ("openrtm/BasicDataType.idl", "openrtm/ExtendedDataTypes.idl", "openrtm/InterfaceDataTypes.idl")
@@ -107,3 +107,33 @@ def _protobuf():
     schema = base64.b64decode(known["file_descriptor_set_b64"])
     for name, messages in _by_type(known["records"], "hex").items():
         yield Corpus("protobuf", name, {"encoding": "protobuf", "schema": schema}, messages)
+
+
+NUMBERS = {
+    "a.bottle-schema": '"a" (("s" :string) ("f" :string) ("t" :string))',
+    "b.proto": 'syntax = "proto3"; package b; message Number { double x = 1; float g = 2; double y = 3; }',
+    "m.mapping": """import "a.bottle-schema"
+import "b.proto"
+data-holder: b.Number
+wire-schema: a
+unpack-rules:
+  .x = number(.s)
+  .g = float32(number(.f))
+  .y = number(.t)
+pack-rules:
+  .s = text(.x)
+  .f = text(.g)
+  .t = text(.y, 3)
+""",
+}
+
+
+def numbers_in_texts():
+    """A mapping that reads and writes decimal numbers: its request, the library's programs, and messages."""
+    options: Any = {"schema": NUMBERS, "encoding": "yarp3"}
+    decode, encode = rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+    values = (0.0, -0.1, 1e22, 5e-324, 123456.789, -(2.0**-97), 1.7976931348623157e308, float("inf"), float("nan"), 1 / 3)
+    messages = [
+        encode({"x": value, "g": value if abs(value) < 1e38 else 0.25, "y": value if abs(value) < 1e15 else 0.0625}) for value in values
+    ]
+    return request_of("decode", options, mapping="m.mapping"), (decode, encode), messages

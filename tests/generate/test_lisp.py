@@ -14,7 +14,7 @@ from rosetta_jit.generate.build import Wishes, generated
 from rosetta_jit.generate.lisp.texts import broken, literal
 from rosetta_jit.generate.lisp.words import Names, hyphenated, package_of, symbols
 from tests.generate import lisp
-from tests.generate.corpora import corpora
+from tests.generate.corpora import corpora, numbers_in_texts
 from tests.generate.driver import harmed
 from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
 from tests.generate.test_cpp import OUTER
@@ -43,7 +43,8 @@ def subject(name):
 @lisp.needs_sbcl
 def test_lisp_answers_as_the_library_does(tmp_path):
     """Values, bytes, and what is wrong with messages that are broken: of a mapping, of types, and of peers' messages."""
-    asked = [subject(name) for name in SUBJECTS]
+    request, programs, messages = numbers_in_texts()
+    asked = [*(subject(name) for name in SUBJECTS), (request, programs, harmed(messages, 12, "numbers"))]
     asked += [(each.request, each.programs(), harmed(list(each.messages[:4]), 4, each.name)) for each in corpora() if each.name in FEW]
     found = lisp.answers(tmp_path, [(request, messages) for request, _, messages in asked])
     for lines, (request, programs, messages) in zip(found, asked, strict=True):

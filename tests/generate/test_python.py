@@ -14,7 +14,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.build import Wishes, generated
-from tests.generate.corpora import corpora
+from tests.generate.corpora import corpora, numbers_in_texts
 from tests.generate.driver import expected, harmed
 from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
 from tests.generate.test_cpp import OUTER
@@ -75,6 +75,11 @@ def test_python_answers_as_the_library_does(name, module):
 @pytest.mark.parametrize("corpus", [each for each in corpora() if each.name in FEW], ids=lambda each: each.name)
 def test_messages_of_peers(corpus, module):
     answers_as_the_library(module(corpus.request), corpus.programs(), harmed(list(corpus.messages[:4]), 4, corpus.name))
+
+
+def test_decimal_numbers(module):
+    request, programs, messages = numbers_in_texts()
+    answers_as_the_library(module(request), programs, harmed(messages, 12, "numbers"))
 
 
 @pytest.mark.campaign

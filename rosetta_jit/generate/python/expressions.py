@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.catalogue import generate as words
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -174,9 +172,29 @@ def expression(scope: Scope, expr: Expr) -> str:
         case IsText(address, size):
             return _is_text(scope, address, expression(scope, size))
         case Nearest() | Digits() | Scale():
-            raise SchemaError((words.not_in_language(scope.name, "decimal numbers in texts", "python"),))
+            return _decimal(scope, expr)
         case _:
             assert_never(expr)
+
+
+def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> str:
+    match expr:
+        case Nearest(address, size, exponent):
+            (memory, start), count = location(scope, address), expression(scope, size)
+            return f"_nearest({memory}[{start} : {start} + {count}], {bare(expression(scope, exponent))})"
+        case Digits(value, None):
+            return f"_shortest({_and_width(scope, value)})[0]"
+        case Digits(value, places):
+            return f"_fixed_digits({bare(expression(scope, value))}, {places})"
+        case Scale(value):
+            return f"_shortest({_and_width(scope, value)})[1]"
+        case _:
+            assert_never(expr)
+
+
+def _and_width(scope: Scope, value: Expr) -> str:
+    """A float, and how many bits it has."""
+    return f"{bare(expression(scope, value))}, {8 * WIDTH[type_of(value)]}"
 
 
 def _known(scope: Scope, expr: Known) -> str:

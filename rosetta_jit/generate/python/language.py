@@ -30,6 +30,8 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
 
 RUNTIME = Path(__file__).with_name("runtime.py")
+DECIMALS = Path(__file__).with_name("decimals.py")
+OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
 
 
@@ -57,6 +59,9 @@ class _Module:
         parts += [self._reset()] if self.unit.state else []
         runtime = RUNTIME.read_text("utf-8")
         runtime = runtime[runtime.index("import math") :].rstrip()
+        if any(function in part for function in OF_DECIMALS for part in parts):
+            decimals = DECIMALS.read_text("utf-8")
+            runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
