@@ -82,6 +82,8 @@ class _Module:
                 method = "unpack_from" if verb == "load" else "pack_into"
                 lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
+        if "encode" in self.unit.kernels:
+            lines += ["_room = [256]", '"""The room that messages took."""']
         if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
         if self.unit.state:
@@ -213,23 +215,48 @@ class _Module:
             if lane and f"{name}_used" in needs | {each.replace("_room", "_used") for each in needs}:
                 writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
         self._told(writer, needs, "encode")
+        writer.lines = [line for line in writer.lines if line not in collect.replaced]
         measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]
         bound = ", ".join(["needed", *measured]) + ("" if measured else ",")
-        writer.line(f"{bound} = {self._measured(attempts['size'], hidden)}")
-        lines = list(writer.lines)
         return "\n".join(
             [
                 f"def encode(target: {self.root}) -> bytes:",
                 '    """The message; raises `EncodeError`."""',
                 "    sites = _SIZE_SITES",
                 "    try:",
-                *lines,
-                "        sites, data = _ENCODE_SITES, bytearray(needed)",
-                f"        written = {attempts['encode'].name}({', '.join(['data', 'needed', '1 << 60', *attempts['encode'].needs])})",
+                *writer.lines,
+                *self._written(f"{bound} = {self._measured(attempts['size'], hidden)}", attempts["encode"], lanes),
                 "    except _Failed as failed:",
                 "        raise _error(sites, failed, None) from None",
                 "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",
                 '        raise EncodeError("range", "", str(error)) from error',
-                "    return bytes(data if written == needed else data[:written])",
+                "    return bytes(data) if written == len(data) else bytes(memoryview(data)[:written])",
             ]
         )
+
+    def _written(self, measure: str, encode: Attempt, lanes: Lanes) -> list[str]:
+        """Statements that write the message: measured first, where its size is known or the encoder needs what measuring finds.
+
+        Else a guess is tried, the room that other messages took: most fit, and what fails there is measured, and fails again with a reason.
+        """
+
+        def written(room: str) -> str:
+            return f"written = {encode.name}({', '.join(['data', room, '1 << 60', *encode.needs])})"
+
+        known = isinstance(self.unit.kernels["size"].bodies[0][0], Return)
+        if known or any(lanes.rows(lane) in encode.needs for lane in range(lanes.own, len(lanes.all))):
+            lines = [measure, "sites, data = _ENCODE_SITES, bytearray(needed)", written("needed")]
+            return [f"        {line}" for line in lines]
+        lines = [
+            "data = bytearray(_room[0])",
+            "try:",
+            f"    {written('len(data)')}",
+            "except _Failed:",
+            f"    {measure}",
+            "    sites, data = _ENCODE_SITES, bytearray(needed)",
+            f"    {written('needed')}",
+            "    _room[0] = needed",
+            "if len(data) > 4096 + 16 * written:",
+            "    _room[0] = written",
+        ]
+        return [f"        {line}" for line in lines]

@@ -148,13 +148,17 @@ class Make:
 
 @dataclass(slots=True)
 class Collect:
-    """Statements that take an object apart: its numbers become locals, or parts of rows that are packed."""
+    """Statements that take an object apart: its numbers become locals, or parts of rows that are packed.
+
+    ``replaced`` are lines that begin lanes with no rows, in vain.
+    """
 
     unit: Unit
     lanes: Lanes
     structs: dict[str, str]
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
     number: int = 0
+    replaced: set[str] = field(default_factory=set[str])
 
     def name(self, what: str) -> str:
         self.number += 1
@@ -234,6 +238,7 @@ class Collect:
         if not isinstance(type_, Map) and isinstance(element, Number):
             size = WIDTH[element.scalar]
             if self.writer.depth == OUTSIDE and not self.unit.layout.recursive:  # nothing else is in that lane
+                self.replaced.add(f"{self.writer.depth * '    '}{lane} = bytearray()")
                 self.writer.line(f"{lane} = {self._raw(type_, element.scalar, at)}")
                 self._span(slot, "0", f"len({lane}){f' // {size}' if size > 1 else ''}", found)
                 return
@@ -258,7 +263,7 @@ class Collect:
             case Bytes():
                 return at
             case Array():
-                return f'array("{CODES[scalar]}", {at}).tobytes()'
+                return f'_packed("{CODES[scalar]}", {at})'
 
     def _rows(self, type_: Type, lane: int, at: str, start: str, count: str) -> None:
         """Rows for the elements of a list, which are reserved before any is filled."""

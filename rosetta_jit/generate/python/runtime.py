@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from itertools import count as _count
 from struct import Struct
 from struct import error as _StructError
+from struct import pack as _pack
 from time import time_ns as _time_ns
 from typing import Any
 
@@ -83,6 +84,11 @@ def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -
     grown = bytearray(wanted * size)
     grown[: len(lane)] = lane
     return grown, wanted
+
+
+def _packed(code: str, numbers: Any) -> bytes:
+    """The bytes of numbers as they lie in memory."""
+    return numbers.tobytes() if isinstance(numbers, array) and numbers.typecode == code else _pack(f"={len(numbers)}{code}", *numbers)
 
 
 def _turned(part: Any, code: str) -> bytes:
