@@ -77,6 +77,19 @@ def test_messages_of_peers(corpus, module):
     answers_as_the_library(module(corpus.request), corpus.programs(), harmed(list(corpus.messages[:4]), 4, corpus.name))
 
 
+@pytest.mark.parametrize(
+    ("type_", "good"), [("geometry_msgs/Twist", struct.pack("<6d", *range(6))), ("std_msgs/Bool", b"\1"), ("std_msgs/Time", b"\2" * 8)]
+)
+def test_messages_that_are_numbers_alone(type_, good, module):
+    """They are packed at once, if that can be."""
+    unit = module(type_request("decode", type_, {"encoding": "ros1"}))
+    programs = rj.Decoder.of(type_, encoding="ros1"), rj.Encoder.of(type_, encoding="ros1")
+    answers_as_the_library(unit, programs, harmed([good], 8, type_))
+    if type_ == "geometry_msgs/Twist":
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.Twist(linear=unit.Vector3(x="1")))
+
+
 def test_decimal_numbers(module):
     request, programs, messages = numbers_in_texts()
     answers_as_the_library(module(request), programs, harmed(messages, 12, "numbers"))

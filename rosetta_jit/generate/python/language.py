@@ -7,24 +7,27 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.backends.base import Writer
+from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.language import named_parts
+from rosetta_jit.generate.c.statements import reached
 from rosetta_jit.generate.python.classes import classes, names_of
-from rosetta_jit.generate.python.expressions import CODES, view_name
+from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
 from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
+from rosetta_jit.generate.python.groups import grouped, scalar_of, undamaged
 from rosetta_jit.generate.python.objects import Collect, Make
-from rosetta_jit.kernel.ir import Advance, Const, Return
+from rosetta_jit.generate.python.statements import together
+from rosetta_jit.kernel.ir import WIDTH, Advance, Const, Require, Return, Store
 from rosetta_jit.kernel.shape import is_told, statements
+from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.python.expressions import Scope
     from rosetta_jit.generate.python.functions import Attempt
     from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Direction, Kernel
+    from rosetta_jit.kernel.ir import Direction, Kernel, Stmt
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
@@ -79,10 +82,10 @@ class _Module:
             if verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
             else:
-                method = "unpack_from" if verb == "load" else "pack_into"
+                method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
                 lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
-        if "encode" in self.unit.kernels:
+        if "encode" in self.unit.kernels and self._whole() is None:
             lines += ["_room = [256]", '"""The room that messages took."""']
         if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
@@ -164,7 +167,46 @@ class _Module:
 
     # --- encoding --------------------------------------------------------------------------------------------------------------------
 
+    def _whole(self) -> list[Stmt] | None:
+        """The statements that write a message which is nothing but numbers one behind the other."""
+        kernel = self.unit.kernels["encode"]
+        *first, last = undamaged(reached(kernel.bodies[0]), kernel.sites)
+        stores = [stmt for stmt in first if isinstance(stmt, Store)]
+        if (
+            None in map(scalar_of, stores)
+            or not stores
+            or not isinstance(last, Return)
+            or not all(isinstance(stmt, Require | Store) for stmt in first)
+        ):
+            return None
+        size = sum(WIDTH[type_of(stmt.value)] for stmt in stores)
+        are_all = last == Return(Const("i64", size)) and stores[0].at == Const("i64", 0)
+        flat = is_flat(kernel, self._lanes(kernel))
+        return [*stores] if are_all and flat and len([*grouped(tuple(stores))]) == 1 else None
+
+    def _encode_whole(self, stores: list[Stmt]) -> str:
+        kernel = self.unit.kernels["encode"]
+        lanes = self._lanes(kernel)
+        scope = Scope(Namespace(WORDS), lanes, flat=True, loads=self.loads, name=kernel.name, paths=self.paths)
+        collect = Collect(self.unit, lanes, self.structs, Writer(depth=2))
+        packed = together(scope, stores)
+        collect.root(scope.rows, flat=True)
+        return "\n".join(
+            [
+                f"def encode(target: {self.root}) -> bytes:",
+                '    """The message; raises `EncodeError`."""',
+                "    try:",
+                *collect.writer.lines,
+                f"        return {packed}",
+                "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",
+                '        raise EncodeError("range", "", str(error)) from error',
+            ]
+        )
+
     def _encoder(self) -> str:
+        whole = self._whole()
+        if whole is not None:
+            return self._encode_whole(whole)
         roles: tuple[Role, ...] = ("size", "encode")
         kernels: dict[Role, Kernel] = {role: self.unit.kernels[role] for role in roles}
         flat = all(is_flat(kernel, self._lanes(kernel)) for kernel in kernels.values())

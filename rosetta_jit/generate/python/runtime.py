@@ -1,6 +1,7 @@
 """What generated modules have in common: it becomes part of each of them, so that a module needs the standard library alone."""
 # ruff: noqa: F401, N812, N818 - the classes use what this part does not; what ends an attempt is no error
 # pyright: reportUnusedImport=false, reportUnusedFunction=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+# pyright: reportUnknownArgumentType=false
 
 import math
 from array import array
@@ -88,7 +89,9 @@ def _more(lane: Any, room: int, missing: int, size: int, most: int, path: str) -
 
 def _packed(code: str, numbers: Any) -> bytes:
     """The bytes of numbers as they lie in memory."""
-    return numbers.tobytes() if isinstance(numbers, array) and numbers.typecode == code else _pack(f"={len(numbers)}{code}", *numbers)
+    if isinstance(numbers, array) and numbers.typecode == code:
+        return numbers.tobytes()
+    return _pack(f"={len(numbers)}{code}", *numbers)
 
 
 def _turned(part: Any, code: str) -> bytes:

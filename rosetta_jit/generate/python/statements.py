@@ -99,6 +99,14 @@ def print_block(function: Function, block: Block) -> None:
         function.line("pass")
 
 
+def together(scope: Scope, stores: Sequence[Stmt]) -> str:
+    """The bytes of scalars that lie one behind the other, by one call."""
+    found = [each for stmt in stores if (each := scalar_of(stmt)) is not None]
+    order = next((order for type_, _, order in found if WIDTH[type_] > 1), "<")
+    values = ", ".join(bare(expression(scope, stmt.value)) for stmt in stores if isinstance(stmt, Store))
+    return f"{scope.struct(order, ''.join(CODES[type_] for type_, _, _ in found), 'whole')}({values})"
+
+
 def _together(function: Function, group: list[Stmt]) -> None:
     """Scalars that lie one behind the other, by one call."""
     scope, found = function.scope, [each for stmt in group if (each := scalar_of(stmt)) is not None]
