@@ -258,6 +258,7 @@ class _Module:
                 writer.line(f"{name}_used = {name}_room = len({name}){f' // {stride}' if stride > 1 else ''}")
         self._told(writer, needs, "encode")
         writer.lines = [line for line in writer.lines if line not in collect.replaced]
+        self.loads |= collect.wholes
         measured = [f"{lanes.rows(lanes.own + number)}{end}" for number in range(hidden) for end in ("", "_room")]
         bound = ", ".join(["needed", *measured]) + ("" if measured else ",")
         return "\n".join(

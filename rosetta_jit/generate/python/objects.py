@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
 
+MOST_AT_ONCE = 40
+"""Numbers of an array of a fixed length that are packed by a function of its own."""
+
 OUTSIDE = 2
 """How deep the statements of `encode` are that stand in no loop."""
 
@@ -150,7 +153,7 @@ class Make:
 class Collect:
     """Statements that take an object apart: its numbers become locals, or parts of rows that are packed.
 
-    ``replaced`` are lines that begin lanes with no rows, in vain.
+    ``replaced`` are lines that begin lanes with no rows, in vain; ``wholes`` are functions that pack arrays of a fixed length.
     """
 
     unit: Unit
@@ -159,6 +162,7 @@ class Collect:
     writer: Writer = field(default_factory=lambda: Writer(depth=1))
     number: int = 0
     replaced: set[str] = field(default_factory=set[str])
+    wholes: set[str] = field(default_factory=set[str])
 
     def name(self, what: str) -> str:
         self.number += 1
@@ -262,6 +266,9 @@ class Collect:
                 return f'{at}.encode("utf-8", "surrogateescape")'
             case Bytes():
                 return at
+            case Array(_, int(length)) if 0 < length <= MOST_AT_ONCE:
+                self.wholes.add(whole := f"_whole_{CODES[scalar] * length}")
+                return f'{whole}(*{at}) if len({at}) == {length} else _packed("{CODES[scalar]}", {at})'
             case Array():
                 return f'_packed("{CODES[scalar]}", {at})'
 
