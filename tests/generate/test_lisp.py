@@ -130,9 +130,9 @@ WIDE_MESSAGE = (
 LOOP = """(flet ((consed (name run)
                      (funcall run)
                      (let ((before (sb-ext:get-bytes-consed)))
-                       (dotimes (i 1000)
+                       (dotimes (i 100000)
                          (funcall run))
-                       (format t "~A ~A~%" name (- (sb-ext:get-bytes-consed) before)))))
+                       (format t "~A ~D~%" name (floor (- (sb-ext:get-bytes-consed) before) 100000)))))
              %s)"""
 
 
