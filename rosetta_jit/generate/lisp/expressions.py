@@ -196,16 +196,14 @@ def _compare(op: str, type_: Scalar, left: str, right: str) -> str:
         if op in ("eq", "ne"):
             return f"(eq {left} {right})" if op == "eq" else f"(not (eq {left} {right}))"
         left, right = f"(if {left} 1 0)", f"(if {right} 1 0)"
-    if type_ in FLOATS and op in ("le", "ge"):
-        return f"(f<= {left} {right})" if op == "le" else f"(f<= {right} {left})"
-    return f"({COMPARISONS[op]} {left} {right})"
+    return f"({type_}{COMPARISONS[op]} codec {left} {right})" if type_ in FLOATS else f"({COMPARISONS[op]} {left} {right})"
 
 
 def _convert(target: Scalar, source: Scalar, value: str) -> str:
     if target == source:
         return value
     if target == "bool":
-        return f"(/= {value} {zero(source)})"
+        return _compare("ne", source, value, zero(source))
     if source == "bool":
         return f"(if {value} {constant(target, 1)} {zero(target)})"
     if source in FLOATS:

@@ -180,7 +180,7 @@ class _Module:
         ):
             return None
         size = sum(WIDTH[type_of(stmt.value)] for stmt in stores)
-        are_all = last.position == Const("i64", size) and stores[0].at == Const("i64", 0)
+        are_all = last == Return(Const("i64", size)) and stores[0].at == Const("i64", 0)
         flat = is_flat(kernel, self._lanes(kernel))
         return [*stores] if are_all and flat and len([*grouped(tuple(stores))]) == 1 else None
 

@@ -79,6 +79,8 @@
   (failure (make-failure) :type failure)
   (farthest (make-failure) :type failure)
   (most 0 :type i64)
+  (kept-f64 0d0 :type f64)
+  (kept-f32 0f0 :type f32)
   (now 0 :type i64)
   (number 0 :type i64)
   (u64-result-1 0 :type u64)

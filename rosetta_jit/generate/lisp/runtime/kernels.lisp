@@ -57,3 +57,25 @@
          (check-type found ,type)
          found)
      (refused () ,refused)))
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun kept (place codec number)
+    "The form of a number that has gone by way of a slot of the codec: the compiler draws no conclusions from it.
+
+From (< x 0d0) being false it would conclude that x is positive, which holds neither of NaN nor of -0."
+    (if (floatp number) number `(progn (setf (,place ,codec) ,number) (,place ,codec))))
+
+  (defun compared (operator place codec left right)
+    (let ((one (gensym "LEFT")) (other (gensym "RIGHT")) (strict (case operator (<= '<) (>= '>))))
+      `(let ((,one ,(kept place codec left)) (,other ,(kept place codec right)))
+         ,(if strict `(or (,strict ,one ,other) (= ,one ,other)) `(,operator ,one ,other))))))
+
+(defmacro define-comparisons (type place)
+  "(f64< codec a b) and so on."
+  `(progn
+     ,@(loop for operator in '(< > = /= <= >=)
+             collect `(defmacro ,(intern (format nil "~A~A" type operator)) (codec left right)
+                        (compared ',operator ',place codec left right)))))
+
+(define-comparisons f64 codec-state-kept-f64)
+(define-comparisons f32 codec-state-kept-f32)

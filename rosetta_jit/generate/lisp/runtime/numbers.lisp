@@ -124,7 +124,7 @@
              (setf (sb-vm:floating-point-modes) modes))))))
 
 (declaim (inline bits-of-f64 bits-of-f32 f64-of-bits f32-of-bits f64-of-f32 f32-of-f64 f64-of-i64 f32-of-i64 f64-of-u64 f32-of-u64
-                 f<= f64-min f64-max f32-min f32-max f64-sqrt f32-sqrt f64-rem f32-rem))
+                 f64-min f64-max f32-min f32-max f64-sqrt f32-sqrt f64-rem f32-rem))
 
 (defun bits-of-f64 (value)
   (declare #.*proven* (type f64 value))
@@ -170,10 +170,6 @@
   (if (< value #x8000000000000000)
       (f32-of-i64 (the i64 value))
       (* 2f0 (f32-of-i64 (the i64 (logior (ash value -1) (logand value 1)))))))
-
-(defun f<= (left right)
-  (declare #.*proven*)
-  (or (< left right) (= left right)))
 
 (defun f64-min (left right)
   (declare #.*proven* (type f64 left right))
