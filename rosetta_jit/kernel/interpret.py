@@ -174,20 +174,11 @@ def run(
     AssertionError
         The kernel broke an obligation that `verify` proves: a bug of ours.
     """
-    views = [memoryview(lane).cast("B") for lane in lanes]
-    views += [memoryview(bytearray())] * (len(kernel.strides) - len(views))
-    message = memoryview(buffer).cast("B")
-    own, hidden = range(kernel.lanes), range(kernel.lanes, len(kernel.strides))
-    capacities = [int(state[lane_word(k, CAPACITY)]) for k in own] + [len(views[k]) // kernel.strides[k] for k in hidden]
-    starts_empty = kernel.direction == "decode" and row == 0
-    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
-    routines = {routine.name: routine for routine in kernel.routines}
-    told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
+    fresh = _machine(kernel, buffer, state, lanes, row, functions)
     kept = () if registers is None else tuple(map(int, registers[: kernel.registers]))
     worst: _Failed | None = None
     for body in kernel.bodies:
-        parameters: dict[str, Value] = {"begin": begin, "end": end, "row": row}
-        machine = _Machine(kernel.strides, message, views, capacities, list(used), routines, told, kept, functions, parameters)
+        machine = replace(fresh, used=list(fresh.used), registers=kept, locals={"begin": begin, "end": end, "row": row})
         with np.errstate(all="ignore"):
             outcome = _block(machine, body)
         match outcome:
@@ -210,6 +201,19 @@ def run(
     if worst is None:
         raise AssertionError("a kernel without bodies")
     return _report(state, worst)
+
+
+def _machine(kernel: Kernel, buffer: Memory, state: State, lanes: Sequence[Memory], row: int, functions: Functions) -> _Machine:
+    """What each attempt starts with."""
+    views = [memoryview(lane).cast("B") for lane in lanes]
+    views += [memoryview(bytearray())] * (len(kernel.strides) - len(views))
+    own, hidden = range(kernel.lanes), range(kernel.lanes, len(kernel.strides))
+    capacities = [int(state[lane_word(k, CAPACITY)]) for k in own] + [len(views[k]) // kernel.strides[k] for k in hidden]
+    starts_empty = kernel.direction == "decode" and row == 0
+    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
+    routines = {routine.name: routine for routine in kernel.routines}
+    told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
+    return _Machine(kernel.strides, memoryview(buffer).cast("B"), views, capacities, used, routines, told, (), functions, {})
 
 
 def _report(state: State, failed: _Failed) -> int:

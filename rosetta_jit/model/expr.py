@@ -207,7 +207,7 @@ NEAREST = "(nearest)"
 
 @dataclass(frozen=True, slots=True)
 class Nearest:
-    """A relation solved for an integer: the one of this ``type`` nearest to ``value``, if the relation gives its place back.
+    """A relation solved for an integer: the one of this ``type`` nearest to ``value``, a float, if the relation gives its place back.
 
     ``again`` is the relation's expression with `NEAREST` for the field, ``place`` what that must be. No text has one; rules for both
     directions are made of them.

@@ -65,17 +65,8 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
             yield f"{indent}{_path(path)}: {_count(count)} elements{aligned}" + (f", {extra} fields among them:" if extra else ", each:")
             for each in (*head, item):
                 yield from _lines(each, depth + 1)
-        case Choice(path, scalar, alternatives, _, order, labels):
-            yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
-            for number, (value, each) in enumerate(alternatives):
-                yield f"{indent}{value}{f', written for {labels[number]}' if number < len(labels) else ''}:"
-                yield from _lines(each, depth + 1)
-        case Cases(path, discriminator, cases, default):
-            yield from _lines(discriminator, depth)
-            for number, (labels, each) in enumerate(cases):
-                words = [*map(str, labels), *(["any other"] if number == default else [])]
-                yield f"{indent}{', '.join(words)}, of {_path(path)}:"
-                yield from _lines(each, depth + 1)
+        case Choice() | Cases():
+            yield from _alternatives(codec, depth)
         case Maybe(path, value):
             yield f"{indent}{_path(path)}: u8 that says whether it follows"
             yield from _lines(value, depth + 1)
@@ -97,6 +88,23 @@ def _lines(codec: Codec, depth: int) -> Iterator[str]:
                 yield from _entry(entry, depth + 1)
         case _:
             yield indent + _leaf(codec)
+
+
+def _alternatives(codec: Choice | Cases, depth: int) -> Iterator[str]:
+    """What follows a number that says which of several it is."""
+    indent = "  " * depth
+    match codec:
+        case Choice(path, scalar, alternatives, _, order, labels):
+            yield f"{indent}{_scalar(scalar, order)} that says the form of {_path(path)}"
+            for number, (value, each) in enumerate(alternatives):
+                yield f"{indent}{value}{f', written for {labels[number]}' if number < len(labels) else ''}:"
+                yield from _lines(each, depth + 1)
+        case Cases(path, discriminator, cases, default):
+            yield from _lines(discriminator, depth)
+            for number, (labels, each) in enumerate(cases):
+                words = [*map(str, labels), *(["any other"] if number == default else [])]
+                yield f"{indent}{', '.join(words)}, of {_path(path)}:"
+                yield from _lines(each, depth + 1)
 
 
 def _members(members: tuple[Member, ...], depth: int) -> Iterator[str]:

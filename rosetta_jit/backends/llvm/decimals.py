@@ -110,11 +110,22 @@ def _fixed(function: ir.Function) -> None:
 
 def _nearest(function: ir.Function) -> None:
     """Copy the digits to where a NUL can stand behind them; those beyond the last that matter become one."""
-    module, (text, size, exponent) = function.module, function.args
-    names = ("entry", "loop", "byte", "digit", "keep", "drop", "next", "done", "nothing", "number")
-    entry, loop, byte, digit, keep, drop, next_, done, nothing, number = (function.append_basic_block(name) for name in names)
-    builder = ir.IRBuilder(entry)
+    text, size, exponent = function.args
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
     room = builder.alloca(I8, constant(MAX_DIGITS + EXPONENT_ROOM))
+    digits, dropped, rest = _copied(builder, text, size, room)
+    nothing, number = (function.append_basic_block(name) for name in ("nothing", "number"))
+    builder.cbranch(builder.icmp_signed("==", digits, constant(0)), nothing, number)
+    builder.position_at_end(nothing)
+    builder.ret(ir.Constant(F64, 0.0))
+    builder.position_at_end(number)
+    _read_digits(builder, room, digits, builder.icmp_signed("!=", rest, constant(0)), builder.add(exponent, dropped))
+
+
+def _copied(builder: ir.IRBuilder, text: ir.Value, size: ir.Value, room: ir.Value) -> tuple[ir.Value, ir.Value, ir.Value]:
+    """Copy digits behind leading zeros, as many as matter: how many were, how many were not, and whether one of these is not 0."""
+    names = ("loop", "byte", "digit", "keep", "drop", "next", "done")
+    loop, byte, digit, keep, drop, next_, done = (builder.append_basic_block(name) for name in names)
     at, kept, dropped, rest = (builder.alloca(I64) for _ in range(4))
     for slot in (at, kept, dropped, rest):
         builder.store(constant(0), slot)
@@ -144,16 +155,16 @@ def _nearest(function: ir.Function) -> None:
     builder.position_at_end(next_)
     builder.store(builder.add(get(at), constant(1)), at)
     builder.branch(loop)
-
     builder.position_at_end(done)
-    builder.cbranch(builder.icmp_signed("==", get(kept), constant(0)), nothing, number)
-    builder.position_at_end(nothing)
-    builder.ret(ir.Constant(F64, 0.0))
-    builder.position_at_end(number)
-    sticky = builder.zext(builder.icmp_signed("!=", get(rest), constant(0)), I64)
-    builder.store(ir.Constant(I8, ord("1")), builder.gep(room, [get(kept)], source_etype=I8))
-    behind = builder.gep(room, [builder.add(get(kept), sticky)], source_etype=I8)
-    power = builder.add(exponent, builder.sub(get(dropped), sticky))
+    return get(kept), get(dropped), get(rest)
+
+
+def _read_digits(builder: ir.IRBuilder, room: ir.Value, digits: ir.Value, is_more: ir.Value, exponent: ir.Value) -> None:
+    """Return the number of some digits and an exponent; where there was more than 0 behind the digits, they are followed by one more."""
+    module, sticky = builder.module, builder.zext(is_more, I64)
+    builder.store(ir.Constant(I8, ord("1")), builder.gep(room, [digits], source_etype=I8))
+    behind = builder.gep(room, [builder.add(digits, sticky)], source_etype=I8)
+    power = builder.sub(exponent, sticky)
     builder.call(_snprintf(module), [behind, constant(EXPONENT_ROOM - 2), _text(module, "e%lld"), power])
     builder.ret(_strtod(module, builder, room))
 

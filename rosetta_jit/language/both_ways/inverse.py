@@ -27,7 +27,7 @@ from rosetta_jit.language.folding import folded, is_constant
 from rosetta_jit.language.function import SEVERAL, Affine, ByType, Function, written
 from rosetta_jit.language.groups import arguments_of, component, function_of
 from rosetta_jit.model.expr import NEAREST, Binary, Call, Choice, Given, Item, Len, List, Literal, Name, Nearest, Path, Unary
-from rosetta_jit.model.types import Int, String
+from rosetta_jit.model.types import Float, Int, String
 from rosetta_jit.model.walk import parts, rebuilt, side_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -88,6 +88,8 @@ def solved(expr: Expr, value: Expr, type_of: TypeOf) -> Solution:
     type_ = type_of(found.place)
     if not isinstance(type_, Int):
         return Solution(found.place, rounded_bytes(found.value))
+    if not isinstance(type_of(found.value), Float):
+        return found
     return Solution(found.place, Nearest(found.value, _named(expr, found.place), value, type_, expr.span))
 
 

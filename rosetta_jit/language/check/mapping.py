@@ -25,7 +25,8 @@ from rosetta_jit.language.imports.mappings import read_others
 from rosetta_jit.language.imports.search import Reading
 from rosetta_jit.language.parameters.bind import bind, handed_on
 from rosetta_jit.language.parameters.state import NO_STATE, declared
-from rosetta_jit.language.resolve.rules import Resolved, derived, resolve
+from rosetta_jit.language.resolve.relations import derived
+from rosetta_jit.language.resolve.rules import Resolved, resolve
 from rosetta_jit.language.units.hand_factors import wrong_factors
 from rosetta_jit.language.units.side_files import annotated
 from rosetta_jit.model.types import name_parts
@@ -41,10 +42,11 @@ if TYPE_CHECKING:
     from rosetta_jit.language.imports.search import SearchPath
     from rosetta_jit.language.parameters.state import Declared
     from rosetta_jit.language.scope import Message
-    from rosetta_jit.language.typed import Rule
+    from rosetta_jit.language.typed import Rule, StateVariable
     from rosetta_jit.language.uses import Others, Signature, Use
     from rosetta_jit.model.expr import Side
     from rosetta_jit.model.mapping import Mapping
+    from rosetta_jit.model.types import Schema
     from rosetta_jit.parsing.idl import FrontEnds
 
 
@@ -94,40 +96,70 @@ def check(
     MappingError
         Everything that is wrong with the mapping and with what it imports, in the order of the text.
     """
+    texts = _read(mapping, Imports(mapping.source, front_ends, search, reading or Reading()), parameters)
+    state: Dictionary[Side, Dictionary[str, StateVariable]] = {side: texts.state.variables(side) for side in SIDES}
+    resolved = resolve(texts.mapping, texts.schema, texts.schema, texts.others, state) if texts.complete else ()
+    if not isinstance(resolved, Resolved):
+        raise _error([*texts.problems, *(_with_import(each, mapping, texts.imports) for each in resolved)])
+    problems = _wrong(texts, resolved)
+    if _errors(problems):
+        raise _error(problems)
+    problems += [*_silent_losses(texts.mapping, resolved, _blocks(texts.written)), *idle(texts.mapping)]
+    unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
+    functions, uses = dict(resolved.functions), tuple(texts.others.uses)
+    notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
+    both = resolved.holder, resolved.wire
+    return Checked(texts.mapping, *both, unpack, pack, functions, _sorted(warnings), uses, _sorted(notes), texts.state)
+
+
+@dataclass(frozen=True, slots=True)
+class _Texts:
+    """What is read for a mapping: as it is ``written``, and with the rules of each direction; the mappings and types that it uses.
+
+    ``complete`` is whether all of that could be read; ``underived`` says which relations could not be turned round.
+    """
+
+    written: Mapping
+    mapping: Mapping
+    others: Others
+    imports: Imports
+    imported: list[Imported]
+    schema: Schema
+    state: Declared
+    complete: bool
+    underived: list[Diagnostic]
+    problems: list[Diagnostic]
+
+
+def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object] | None) -> _Texts:
+    """Read what a mapping imports, and turn its relations round with the types of their fields."""
     problems: list[Diagnostic] = []
     bound: list[Diagnostic] = []
     underived: list[Diagnostic] = []
-    written, reading = bind(mapping, parameters, bound), reading or Reading()
-    relations = relations_of(written.rules or ())
-    read = read_others(written, search, reading, problems, handed_on(written, parameters))
-    imports = Imports(written.source, front_ends, search, reading)
+    written = bind(mapping, parameters, bound)
+    read = read_others(written, imports.search, imports.reading, problems, handed_on(written, parameters))
     imported = read_imports(written, imports, problems)
     theirs = [each for other in read.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
     merged = merge([*imported, *theirs], problems)
-    mapping = derived(written, merged, read, underived)
+    derived_mapping = derived(written, merged, read, underived)
     others = read.changed(lambda other: derived(other, merged, read, problems))
     complete = not _errors(problems)
     problems += [*_without_handed_on(bound, mapping, others), *underived]
     schema = annotated(merged, [file for each in (*imported, *theirs) for file in each.units], imports.has, problems)
-    state = declared(mapping, problems)
-    resolved = resolve(mapping, schema, schema, others, {side: state.variables(side) for side in SIDES}) if complete else ()
-    if not isinstance(resolved, Resolved):
-        raise _error([*problems, *(_with_import(each, mapping, imports) for each in resolved)])
-    problems += resolved.problems
-    packs = not _errors(underived) and not unclear(resolved.problems, relations)
-    problems = causes(problems, relations) + _directions(mapping, resolved, _blocks(written), packs=packs)
+    state = declared(derived_mapping, problems)
+    return _Texts(written, derived_mapping, others, imports, imported, schema, state, complete, underived, problems)
+
+
+def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
+    """What is wrong with the texts, with the rules, and with each direction as a whole."""
+    relations, mapping = relations_of(texts.written.rules or ()), texts.mapping
+    packs = not _errors(texts.underived) and not unclear(resolved.problems, relations)
+    problems = causes([*texts.problems, *resolved.problems], relations)
+    problems += _directions(mapping, resolved, _blocks(texts.written), packs=packs)
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
-    problems += _unused(imported, resolved)
-    problems += misnamed(mapping, schema)
+    problems += [*_unused(texts.imported, resolved), *misnamed(mapping, texts.schema)]
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
-    problems += [in_used(other.state[0].span, other.source.name) for other in others.mappings() if other.state]
-    if _errors(problems):
-        raise _error(problems)
-    problems += [*_silent_losses(mapping, resolved, _blocks(written)), *idle(mapping)]
-    unpack, pack = (None if block is None else block.rules for block in (resolved.unpack, resolved.pack))
-    functions, uses = dict(resolved.functions), tuple(others.uses)
-    notes, warnings = ([each for each in problems if (each.severity == "note") == is_note] for is_note in (True, False))
-    return Checked(mapping, resolved.holder, resolved.wire, unpack, pack, functions, _sorted(warnings), uses, _sorted(notes), state)
+    return problems + [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
 
 
 def _error(problems: Sequence[Diagnostic]) -> MappingError:

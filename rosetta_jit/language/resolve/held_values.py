@@ -13,7 +13,7 @@ from rosetta_jit.language.typed import Binary, Convert, Local, Nearest
 from rosetta_jit.language.units.conversion import in_unit
 from rosetta_jit.model.expr import NEAREST, Held, Path
 from rosetta_jit.model.expr import Binary as Operation
-from rosetta_jit.model.types import Enum, Float
+from rosetta_jit.model.types import Enum
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,10 +40,10 @@ def type_held(expr: model.Held, scope: Scope, type_expr: TypeExpr, type_index: T
 
 
 def type_nearest(expr: model.Nearest, scope: Scope, type_expr: TypeExpr) -> Expr | None:
-    """The typed form of a solved relation: of a float for an integer the nearest integer, if the relation gives its place back."""
+    """The typed form of a solved relation: the integer nearest to a float, if the relation gives its place back."""
     value = type_expr(expr.value, scope)
-    if value is None or not isinstance(value.type, Float):
-        return value
+    if value is None:
+        return None
     again = Held(expr.place, expr.again, expr.span) if isinstance(expr.place, Path) else expr.again
     check = type_expr(Operation("==", expr.place, again, expr.span), replace(scope, values={NEAREST: expr.type}))
     return Nearest(value, Local(NEAREST, expr.type), check, expr.type, expr.span) if isinstance(check, Binary) else None

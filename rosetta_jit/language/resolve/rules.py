@@ -13,14 +13,10 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
 from rosetta_jit.catalogue import state as states
-from rosetta_jit.catalogue.pipeline import too_large
 from rosetta_jit.language.arrays.elementwise import elementwise
-from rosetta_jit.language.both_ways.directions import in_each_direction
-from rosetta_jit.language.constants import constants_of
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
 from rosetta_jit.language.functions.decisions import type_condition
 from rosetta_jit.language.functions.texts import type_pieces
-from rosetta_jit.language.functions.user_functions import signatures
 from rosetta_jit.language.groups import group_of
 from rosetta_jit.language.limits import MAX_DEFAULTS, MAX_PROBLEMS
 from rosetta_jit.language.places import field_names, places_in
@@ -31,12 +27,12 @@ from rosetta_jit.language.resolve.groups import length_rules, paths_of, type_gro
 from rosetta_jit.language.resolve.held_values import fitted
 from rosetta_jit.language.resolve.keyed_rules import numbered
 from rosetta_jit.language.resolve.lengths_first import lengths_first
+from rosetta_jit.language.resolve.messages import checked_message, scope_between
 from rosetta_jit.language.resolve.nested import nest
 from rosetta_jit.language.resolve.overriding import last_ones
 from rosetta_jit.language.resolve.rest import defaulted, elements_filled, ignored
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
-from rosetta_jit.language.resolve.types_of import types_of
-from rosetta_jit.language.scope import Broken, Message, Scope, enums_of, resolve_path
+from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
 from rosetta_jit.language.typed import (
     Assign,
     Choice,
@@ -56,8 +52,7 @@ from rosetta_jit.language.units.wholes import change_within
 from rosetta_jit.language.uses import EnoughError
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
-from rosetta_jit.model.expansion import excess
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String, Struct, same_name
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -101,54 +96,17 @@ def resolve(
     ``others`` are the mappings that its rules may use; ``state`` has its state variables, for the rules that fill each side.
     """
     problems: list[Diagnostic] = []
-    holder_type = _message(holder, mapping.holder_type, mapping.holder_span, problems)
-    wire_type = _message(wire, mapping.wire_type, mapping.wire_span, problems)
+    holder_type = checked_message(holder, mapping.holder_type, mapping.holder_span, problems)
+    wire_type = checked_message(wire, mapping.wire_type, mapping.wire_span, problems)
     if holder_type is None or wire_type is None:
         return tuple(problems)
-    scope = _scope({"holder": holder_type, "wire": wire_type}, mapping, others, problems)
+    scope = scope_between({"holder": holder_type, "wire": wire_type}, mapping, others, problems)
     try:
         unpack = _block(mapping.unpack_rules, replace(scope, state=state["holder"]))
         pack = _block(mapping.pack_rules, replace(scope, target="wire", state=state["wire"]))
     except EnoughError:
         return tuple(problems)
     return Resolved(holder_type, wire_type, unpack, pack, frozenset(scope.named), tuple(problems), scope.functions)
-
-
-def derived(mapping: model.Mapping, schema: Schema, others: Others, problems: list[Diagnostic]) -> model.Mapping:
-    """A mapping with all rules of each direction in the block of that direction; with the types of its fields, where they are known."""
-    return in_each_direction(mapping, types_of(mapping.rules or (), lambda: scope_of(mapping, schema, others)), problems)
-
-
-def scope_of(mapping: model.Mapping, schema: Schema, others: Others) -> Scope | None:
-    """What the rules of a mapping that unpack can name; None where a side has no message, which `resolve` reports."""
-    holder, wire = (_named(schema, name) for name in (mapping.holder_type, mapping.wire_type))
-    if not isinstance(holder, Struct) or not isinstance(wire, Struct):
-        return None
-    return _scope({"holder": Message(holder, schema), "wire": Message(wire, schema)}, mapping, others, [])
-
-
-def _scope(messages: dict[Side, Message], mapping: model.Mapping, others: Others, problems: list[Diagnostic]) -> Scope:
-    holder, wire = (messages[side].schema for side in ("holder", "wire"))
-    enums, constants = enums_of(holder, wire), constants_of(*((holder,) if holder is wire else (holder, wire)))
-    functions = signatures((mapping, *others.mappings()), problems)
-    return Scope(messages, enums, constants, "holder", (), problems, set(), functions, others, rounds=mapping.rounds, is_old=mapping.is_old)
-
-
-def _named(schema: Schema, name: str) -> Type | None:
-    return schema.types.get(name) or next((type_ for known, type_ in schema.types.items() if same_name(known, name)), None)
-
-
-def _message(schema: Schema, name: str, span: Span | None, problems: list[Diagnostic]) -> Message | None:
-    found = _named(schema, name)
-    if isinstance(found, Struct):
-        why = excess(found, schema)
-        problems += [too_large(found.name, span, why)] if why else []
-        return None if why else Message(found, schema)
-    if found is None:
-        problems.append(words.unknown_type(span, name, [known for known, type_ in schema.types.items() if isinstance(type_, Struct)]))
-    else:
-        problems.append(words.not_a_message(span, name))
-    return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,12 +102,8 @@ def _skip(writer: Writer, scratch: int) -> Contract:
         writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
         writer.assign(at, after)
         _expect_position(writer, at, where)
-        with writer.nested() as inner:
-            writer.assign(last_tag, at)
-            writer.position = at
-            writer.assign(current, Convert("i64", read_tag(writer, where)))
-            writer.assign(at, writer.position)
-        writer.emit(If(Compare("gt", depth, index(0)), block(inner), (Assign(goes_on.name, Const("bool", value=False)),)))
+        inner = _next_tag(writer, at, last_tag, current, where)
+        writer.emit(If(Compare("gt", depth, index(0)), inner, (Assign(goes_on.name, Const("bool", value=False)),)))
         writer.assign(rounds, add(rounds, 1))
     invariant = (
         *writer.within(at),
@@ -124,6 +120,16 @@ def _skip(writer: Writer, scratch: int) -> Contract:
     has_stack = Compare("ge", base, index(0)), Compare("le", base, Binary("sub", Capacity(scratch), index(MAX_NESTING)))
     ensured = *writer.within(at), Compare("ge", at, start), *writer.within(last_tag)
     return Contract((start, tag, stop, base), (at, last_tag), (*writer.within(start), *writer.within(stop), *has_stack), ensured)
+
+
+def _next_tag(writer: Writer, at: Local, last_tag: Local, current: Local, where: Where) -> Block:
+    """Within a group: the tag of its next field."""
+    with writer.nested() as body:
+        writer.assign(last_tag, at)
+        writer.position = at
+        writer.assign(current, Convert("i64", read_tag(writer, where)))
+        writer.assign(at, writer.position)
+    return block(body)
 
 
 def _group_cases(writer: Writer, scratch: int, base: Local, depth: Local, tag: Local, where: Where) -> tuple[tuple[int, Block], ...]:

@@ -1,4 +1,4 @@
-"""The types of expressions before their rules are typed: relations are turned round with them."""
+"""Relations as rules for each direction, turned round with the types of their fields: names are looked up before rules are typed."""
 
 from __future__ import annotations
 
@@ -10,36 +10,50 @@ from rosetta_jit.language.arrays.counts import LayoutError
 from rosetta_jit.language.arrays.element_loops import element_at
 from rosetta_jit.language.arrays.layouts import view_of
 from rosetta_jit.language.arrays.parts import sources_in, substituted
+from rosetta_jit.language.both_ways.directions import in_each_direction
 from rosetta_jit.language.resolve.expressions import type_expr
+from rosetta_jit.language.resolve.messages import message_named, scope_between
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.mapping import For, When
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
-    from rosetta_jit.language.both_ways.inverse import TypeOf
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.uses import Others
     from rosetta_jit.model.expr import Expr
-    from rosetta_jit.model.mapping import Rule
-    from rosetta_jit.model.types import Type
+    from rosetta_jit.model.mapping import Mapping, Rule
+    from rosetta_jit.model.types import Schema, Type
 
 FIRST = Literal(0)
 
 
-def types_of(rules: tuple[Rule, ...], scope_of: Callable[[], Scope | None]) -> TypeOf:
-    """The types of expressions in rules; none where there is no scope. What is wrong with them is reported when the rules are typed."""
+def derived(mapping: Mapping, schema: Schema, others: Others, problems: list[Diagnostic]) -> Mapping:
+    """The mapping with all rules of each direction in the block of that direction.
+
+    Expressions whose names are wrong have no type; that is reported when the rules are typed.
+    """
 
     @cache
     def scope() -> Scope | None:
-        found = scope_of()
-        return None if found is None else replace(found, locals=tuple(_variables(rules)), problems=[], named=set())
+        return _scope(mapping, schema, others)
 
     def type_of(expr: Expr) -> Type | None:
         known = scope()
         typed = None if known is None else type_expr(_of_first(expr), known)
         return None if typed is None else typed.type
 
-    return type_of
+    return in_each_direction(mapping, type_of, problems)
+
+
+def _scope(mapping: Mapping, schema: Schema, others: Others) -> Scope | None:
+    """What rules that unpack can name, in all loops; None where a side has no message."""
+    holder, wire = (message_named(schema, name) for name in (mapping.holder_type, mapping.wire_type))
+    if holder is None or wire is None:
+        return None
+    found = scope_between({"holder": holder, "wire": wire}, mapping, others, [])
+    return replace(found, locals=tuple(_variables(mapping.rules or ())))
 
 
 def _of_first(expr: Expr) -> Expr:
