@@ -45,6 +45,12 @@ def offset(span: Span | None, source: str, target: str) -> Diagnostic:
     return error("unit", message, span, help_="assign what is meant in its own unit first, or multiply by the factor alone")
 
 
+def shifted(span: Span | None, source: str, target: str) -> Diagnostic:
+    """A relation that adds a constant to a field in another unit, in a way that is not turned round."""
+    message = f"what is added is in {shorten(target)}, and {shorten(source)} is not converted to that before it is taken away again"
+    return error("unit", message, span, help_="say in `pack-rules:` what the field is to be, or give both fields one unit")
+
+
 def mixed(span: Span | None, source: str, target: str) -> Diagnostic:
     """A rule for any of several elements whose units differ."""
     message = f"the units of these elements differ: from {source} to {target}"

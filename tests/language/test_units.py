@@ -148,3 +148,29 @@ def test_conversions(source, target, expected):
 
 def test_usual_units_are_known():
     assert all(conversion(unit, unit, same=False) == (1.0, 0.0) for unit in USUAL)
+
+
+@pytest.mark.parametrize(("relation", "read"), [(".d + 5.0", 0.105), ("5.0 - .d", -0.095), ("-(.d + 5.0)", -0.105)])
+@pytest.mark.parametrize(("wire", "holder"), [("double", "double"), ("float32", "double"), ("double", "float32")])
+def test_a_constant_is_in_the_unit_of_the_field_that_a_relation_reads(relation, read, wire, holder):
+    files = {
+        "a.bottle-schema": f'"a" (("d" :{wire} (:unit :mm)))',
+        "b.bottle-schema": f'"b" (("d" :{holder} (:unit :m)))',
+        "m.mapping": f'import "a.bottle-schema"\nimport "b.bottle-schema"\ndata-holder: b\nwire-schema: a\nrules:\n  .d <-> {relation}\n',
+    }
+    decode, encode = (make("m.mapping", schema=files, encoding="yarp4") for make in (rj.Decoder, rj.Encoder))
+    write, read_back = (make.of("a", schema=files, imports=["a.bottle-schema"], encoding="yarp4") for make in (rj.Encoder, rj.Decoder))
+    found = decode(write(write.holder_type.from_dict({"d": 100.0})))
+    assert found.d == pytest.approx(read)
+    assert read_back(encode(found)).d == pytest.approx(100.0)
+    assert decode.mapping.laws.messages.kind == "rounded"
+
+
+def test_a_constant_beside_an_integer_in_another_unit_is_refused():
+    files = {
+        "a.bottle-schema": '"a" (("d" :int32 (:unit :mm)))',
+        "b.bottle-schema": '"b" (("d" :double (:unit :m)))',
+        "m.mapping": 'import "a.bottle-schema"\nimport "b.bottle-schema"\ndata-holder: b\nwire-schema: a\nrules:\n  .d <-> .d + 5.0\n',
+    }
+    with pytest.raises(rj.MappingError, match="what is added is in mm"):
+        rj.Encoder("m.mapping", schema=files, encoding="yarp4")

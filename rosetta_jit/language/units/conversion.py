@@ -7,6 +7,7 @@ multiplied or divided is taken to have been converted by hand.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -53,6 +54,10 @@ def in_unit(value: Expr, place: Place, scope: Scope, *, packs: bool = False) -> 
     if factors[1] and _is_computed(value):
         scope.problems.append(words.offset(value.span, known, wanted))
         return None
+    if packs and _is_shifted(value):
+        shifted = _with_fields_converted(value, factors)
+        scope.problems.extend([words.shifted(value.span, known, wanted)] if shifted is None else [])
+        return shifted
     converted = _converted(value, place.type, (known, wanted), factors, packs=packs)
     if converted is None:
         scope.problems.append(_not_converted(value, place.type, known, wanted))
@@ -69,6 +74,32 @@ def _converted(value: Expr, target: Type, units: tuple[str, str], factors: Facto
     if packs and isinstance(value, Access) and isinstance(back, tuple):
         return nearest(value, target, factors, back)
     return scaled(value, FLOAT64, factors)  # which needs a word, as every float does
+
+
+def _is_shifted(value: Expr) -> bool:
+    """Whether something without a unit was added to a value with one: a constant is in the unit of the field that the relation reads."""
+    match value:
+        case Binary("+" | "-" | "%", left, right):
+            return (unit_of(left) is None) != (unit_of(right) is None) or _is_shifted(left) or _is_shifted(right)
+        case Unary(_, operand) | Convert(operand) | Nearest(operand):
+            return _is_shifted(operand)
+        case _:
+            return False
+
+
+def _with_fields_converted(value: Expr, factors: Factors) -> Expr | None:
+    """A sum with its fields in another unit before anything is added to them; None where it is no sum of floats."""
+    match value:
+        case Access():
+            return scaled(value, value.type, factors)
+        case Unary("-", operand) | Convert(operand, _, "widen"):
+            inner = _with_fields_converted(operand, factors)
+            return None if inner is None else replace(value, operand=inner)
+        case Binary("+" | "-" | "%", left, right):
+            one, other = _with_fields_converted(left, factors), _with_fields_converted(right, factors)
+            return None if one is None or other is None else replace(value, left=one, right=other)
+        case _:
+            return value if unit_of(value) is None else None
 
 
 def _not_converted(value: Expr, target: Type, known: str, wanted: str) -> Diagnostic:
