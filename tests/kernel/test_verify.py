@@ -30,6 +30,7 @@ from rosetta_jit.kernel.ir import (
     While,
     Wire,
 )
+from rosetta_jit.kernel.proof.loops import Guess
 from rosetta_jit.kernel.proof.verify import VerificationError, verify
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from tests.kernel import kernels
@@ -241,6 +242,17 @@ def test_loops():
     body = (need(at, 1), step)
     verify(kernel((start, For("i", END, body), need(at, 1), Let("x", Load("u8", at)), DONE)))
     refused(start, For("i", END, body), Let("x", Load("u8", at)), DONE, match="beyond the end")
+
+
+def test_a_body_that_the_usual_guesses_do_not_prove_is_walked_with_all(monkeypatch):
+    at = i64("at")
+    body = (need(at, 1), kernels.Assign("at", add(at, 1)))
+    every = {Guess("at", anchor, sign) for anchor in range(4) for sign in (1, -1)}
+    asked = []
+    monkeypatch.setattr("rosetta_jit.kernel.proof.verify.needless", lambda *_: asked.append(1) or every)
+    verify(kernel((Var("at", BEGIN), For("i", END, body), need(at, 1), Let("x", Load("u8", at)), DONE)))
+    assert asked
+    refused(Var("at", BEGIN), For("i", END, body), Let("x", Load("u8", at)), DONE, match="beyond the end")
 
 
 def test_memory_is_read_once():

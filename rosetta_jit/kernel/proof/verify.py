@@ -69,6 +69,7 @@ class _Walk:
     scope: Scope
     routines: Mapping[str, Routine]
     notes: bool = False
+    tries_all: bool = False
     loops: int = 0
     variables: set[str] = field(default_factory=set[str])
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
@@ -88,7 +89,7 @@ def verify(kernel: Kernel, record: Record | None = None) -> None:
     for number, body in enumerate(kernel.bodies):
         if record is not None:
             record.begin(f"body {number + 1}" if len(kernel.bodies) > 1 else "", kernel.sites)
-        _body(_Walk(entry(kernel.strides, record), routines), kernel, body)
+        _body(kernel, body, routines, record)
 
 
 def settled(kernel: Kernel) -> frozenset[int]:
@@ -103,8 +104,7 @@ def settled(kernel: Kernel) -> frozenset[int]:
     needed: set[int] = set()
     routines = _proven_routines(kernel)
     for body in kernel.bodies:
-        walk = _Walk(entry(kernel.strides), routines, notes=True)
-        _body(walk, kernel, body)
+        walk = _body(kernel, body, routines, notes=True)
         found |= walk.seen.keys()
         needed |= walk.needed
     return frozenset(found - needed)
@@ -139,13 +139,26 @@ def _routine(strides: tuple[int, ...], routine: Routine, before: tuple[Routine, 
     contracts.keep(walk.scope, routine)
 
 
-def _body(walk: _Walk, kernel: Kernel, body: Block) -> None:
+def _body(kernel: Kernel, body: Block, routines: Mapping[str, Routine], record: Record | None = None, *, notes: bool = False) -> _Walk:
+    """The walk of a body: with the guesses about its loops that are mostly enough or, where it is not proven with them, with all."""
+    written = 0 if record is None else record.mark()
+    walk = _Walk(entry(kernel.strides, record), routines, notes)
     try:
-        ended = _block(walk, body)
-        if not ended:
-            oblige(walk.scope, formula=False, claim=claims.RETURNS)
-    except UnprovenError as error:
-        raise VerificationError(f"kernel {kernel.name}: {error}") from error
+        _whole(walk, body)
+    except UnprovenError:
+        if record is not None:
+            record.retract(written)
+        walk = _Walk(entry(kernel.strides, record), routines, notes, tries_all=True)
+        try:
+            _whole(walk, body)
+        except UnprovenError as error:
+            raise VerificationError(f"kernel {kernel.name}: {error}") from error
+    return walk
+
+
+def _whole(walk: _Walk, body: Block) -> None:
+    if not _block(walk, body):
+        oblige(walk.scope, formula=False, claim=claims.RETURNS)
 
 
 def _block(walk: _Walk, block: Block) -> bool:
@@ -334,5 +347,5 @@ def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
         said, measure = (loop.invariant, loop.measure) if isinstance(loop, While) else ((), None)
-        dropped = walk.dropped[id(loop)] = needless(loop.body, said, measure, walk.scope.locals)
+        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals)
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave), dropped)
