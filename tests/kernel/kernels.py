@@ -76,8 +76,14 @@ def expect(condition: Expr, site: int = 2, at: Expr = BEGIN, *indices: Expr) -> 
 ROW_EXISTS = expect(Compare("lt", ROW, Capacity(0)), 5)
 
 
-def kernel(*bodies: Block, strides: tuple[int, ...] = (64, 8), sites: tuple[Site, ...] = SITES, direction: str = "decode") -> Kernel:
-    return Kernel("test", direction, strides, bodies, sites)
+def kernel(
+    *bodies: Block,
+    strides: tuple[int, ...] = (64, 8),
+    sites: tuple[Site, ...] = SITES,
+    direction: str = "decode",
+    registers: int = 0,
+) -> Kernel:
+    return Kernel("test", direction, strides, bodies, sites, registers=registers)
 
 
 def tagged_doubles(count: int) -> Kernel:

@@ -17,7 +17,9 @@ from rosetta_jit.kernel.ir import (
     Let,
     Load,
     Local,
+    Register,
     Reserve,
+    Return,
     Routine,
     Told,
     Used,
@@ -170,3 +172,9 @@ CASES.add("a negative stride", "a lane whose rows have less than no bytes", (), 
 CASES.accept("a negative stride", (), strides=(8, 0))
 CASES.refused["more hidden lanes than lanes"] = "2 of 1 lanes are hidden", Kernel("test", "decode", (8,), ((DONE,),), SITES, (), 2)
 CASES.accepted["more hidden lanes than lanes"] = Kernel("test", "decode", (8,), ((DONE,),), SITES, (), 1)
+
+# --- registers ---------------------------------------------------------------------------------------------------------
+
+ONCE, TWICE = ((number, index(0)) for number in range(2)), ((0, index(0)), (0, index(0)))
+CASES.add("a register beyond the last", "no register 2", (Let("x", Register(2)),), (Let("x", Register(1)),), registers=2)
+CASES.add("a register set twice", "a register that is set twice", (Return(END, TWICE), None), (Return(END, tuple(ONCE)), None), registers=2)
