@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder import Holder
     from rosetta_jit.runtime.lanes import Lanes
 
+    Target = tuple[NDArray[np.uint8], int]
+    """A buffer, and where to write in it."""
+
 _SIZES = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 """The compiled `sizes` (`backends/entry/encode.ll`): offsets, first, count, state; the first message that was not measured."""
 
@@ -211,10 +214,10 @@ class EncoderBase(Program):
             raise TypeError("an encoder takes a holder, and perhaps a buffer and an offset")
         if self._is_to_be_taken(arguments[0]):
             return self._call_with_foreign(*arguments)
-        holder = self._checked(arguments[0])
+        holder, target = self._checked(arguments[0]), _target(*arguments[1:])
         with holder.lanes_ as lanes, self._told(lanes):
             self._make_usable(holder)
-            return self._written_row(lanes, 0, *arguments[1:])
+            return self._written_row(lanes, 0, target)
 
     def _is_to_be_taken(self, value: object) -> bool:
         """Whether a value is no holder of this program's, but has the values of one: it is foreign, or of the same type elsewhere."""
@@ -240,15 +243,15 @@ class EncoderBase(Program):
         """Encode one message of a batch where it lies."""
         if self._asks:  # for the number of the message, which lanes of many messages count from the first of them
             return self._of_foreign(message, self, *more)
-        lanes, row = message.lanes_, message.index_
+        lanes, row, target = message.lanes_, message.index_, _target(*more)
         with lanes:
             place(message)
             if lanes.words[VALID] == CLEAN and lanes.source[0] is None:
-                return self._written_row(lanes, row, *more)
+                return self._written_row(lanes, row, target)
         from rosetta_jit.runtime.parts import joined
 
         with joined([(lanes, slice(row, row + 1))]) as alone:
-            return self._written_row(alone, 0, *more)
+            return self._written_row(alone, 0, target)
 
     def _of_foreign(self, value: object, use: Callable[..., Any], *more: object) -> Any:
         """What comes of a holder with the values of an object of another class, or of a dict."""
@@ -263,20 +266,18 @@ class EncoderBase(Program):
         finally:
             self._give_back(holder)
 
-    def _written_row(self, lanes: Lanes, row: int, buffer: object = None, offset: object = 0) -> Any:
+    def _written_row(self, lanes: Lanes, row: int, target: Target | None) -> Any:
         """The bytes of the message in a row; or, written into a buffer, the offset behind it."""
-        target = None if buffer is None else run.writable(buffer)
         size = self._measured(lanes, row)
         if target is None:
             with run.encoding():
                 written = np.empty(size, np.uint8)
             self._write(lanes, row, written, 0, size)
             return written.tobytes()
-        if not isinstance(offset, int):
-            raise TypeError(f"an offset is an int, not {type(offset).__name__}")
-        if not 0 <= offset <= target.size - size:
-            raise BufferError(f"the message takes {size} bytes, and {max(target.size - offset, 0)} are left behind offset {offset}")
-        return self._write(lanes, row, target, offset, offset + size)
+        buffer, offset = target
+        if not 0 <= offset <= buffer.size - size:
+            raise BufferError(f"the message takes {size} bytes, and {max(buffer.size - offset, 0)} are left behind offset {offset}")
+        return self._write(lanes, row, buffer, offset, offset + size)
 
     def _write(self, lanes: Lanes, row: int, target: NDArray[np.uint8], begin: int, end: int) -> int:
         with run.encoding():
@@ -284,6 +285,16 @@ class EncoderBase(Program):
         if result < 0:
             raise run.encode_error(self._loaded.sites[-1 - result], lanes)
         return result
+
+
+def _target(buffer: object = None, offset: object = 0) -> Target | None:
+    """Where in a buffer to write. Who gives the buffer may run any code when it is asked for: no lanes are in use yet."""
+    if buffer is None:
+        return None
+    found = run.writable(buffer)
+    if not isinstance(offset, int):
+        raise TypeError(f"an offset is an int, not {type(offset).__name__}")
+    return found, offset
 
 
 def _with_room(buffer: NDArray[np.uint8], used: int, size: int) -> NDArray[np.uint8]:

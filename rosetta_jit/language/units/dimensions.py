@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import re
-from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
@@ -15,6 +14,7 @@ from rosetta_jit.language.limits import MAX_UNIT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from fractions import Fraction
 
 WORD = r"[A-Za-z_°µΩ]+((\^|\*\*)?-?[0-9]{1,2})?"
 SCALE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?(?:[eE][+-]?[0-9]{1,2})?) ?\*? ?(?=[A-Za-z_°µΩ])")
@@ -85,13 +85,19 @@ def conversion(source: str, target: str, *, same: bool = True) -> tuple[float, f
     found = _conversion(one, other)
     if not isinstance(found, tuple) or many == parts == 1:
         return found
+    from fractions import Fraction
+
     return float(many * Fraction(found[0]) / parts), float(Fraction(found[1]) / parts)
 
 
-def _scale(unit: str) -> tuple[Fraction, str]:
+def _scale(unit: str) -> tuple[Fraction | int, str]:
     """How many of a unit are meant, and which one."""
     found = SCALE.match(unit)
-    return (Fraction(1), unit) if found is None else (Fraction(found[1]), unit[found.end() :])
+    if found is None:
+        return 1, unit
+    from fractions import Fraction  # few mappings need it
+
+    return Fraction(found[1]), unit[found.end() :]
 
 
 def _conversion(source: str, target: str) -> tuple[float, float] | str | None:
