@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
+import sys
+import threading
 import warnings
 from hashlib import sha256
 
@@ -12,6 +15,7 @@ import pytest
 from rosetta_jit.errors import CacheWarning
 from rosetta_jit.runtime.cache.kernels import ENTRY, MANIFEST, Cache
 from rosetta_jit.runtime.cache.sealed import MAGIC, DamagedError, seal, unseal
+from rosetta_jit.runtime.cache.stores import MemoryStore
 
 NAME = sha256(b"a kernel").hexdigest()
 OTHER = sha256(b"another kernel").hexdigest()
@@ -180,3 +184,26 @@ def test_reading_and_writing_a_good_cache_is_silent(cache):
         cache.put(NAME, HEADER, IMAGE)
         cache.get(NAME)
         cache.get(OTHER)
+
+
+def test_threads_list_the_files_of_a_process_while_others_write_and_remove_some():
+    store, stop, interval = MemoryStore(), threading.Event(), sys.getswitchinterval()
+
+    def change():
+        for number in itertools.count():
+            store.write(f"{number % 1000}", b"x")
+            store.remove(f"{(number + 500) % 1000}")
+            if stop.is_set():
+                return
+
+    sys.setswitchinterval(1e-6)
+    thread = threading.Thread(target=change)
+    thread.start()
+    try:
+        for number in range(2000):
+            assert all(each.size_bytes == 1 for each in store.stored())
+            assert store.read(f"{number % 1000}") in (None, b"x")
+    finally:
+        sys.setswitchinterval(interval)
+        stop.set()
+        thread.join()

@@ -60,15 +60,15 @@ class Store(Protocol):
 
 
 class MemoryStore:
-    """Files that end with the process."""
+    """Files that end with the process. Threads may use it at once: each look at all files is one step of CPython's."""
 
     def __init__(self) -> None:
         self._files: dict[str, tuple[bytes, int]] = {}
 
     def read(self, name: str) -> bytes | None:
-        if name not in self._files:
+        data, _ = self._files.get(name, (None, 0))
+        if data is None:
             return None
-        data, _ = self._files[name]
         self._files[name] = data, time.time_ns()
         return data
 
@@ -86,7 +86,7 @@ class MemoryStore:
         self._files.pop(name, None)
 
     def stored(self) -> list[Stored]:
-        return [Stored(name, len(data), used) for name, (data, used) in self._files.items()]
+        return [Stored(name, len(data), used) for name, (data, used) in list(self._files.items())]
 
 
 class FolderStore:
