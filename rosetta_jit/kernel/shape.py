@@ -61,7 +61,7 @@ MAX_EXPRESSION = 100
 SHORT = 32
 """Statements up to which a call costs any kernel more than 5 % of its time."""
 
-SHORT_IN_VECTORS = 256
+SHORT_IN_VECTORS = 64
 """The same where LLVM computes many of them at once."""
 
 MODERATE = 512
