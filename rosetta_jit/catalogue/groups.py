@@ -5,17 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
 
 
-def no_group(span: Span | None) -> Diagnostic:
-    """Several places, and a value that is no group of numbers."""
-    help_ = "functions of several values give one for each place: `.roll, .pitch, .yaw = euler(.q)`; so does a list: `.x, .y = [1.0, 2.0]`"
+def no_group(span: Span | None, called: str, known: Collection[str]) -> Diagnostic:
+    """Several places, and a value that is no group of numbers; it may be the call of a function of several values, misspelt."""
+    meant = closest(called[:100], list(known)) if called else None
+    how = "functions of several values give one for each place: `.roll, .pitch, .yaw = euler(.q)`; so does a list: `.x, .y = [1.0, 2.0]`"
+    help_ = f"did you mean `{meant}`?" if meant else how
     return error("no-group", "several places take a value of several numbers", span, "one value", help_=help_)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.mapping import error
+from rosetta_jit.catalogue.spelling import closest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
@@ -179,9 +180,11 @@ def same_order(span: Span | None) -> Diagnostic:
     return error("same-layout", "two cases have the same elements in the same order", span, "again here", help_=help_)
 
 
-def one_value(span: Span | None) -> Diagnostic:
-    """Many elements for a place that holds one value."""
-    return error("many-elements", "many elements are assigned to one value", span, "no array", help_="take one of them: `.n = .a[0]`")
+def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = ()) -> Diagnostic:
+    """Many elements for a place that holds one value; what is ``called`` with them may be a reduction, misspelt."""
+    meant = closest(called[:100], reductions) if called else None
+    help_ = f"did you mean `{meant}`?" if meant else "take one of them, `.n = .a[0]`, or one value of all: `.n = sum(.a[])`"
+    return error("many-elements", "many elements are assigned to one value", span, "no array", help_=help_)
 
 
 UNKNOWN_FLAG = "the mapping has no layout for this"

@@ -331,3 +331,16 @@ def test_integers_are_the_nearest_ones():
     both = pair('("pitch" :int) ("yaw" :int)', f"required Q q = 1; }} {TURN} message Z {{", rules)
     for pitch, yaw in ((8999, -17999), (-1, 1), (1234, 5678)):
         assert both.pack(**both.unpack(pitch=pitch, yaw=yaw)) == {"pitch": pitch, "yaw": yaw}
+
+
+def test_a_misspelt_function_of_several_values_is_all_that_is_told():
+    files = {
+        "lab/msg/Q.msg": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n",
+        "lab/msg/A.msg": "Q q\n",
+        "r.proto": 'syntax = "proto2"; message R { required double roll = 1; required double pitch = 2; required double yaw = 3; }',
+        "r.mapping": 'import "lab/msg/A.msg"\nimport "r.proto"\ndata-holder: R\nwire-schema: lab/msg/A\nunpack-rules:\n'
+        "  .roll, .pitch, .yaw = eulr(.q)\n",
+    }
+    with pytest.raises(rj.MappingError, match="did you mean `euler`") as raised:
+        rj.Decoder("r.mapping", schema=files)
+    assert [each.code for each in raised.value.diagnostics] == ["no-group"]

@@ -220,3 +220,16 @@ def test_counts_as_an_operation(tmp_path):
     rules = "unpack-rules:\n  .x = sum(.a[])\n  .f = 0\n  .n = 0\n  .t = any(.ok[])\n  len(.a) = 0\n"
     (tmp_path / "m.mapping").write_text(HEAD + rules)
     assert {"arithmetic", "predicate assignment"} <= set(operations(tmp_path / "m.mapping", folders=[tmp_path]))
+
+
+def test_a_misspelt_reduction_and_a_forgotten_bracket_are_told_as_such():
+    for value, words in (("cuont(.a[] > 3.0)", "did you mean `count`"), ("count(.a > 3.0)", "write `\\[\\]` behind the array")):
+        files = {
+            "lab/msg/A.msg": "float64[] a\n",
+            "n.proto": 'syntax = "proto2"; message N { required int64 n = 1; }',
+            "n.mapping": 'import "lab/msg/A.msg"\nimport "n.proto"\ndata-holder: N\nwire-schema: lab/msg/A\n'
+            f"unpack-rules:\n  .n = {value}\n",
+        }
+        with pytest.raises(rj.MappingError, match=words) as raised:
+            rj.Decoder("n.mapping", schema=files)
+        assert len(raised.value.diagnostics) == 1

@@ -17,6 +17,7 @@ from rosetta_jit.language.arrays.element_loops import Moves, element_of
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, number_type, view_of
 from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
+from rosetta_jit.language.function import functions
 from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
 from rosetta_jit.language.typed import FieldStep
@@ -30,6 +31,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.arrays.element_loops import Padding
     from rosetta_jit.language.arrays.layouts import NumberType, View
     from rosetta_jit.language.scope import Scope
@@ -138,7 +140,7 @@ class _Expansion:
         place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
         target = view_of(place)
         if isinstance(self.type_of(target.array), Bool | Enum | Float | Int | Struct):
-            raise LayoutError(words.one_value(rule.place.span))
+            raise LayoutError(_many(rule))
         width = ONE if packed is None else packed.size
         given = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
         refused = [each for view in views.values() for each in view.refused]
@@ -303,3 +305,9 @@ def _names(rules: tuple[Rule, ...]) -> Iterator[str]:
                 yield from _names((*then, *otherwise))
             case _:
                 pass
+
+
+def _many(rule: Assignment) -> Diagnostic:
+    """Why the elements that a rule names cannot be assigned to one value: perhaps what makes one of them is misspelt."""
+    called = rule.value.function if isinstance(rule.value, Call) and rule.value.function not in functions() else ""
+    return words.one_value(rule.place.span, called, [name for name, each in functions().items() if each.reduction is not None])

@@ -59,6 +59,8 @@ def type_call(expr: model.Call, scope: Scope, type_expr: TypeExpr) -> Expr | Non
         known = {*INTEGERS, *FLOATS, *names(), *group_functions(), *ARGUMENTS, "bool", "has", "index", *scope.enums, *scope.functions}
         scope.problems.append(words.unknown_function(expr.span, expr.function, known))
         return None
+    if function.reduction is not None and callable(function.signature):
+        return function.signature(expr, [], scope)  # it has no `[]`, and what else is wrong with its argument follows from that
     arguments = [type_expr(argument, scope) for argument in expr.arguments]
     typed = [argument for argument in arguments if argument is not None]
     return type_function(function, expr, typed, scope) if len(typed) == len(arguments) else None

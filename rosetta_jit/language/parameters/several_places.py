@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import groups as words
 from rosetta_jit.catalogue.derive import OTHER_PARTS
-from rosetta_jit.language.groups import component, group_of
+from rosetta_jit.language.groups import component, group_functions, group_of
 from rosetta_jit.model.expr import Binary, Call, List, Literal
-from rosetta_jit.model.mapping import Assign, Reject, Relation, When
+from rosetta_jit.model.mapping import Assign, Default, Reject, Relation, When
 from rosetta_jit.model.walk import parts, rebuilt
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:
-    """The rules that a rule for several places stands for; none, and reported, where its value has not as many numbers."""
+    """The rules that a rule for several places stands for; reported where its value has not as many numbers."""
     group = group_of(rule.value)
     if group is not None:
         values: tuple[Expr, ...] = tuple(component(rule.value, number) for number in range(len(group.components)))
@@ -33,8 +33,9 @@ def one_by_one(rule: Several, problems: list[Diagnostic]) -> tuple[Rule, ...]:
     elif any(_is_split(part) for part in parts(rule.value)):
         values = tuple(_with_part(rule.value, number) for number in range(len(rule.places)))
     else:
-        problems.append(words.no_group(rule.value.span))
-        return ()
+        called = rule.value.function if isinstance(rule.value, Call) else ""
+        problems.append(words.no_group(rule.value.span, called, group_functions()))
+        return tuple(Default(place, rule.span) for place in rule.places)  # nothing more is to be said of them
     if len(values) != len(rule.places):
         names = () if group is None else tuple(each.names[0] for each in group.components)
         problems.append(words.other_count(rule.span, len(rule.places), len(values), names))
