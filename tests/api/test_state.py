@@ -554,3 +554,15 @@ def test_not_a_number_is_kept():
     assert math.isnan(decode.state["last"])
     assert math.isnan(decode(message(1.0)).speed)
     assert np.isnan(decode.many([message(2.0)]).low[0])
+
+
+def test_a_misspelt_type_is_all_that_is_told():
+    files = {
+        "lab/msg/A.msg": "float64 a\n",
+        "n.proto": 'syntax = "proto2"; message N { required double n = 1; }',
+        "n.mapping": 'import "lab/msg/A.msg"\nimport "n.proto"\ndata-holder: N\nwire-schema: lab/msg/A\nstate last: float65 = 0.0\n'
+        "unpack-rules:\n  .n = .a - last\n  state last = .a\n",
+    }
+    with pytest.raises(rj.MappingError, match="did you mean `float64`") as raised:
+        rj.Decoder("n.mapping", schema=files)
+    assert [each.code for each in raised.value.diagnostics] == ["state-type"]

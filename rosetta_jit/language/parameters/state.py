@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import state as words
+from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.language.limits import MAX_STATE
 from rosetta_jit.language.parameters.values import SCALARS, accepted, written
 from rosetta_jit.language.typed import StateVariable
@@ -53,6 +54,7 @@ def declared(mapping: model.Mapping, problems: list[Diagnostic]) -> Declared:
             problems.append(words.repeated(each.span, each.name, other))
         elif each.type not in TYPES:
             problems.append(words.unknown_type(each.span, each.type, TYPES))
+            initial[each.name], types[each.name] = 0, closest(each.type[:100], list(TYPES)) or "float64"  # what is probably meant
         else:
             initial[each.name], types[each.name] = _initial(each, problems), each.type
     return Declared(initial, types)
