@@ -22,8 +22,10 @@ FRAMEWORKS = {
     "lcm": ("lcm",),
     "orocos": ("orocos",),
 }
-ROOMS = {"language": ("language", "functions"), "transports": ("transports",), "bridge": ("bridge",), "logs": ("logs",)} | {
-    f"frameworks/{name}": tuple(f"frameworks/{each}" for each in rooms) for name, rooms in FRAMEWORKS.items()
+ROOMS = {
+    "language": ("language", "functions"),
+    **{f"frameworks/{name}": tuple(f"frameworks/{each}" for each in rooms) for name, rooms in FRAMEWORKS.items()},
+    **{room: (room,) for room in ("parsing", "model", "lowering", "kernel", "runtime", "transports", "bridge", "logs")},
 }
 """Where limits stand, and the rooms that they are of."""
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.limits import MAX_DEPTH
-from rosetta_jit.model.layout import MAX_SLOTS
+from rosetta_jit.model.limits import MAX_SLOTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

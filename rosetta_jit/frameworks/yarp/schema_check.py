@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_TERMS
 from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
-from rosetta_jit.model.layout import MAX_SLOTS
+from rosetta_jit.model.limits import MAX_SLOTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Advance, Assign, Local
+from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block, Expr
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.scope import Scope, Typed
-
-MAX_ROUNDS = 1 << 20
-"""A loop that neither the message nor a value bounds runs at most so often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +101,7 @@ def bounds(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -
     The last must be the same in each round: made of atoms before ``first_atom``, the first that the round made.
     """
     low, high = scope.facts.lower(measure), scope.facts.upper(measure)
-    within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_ROUNDS else False
+    within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_LOOP_ROUNDS else False
     fixed = (part for part in _conjuncts(condition) if all(atom < first_atom for atom, _ in plus(part, measure).terms))
     return Any((within, minus(linear(scope.locals["end"][1]), measure), *fixed))
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
-from rosetta_jit.kernel.proof.scope import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof.symbolic import linear
 from rosetta_jit.startup.dataclass import dataclass
 

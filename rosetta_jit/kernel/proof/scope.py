@@ -6,6 +6,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
@@ -14,12 +15,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Scalar, Stmt
     from rosetta_jit.kernel.proof.record import Record
-
-MAX_POSITION = 1 << 60
-"""The end of any buffer: a quarter of all memory that 64 bits can address, and more than any machine has."""
-
-MAX_ROWS = 1 << 48
-"""The capacity of any lane."""
 
 Value = Linear | bool | None | All | Any
 """An integer, or a formula for a bool; None is a value of which nothing is known (every float)."""

@@ -31,6 +31,7 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
 )
+from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
 from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
 from rosetta_jit.kernel.proof.formula import All, equal, negated
@@ -50,12 +51,6 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.proof.loops import Guess
     from rosetta_jit.kernel.proof.record import Record
     from rosetta_jit.kernel.proof.scope import Scope, Typed
-
-MAX_PROOFS = 256
-"""Routines of which it is remembered that they were proven."""
-
-MAX_TERMS = 6
-"""A longer sum gets a name: sums over many fields would cost more with each field."""
 
 
 class VerificationError(AssertionError):
