@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp.limits import MAX_PADDING
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
@@ -63,9 +64,6 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
     }
 )
 """The options of a field, and how each is written."""
-
-
-MAX_PADDING = 64
 
 
 @dataclass(frozen=True, slots=True)

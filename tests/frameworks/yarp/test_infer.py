@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp.bottle import read, write
-from rosetta_jit.frameworks.yarp.infer import MAX_PLACES, infer
+from rosetta_jit.frameworks.yarp.infer import infer
 from rosetta_jit.frameworks.yarp.schema import parse
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4
 from rosetta_jit.frameworks.yarp.text import parse_text
@@ -19,6 +19,7 @@ from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, specialised
 from rosetta_jit.model.expr import Literal
 from rosetta_jit.model.types import Array, Map, Struct
 from rosetta_jit.source import Source
+from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
 
 VECTORS = Path(__file__).parents[2] / "vectors" / "yarp"
 
