@@ -233,7 +233,7 @@ class Build:
             "entry": self.entry,
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
-            "state": kept_of(self.kernels, self.types.state),
+            "state": kept_of(self.kernels, {"": self.types.state}),
             "host": our_functions(self.kernels),
             "limit": self.limit,
         }
