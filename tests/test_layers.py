@@ -297,7 +297,6 @@ TOGETHER = [
     {"runtime.batch", "runtime.holder", "runtime.looks.described", "runtime.looks.page"}
     | {f"runtime.holder.{name}" for name in ("classes", "family", "serialising")}
     | {f"runtime.holder.objects.{name}" for name in ("foreign", "giving", "reading", "taking")},
-    {f"kernel.proof.{name}" for name in ("obligations", "paths", "record", "scope", "symbolic")},
 ]
 """Modules that name each other's types: a type may have a length that is an expression, and a parameter in an expression has a type.
 There shall be no more of them."""

@@ -74,7 +74,7 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
         kept = [guess for guess in kept if guess not in dropped]
     if scope.record is not None:
         first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)) for guess in kept]
-        scope.record.owe_all(scope, first, claims.RELATION_FIRST)
+        scope.record.owe_all(first, claims.RELATION_FIRST)
     forget(scope, at_entry, lanes, kept)
 
 
@@ -90,7 +90,7 @@ def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list
         claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess))) for guess in kept]
         lost = [guess for guess, formula in claimed if not facts.proves(formula)]
         if scope.record is not None:
-            scope.record.owe_all(scope, [formula for _, formula in claimed], claims.RELATION_KEPT)
+            scope.record.owe_all([formula for _, formula in claimed], claims.RELATION_KEPT)
     facts.rollback(mark)
     return lost
 

@@ -158,19 +158,21 @@ def _whole(walk: _Walk, body: Block) -> None:
 
 def _block(walk: _Walk, block: Block) -> bool:
     """Walk a block; True when every path through it has returned."""
-    outer = walk.scope.at
+    record = walk.scope.record
+    outer = None if record is None else record.stmt
+    ended = False
     for number, stmt in enumerate(block):
-        walk.scope.at = stmt
+        if record is not None:
+            record.stmt = stmt
         try:
             ended = _statement(walk, stmt)
         except UnprovenError as error:
             raise _named(error, stmt) from error.__cause__
         if ended:
             demand(number == len(block) - 1, "statements after the end of their path")
-            walk.scope.at = outer
-            return True
-    walk.scope.at = outer
-    return False
+    if record is not None:
+        record.stmt = outer
+    return ended
 
 
 def _named(error: UnprovenError, stmt: Stmt) -> UnprovenError:
