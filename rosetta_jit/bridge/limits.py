@@ -16,5 +16,8 @@ MAX_CAUSES = 100
 MAX_NAME = 48
 """characters of a route's name in the live table"""
 
+MAX_STATE = 200
+"""characters of a route's state in the live table"""
+
 MAX_REASONS = 3
 """reasons that the live table shows below a route; `--json` and the metrics have all"""

@@ -12,10 +12,11 @@ from time import monotonic, perf_counter_ns
 from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
+from rosetta_jit.bridge.translating import Stateful, state_of
 from rosetta_jit.errors import MessageError, TransportError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rosetta_jit.bridge.configuration import Route
     from rosetta_jit.bridge.translating import Translate
@@ -75,6 +76,17 @@ class LiveRoute:
     def is_open(self) -> bool:
         """Whether its target is there."""
         return self._sink is not None or self._caller is not None
+
+    @property
+    def state(self) -> Mapping[str, float | str]:
+        """What its mappings keep from one message to the next."""
+        return state_of(self._translate)
+
+    def begin_anew(self) -> None:
+        """Let the next message be the first one for its mappings."""
+        if isinstance(self._translate, Stateful):
+            self._translate.reset()
+            self._say(f"{self.route.name}: its source came back, and the state of its mapping begins anew")
 
     @property
     def waiting(self) -> int:

@@ -46,6 +46,10 @@ def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
         for part, key in (("0.5", "p50_us"), ("0.99", "p99_us")):
             if each[key] is not None:
                 yield f'{PREFIX}_latency_seconds{{{_label("route", each["route"])},quantile="{part}"}} {each[key] / 1e6:.9f}'
+    yield from _head("state", "What a mapping keeps from one message to the next.", "gauge")
+    for each in snapshot:
+        for variable, now in each["state"].items():
+            yield f"{PREFIX}_state{{{_label('route', each['route'])},{_label('variable', variable)}}} {float(now)!r}"
     for name, help_, value in (("waiting", "Messages in the queue.", "waiting"), ("up", "Whether the route runs.", "")):
         yield from _head(name, help_, "gauge")
         yield from (

@@ -32,16 +32,29 @@ FIRST_S = 1.0
 
 
 class _Shared:
-    """One source, for all routes from its address."""
+    """One source, for all routes from its address.
 
-    source: Source
+    Where all of its peers were gone and one came again, the mappings of its routes begin anew: differences, filters and sequence numbers
+    of what was sent before mean nothing for what comes now.
+    """
+
+    source: Source | None = None
 
     def __init__(self, first: LiveRoute) -> None:
         self.routes: tuple[LiveRoute, ...] = (first,)
+        self._sessions = 1
 
     def deliver(self, message: Message) -> None:
+        if self.source is not None and self.source.sessions > self._sessions:
+            self._sessions = self.source.sessions
+            for route in self.routes:
+                route.begin_anew()
         for route in self.routes:
             route.deliver(message)
+
+    def close(self) -> None:
+        if self.source is not None:
+            self.source.close()
 
     def lost(self, reason: str, count: int) -> None:
         for route in self.routes:
@@ -97,7 +110,7 @@ class Running:
         self._stopping.set()
         with self._lock:
             for shared in self._sources.values():
-                shared.source.close()
+                shared.close()
             self._sources.clear()
             for each in self.live.values():
                 each.close(linger_s)
@@ -108,7 +121,14 @@ class Running:
     def snapshot(self) -> list[dict[str, Any]]:
         """Each route with its counts."""
         return [
-            {"route": name, **_ends(each), "problem": each.problem, "waiting": each.waiting, **each.counts.snapshot()}
+            {
+                "route": name,
+                **_ends(each),
+                "problem": each.problem,
+                "waiting": each.waiting,
+                **each.counts.snapshot(),
+                "state": dict(each.state),
+            }
             for name, each in tuple(self.live.items())
         ]
 
@@ -145,7 +165,7 @@ class Running:
                 left = tuple(each for each in shared.routes if each is not gone)
                 shared.routes = left
                 if not left:
-                    shared.source.close()
+                    shared.close()
                     del self._sources[address]
 
     # --- opening -------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING
 
 from rosetta_jit.bridge.counting import RouteCounts
+from rosetta_jit.bridge.translating import state_of
 from rosetta_jit.errors import MessageError, TransportError
 
 if TYPE_CHECKING:
@@ -33,6 +34,12 @@ class LiveService:
         """The service that answers is there."""
         self._caller = caller
         self.problem = ""
+
+    @property
+    def state(self) -> dict[str, float | str]:
+        """What the mappings of requests and of replies keep from one message to the next."""
+        sides = (("request", self._request), ("reply", self._reply))
+        return {f"{side}.{name}": value for side, translate in sides for name, value in state_of(translate).items()}
 
     def answer(self, message: Message) -> bytes:
         """Ask the other service. What fails is told to who asked."""

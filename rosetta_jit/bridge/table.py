@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rosetta_jit.bridge.limits import MAX_NAME, MAX_REASONS
+from rosetta_jit.bridge.limits import MAX_NAME, MAX_REASONS, MAX_STATE
 from rosetta_jit.terminal import cells, printable
 
 HEAD = ("route", "in /s", "out /s", "bytes /s", "p50 us", "p99 us", "sent", "waiting", "dropped", "failed")
@@ -19,6 +19,9 @@ def rows(snapshot: list[dict[str, Any]]) -> list[str]:
         shown.append(_line(row, widths))
         if each["problem"]:
             shown.append(f"    not running: {printable(each['problem'])}")
+        if each["state"]:
+            state = ", ".join(f"{name} {value}" for name, value in each["state"].items())
+            shown.append(f"    state: {printable(state[:MAX_STATE])}")
         for kind in ("dropped", "failed"):
             reasons = sorted(each[kind].items(), key=lambda item: -item[1])[:MAX_REASONS]
             shown += [f"    {kind} {count}: {printable(reason[:200])}" for reason, count in reasons]

@@ -122,7 +122,7 @@ class BridgeBuild:
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": is_told(self.kernels),
-            "state": kept_of(self.kernels, *(half.types.state for half in self.halves)),
+            "state": kept_of(self.kernels, dict(zip(("decode.", "encode."), (half.types.state for half in self.halves), strict=True))),
             "host": our_functions(self.kernels),
             "limit": decode.limit,
         }

@@ -87,7 +87,7 @@ class TranscodingBuild:
             "references": list(self.references),
             "sites": [[plain_site(site) for site in kernel.sites] for kernel in self.kernels],
             "told": False,
-            "state": kept_of(()),
+            "state": kept_of((), {}),
             "host": [],
             "limit": GRACE_BYTES,
         }

@@ -17,12 +17,13 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import Context, bind_call
 from rosetta_jit.runtime.decoder import laid_out
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.program import MAX_SPARES, Told, entry_of
+from rosetta_jit.runtime.limits import MAX_SPARES
+from rosetta_jit.runtime.program import Told, entry_of
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable
+    from collections.abc import Generator, Iterable, Mapping
 
     from _typeshed import ReadableBuffer as Buffer
     from numpy.typing import NDArray
@@ -92,6 +93,22 @@ class BridgeBase(Told):
         address = address_of(self._registers)
         context = Context(self._lanes.state, self._lanes, self._call_slowly, self._lanes.source, Lanes, address)
         bind_call(self, entry_of(loaded.library, loaded.state), context)
+
+    @property
+    def state(self) -> Mapping[str, Mapping[str, bool | int | float]]:
+        """What each state variable is for the next message: those of the mapping that reads in ``decode``, of the other in ``encode``.
+
+        Raises
+        ------
+        InUse
+            Another thread's call of the bridge has not returned.
+        """
+        halves: dict[str, dict[str, bool | int | float]] = {"decode": {}, "encode": {}}
+        if self._registers is not None:
+            for name, value in self._registers.shown().items():
+                half, _, variable = name.partition(".")
+                halves[half][variable] = value
+        return halves
 
     def into(self, message: Buffer, buffer: Buffer) -> int:
         """Write what a message becomes to the begin of a buffer; returns how many bytes that are.

@@ -30,6 +30,8 @@ class End:
         Connections that were made again.
     connections : int
         Peers that are connected now.
+    sessions : int
+        How often a peer came when there was none: 1 after the first one, 2 where all had gone and one came again.
     """
 
     def __init__(self, address: str, lost: Lost | None = None) -> None:
@@ -38,9 +40,19 @@ class End:
         self.bytes = 0
         self.lost: Counter[str] = Counter()
         self.reconnects = 0
-        self.connections = 0
+        self.sessions = 0
+        self._connections = 0
         self._tell = lost
         self._lock = threading.Lock()
+
+    @property
+    def connections(self) -> int:
+        return self._connections
+
+    @connections.setter
+    def connections(self, count: int) -> None:
+        self.sessions += count > 0 and not self._connections
+        self._connections = count
 
     def passed(self, size: int) -> None:
         """Count a message of so many bytes; for transports."""

@@ -257,17 +257,17 @@ unpack-rules:
   state seen = seen + 1
 """,
     "out.mapping": f"""{HEAD}
-state before: int64 = -1
+state seen: int64 = -1
 pack-rules:
   ignore .speed
   ignore .low
   ignore .gap
   ignore .note
   reject "no" when .seen == 13
-  .position = float64(before)
+  .position = float64(seen)
   .seq = .seen
   .good = true
-  state before = .seen
+  state seen = .seen
 """,
 }
 
@@ -289,7 +289,9 @@ def test_bridges(backend):
         except rj.EncodeError as error:
             found.append(error.kind)
     assert found == [(-1.0, 1), (1.0, 3), "rejected", (3.0, 5)]
+    assert over.state == {"decode": {"seen": 3}, "encode": {"seen": 5}}
     over.reset()
+    assert over.state == {"decode": {"seen": 0}, "encode": {"seen": -1}}
     buffer, offsets = over.many([message(seq=seq) for seq in (1, 2, 3)])
     assert [READ(bytes(buffer[a:b])).seq for a, b in pairwise(offsets)] == [1, 3, 5]
     with pytest.raises(rj.EncodeError, match=r"\[1\]"):

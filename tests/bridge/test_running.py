@@ -79,6 +79,63 @@ def test_messages_are_translated(run, bottles):
         assert 0 < one["p50_us"] <= one["p99_us"]
 
 
+STATEFUL = {
+    "wheel.bottle-schema": '"wheel" (("turns" :int64))',
+    "wheel.proto": 'syntax = "proto2"; message Wheel { required int64 turned = 1; }',
+    "wheel.mapping": """import "wheel.bottle-schema"
+import "wheel.proto"
+state last: int64 = 0
+state seen: bool = false
+state mean: float64 = 1e308
+data-holder: Wheel
+wire-schema: wheel
+unpack-rules:
+  .turned = .turns - last if seen else 0
+  state last = .turns
+  state seen = true
+  state mean = mean * 10.0
+""",
+}
+
+
+def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, tmp_path):
+    """A robot that was started again counts from 0: the difference to what it said before would mean nothing."""
+    for name, content in STATEFUL.items():
+        (tmp_path / name).write_text(content)
+    write = rj.Encoder.of("wheel", schema=STATEFUL, imports=["wheel.bottle-schema"], encoding="yarp4")
+    read = rj.Decoder.of("Wheel", schema=STATEFUL, imports=["wheel.proto"], encoding="protobuf")
+    source, target = free_port(), free_port()
+    text_of = [
+        route(source, target, 'name = "a"', *more, 'mapping = "wheel.mapping"\ndecode = { encoding = "yarp4" }')
+        for more in ((), ("queue = 7",))
+    ]
+    with rj.subscribe(f"tcp:{target}") as there:
+
+        def turned(*turns):
+            with rj.publish(f"tcp:{source}") as robot:
+                for each in turns:
+                    robot.send(write(write.holder_type.from_dict({"turns": each})))
+                return [read(there.take(5).data).turned for _ in turns]
+
+        bridge, said = run(text_of[0])
+        assert bridge.snapshot()[0]["state"] == {"decode.last": 0, "decode.seen": False, "decode.mean": 1e308}
+        assert turned(10, 12, 15) == [0, 2, 3]
+        assert bridge.snapshot()[0]["state"] == {"decode.last": 15, "decode.seen": True, "decode.mean": "inf"}
+        assert "state: decode.last 15, decode.seen True, decode.mean inf" in "\n".join(rows(bridge.snapshot()))
+        shown = text(bridge.snapshot())
+        assert 'rosetta_jit_bridge_state{route="a",variable="decode.last"} 15.0\n' in shown
+        assert 'rosetta_jit_bridge_state{route="a",variable="decode.seen"} 1.0\n' in shown
+        until(lambda: not next(iter(bridge._sources.values())).source.connections)
+        bridge.reload(bridge.configuration)
+        assert bridge.snapshot()[0]["state"]["decode.last"] == 15  # a route that did not change goes on
+        assert turned(3, 4) == [0, 1]
+        assert [line for line in said if "begins anew" in line] == ["a: its source came back, and the state of its mapping begins anew"]
+        (tmp_path / "bridge.toml").write_text(text_of[1])
+        bridge.reload(checked(str(tmp_path / "bridge.toml")))
+        assert bridge.snapshot()[0]["state"]["decode.last"] == 0
+        assert turned(9, 10) == [0, 1]
+
+
 def test_a_rate(run):
     source, target = free_port(), free_port()
     with rj.subscribe(f"tcp:{target}"):
