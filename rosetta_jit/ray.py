@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.errors import MissingPackage
-from rosetta_jit.logs.channel import CLOCKS
 from rosetta_jit.logs.moments import nanoseconds
+from rosetta_jit.logs.parts import CLOCKS
 from rosetta_jit.logs.shares import Reading, Share, paths_of, shares_of
 
 try:

@@ -14,13 +14,25 @@ from tests.golden import check_golden
 ROOT = Path(__file__).parents[1]
 CODE = ROOT / "rosetta_jit"
 PAGE = ROOT / "docs" / "security.md"
-ROOMS = {"language": ("language", "functions"), "transports": ("transports",), "bridge": ("bridge",), "logs": ("logs",)}
+FRAMEWORKS = {
+    "yarp": ("yarp",),
+    "protobuf": ("protobuf",),
+    "ros": ("ros", "ros1", "ros2"),
+    "omg": ("omg", "corba"),
+    "lcm": ("lcm",),
+    "orocos": ("orocos",),
+}
+ROOMS = {
+    "language": ("language", "functions"),
+    **{f"frameworks/{name}": tuple(f"frameworks/{each}" for each in rooms) for name, rooms in FRAMEWORKS.items()},
+    **{room: (room,) for room in ("parsing", "model", "lowering", "kernel", "runtime", "transports", "bridge", "logs")},
+}
 """Where limits stand, and the rooms that they are of."""
 
 
 def rows(room):
     """Each limit with what it is of."""
-    limits = import_module(f"rosetta_jit.{room}.limits")
+    limits = import_module(f"rosetta_jit.{room.replace('/', '.')}.limits")
     body = ast.parse(Path(limits.__file__).read_text()).body
     for number, node in enumerate(body):
         if isinstance(node, ast.Assign):
@@ -38,9 +50,9 @@ def shown(value):
 
 def with_table(text, room):
     table = "\n".join(["| of | at most |", "|---|---|", *(f"| {what} | {shown(value)} |" for what, value in rows(room))])
-    marked = re.compile(rf"(<!-- limits of [^\n]*rosetta_jit/{room}/limits.py[^\n]*\n).*?(\n<!-- end of limits -->)", re.DOTALL)
+    marked = re.compile(rf"(<!-- limits of [^\n]*rosetta_jit/{room}/limits.py[^\n]*\n).*?(<!-- end of limits -->)", re.DOTALL)
     assert len(marked.findall(text)) == 1
-    return marked.sub(lambda match: f"{match[1]}{table}{match[2]}", text)
+    return marked.sub(lambda match: f"{match[1]}{table}\n{match[2]}", text)
 
 
 def test_the_page_lists_them():

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW, GROW_LANE, GROW_ROWS, MAX_INDICES
+from rosetta_jit.kernel.state import ERROR_INDICES, ERROR_OFFSET, ERROR_SITE, GROW, GROW_LANE, GROW_ROWS, INDEX_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, MutableSequence, Sequence
@@ -68,7 +68,7 @@ def run_attempts(
 
 def _recorded(state: State, failed: Failed) -> int:
     state[ERROR_OFFSET], state[ERROR_SITE] = failed.at, failed.site
-    for number, value in enumerate(failed.indices[:MAX_INDICES]):
+    for number, value in enumerate(failed.indices[:INDEX_WORDS]):
         state[ERROR_INDICES + number] = value
     return -1 - failed.site
 

@@ -120,7 +120,7 @@ def _misplaced(arguments: argparse.Namespace, kind: Kind) -> list[str]:
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     """How tables are to look."""
-    from rosetta_jit.logs.channel import CLOCKS
+    from rosetta_jit.logs.parts import CLOCKS
 
     options: dict[str, Any] = {"flatten": arguments.flatten}
     options |= {"clocks": (*CLOCKS, "header_time")} if arguments.header_time else {}

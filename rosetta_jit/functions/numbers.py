@@ -1,24 +1,30 @@
-"""Functions of numbers: roots, whole numbers, the least and the largest."""
+"""Functions of numbers: roots, whole numbers, the least and the largest, and whether a float is finite, or no number."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
 
 from rosetta_jit.functions.forms import binary_of, unary_of
 from rosetta_jit.functions.reductions import EXTREMES, lower_extreme
-from rosetta_jit.kernel.ir import Binary, Unary
+from rosetta_jit.kernel.ir import Binary, Compare, Const, Unary
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.language.conversions import FLOAT64
-from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
-from rosetta_jit.language.typed import INT64
+from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units, written
+from rosetta_jit.language.functions.calls import type_numbers
+from rosetta_jit.language.typed import BOOL, INT64
 from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.model.types import Float
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.language import typed
+    from rosetta_jit.language.scope import Scope
     from rosetta_jit.language.typed import Call
     from rosetta_jit.lowering.evaluation import Evaluation
+    from rosetta_jit.model import expr as model
 
 FLOATS = (Float(32), FLOAT64)
 ANY = (INT64, *FLOATS)
@@ -34,7 +40,30 @@ BOUNDS = Row(
     "`abs(x)`, `min(x, y, …)`, `max(x, y, …)`",
     ("numbers", "of their type, int64 for integers. Of two values of which one is NaN, the second"),
 )
+KINDS = Row(
+    "numbers",
+    "`isfinite(x)`, `isnan(x)`",
+    ("a float, or an integer of at most 53 bits", "bool: whether it is neither infinite nor NaN; whether it is NaN"),
+)
 DROPS = "drops what is below one"
+
+
+def _type_kind(call: model.Call, arguments: list[typed.Expr], scope: Scope) -> typed.Expr | None:
+    """A question about a float; its answer is a bool."""
+    function = written(call.function)
+    assert function is not None
+    found = type_numbers(function, Numbers(FLOATS), call, arguments, scope)
+    return None if found is None else replace(found, type=BOOL)
+
+
+def _lower_isfinite(call: Call, values: Evaluation) -> Expr:
+    size = Unary("abs", values.of(call.arguments[0]))
+    return Compare("lt", size, Const(type_of(size), math.inf))
+
+
+def _lower_isnan(call: Call, values: Evaluation) -> Expr:
+    number = values.writer.let("value", values.of(call.arguments[0]))
+    return Compare("ne", number, number)
 
 
 def _lower_round(call: Call, values: Evaluation) -> Expr:
@@ -66,6 +95,10 @@ FUNCTIONS = (
     Function("ceil", Numbers(FLOATS), unary_of, SEVERAL, NOT_FOLLOWED, (WHOLE,), units=Units(keeps=True), remark=DROPS),
     Function("round", Numbers(FLOATS), _lower_round, SEVERAL, NOT_FOLLOWED, (WHOLE,), units=Units(keeps=True), remark=DROPS),
     Function("abs", Numbers(ANY, fold=_fold_abs), _lower_abs, SEVERAL, NOT_FOLLOWED, (BOUNDS,), units=Units(keeps=True)),
+    *(
+        Function(name, _type_kind, lower, SEVERAL, NOT_FOLLOWED, (KINDS,), operation="predicate assignment")
+        for name, lower in (("isfinite", _lower_isfinite), ("isnan", _lower_isnan))
+    ),
     *(
         Function(
             name,

@@ -6,11 +6,7 @@ import math
 
 import numpy as np
 
-MAX_DIGITS = 800
-"""Digits of a number that are looked at one by one; of those behind only whether one is not 0. A tie of two float64 has at most 767."""
-
-MAX_PLACES = 17
-"""Decimals that are asked for at once."""
+from rosetta_jit.kernel.limits import MAX_DIGITS
 
 FIRST = {"f32": 6, "f64": 15}
 """As many digits any number in decimal keeps on its way through a normal float, so that fewer never read back where these do not."""
@@ -19,7 +15,7 @@ LEAST_NORMAL = {"f32": 2.0**-126, "f64": 2.0**-1022}
 LAST = {"f32": 9, "f64": 17}
 """As many digits tell any two floats apart."""
 
-MOST_DIGITS, MAX_SCALE = 10**17, 400
+MOST_DIGITS, LARGEST_SCALE = 10**17, 400
 """Bounds of the `shortest` digits and their scale: the least float64 is 5e-324."""
 
 

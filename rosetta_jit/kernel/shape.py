@@ -47,16 +47,14 @@ from rosetta_jit.kernel.ir import (
     While,
     Wire,
 )
-from rosetta_jit.kernel.state import MAX_INDICES
+from rosetta_jit.kernel.limits import MAX_BLOCKS, MAX_EXPRESSION
+from rosetta_jit.kernel.state import INDEX_WORDS
 from rosetta_jit.kernel.terms import BEGIN, END, ROW
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosetta_jit.kernel.ir import Address, Block, Expr, Extent, Kernel, Routine, Stmt
-
-MAX_BLOCKS = 100
-MAX_EXPRESSION = 100
 
 SHORT = 32
 """Statements up to which a call costs any kernel more than 5 % of its time."""
@@ -349,7 +347,7 @@ def _failing_error(named: tuple[int, ...], indices: tuple[Expr, ...], sites: int
     missing = [site for site in named if not 1 <= site < sites]
     if missing:
         return f"no site {missing[0]}"
-    return "too many indices" if len(indices) > MAX_INDICES else None
+    return "too many indices" if len(indices) > INDEX_WORDS else None
 
 
 def _too_deep(expr: Expr) -> bool:

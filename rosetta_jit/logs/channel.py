@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -12,10 +12,10 @@ from rosetta_jit.errors import DecodeError, LogError
 from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
 from rosetta_jit.logs.moments import nanoseconds, shown
+from rosetta_jit.logs.parts import CLOCKS, Part, decoded_staged
 from rosetta_jit.logs.staging import Staged, Staging
 from rosetta_jit.logs.walking import gathered
 from rosetta_jit.startup.cached import cached_property
-from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator
@@ -27,37 +27,11 @@ if TYPE_CHECKING:
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder
     from rosetta_jit.logs.base import Block, Connection
-    from rosetta_jit.logs.log import Log
+    from rosetta_jit.logs.file import LogFile
     from rosetta_jit.logs.moments import Moment
+    from rosetta_jit.logs.parts import OnError
     from rosetta_jit.logs.walking import Rows
     from rosetta_jit.runtime.batch import Batch
-
-OnError: TypeAlias = Literal["raise", "skip", "mask"]
-CLOCKS = ("log_time", "publish_time")
-"""The columns of times that a table has beside the fields of messages."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Part:
-    """Some decoded messages of a channel, and their times in nanoseconds since 1970.
-
-    Attributes
-    ----------
-    batch
-        Filled again for the next part.
-    log_ns, publish_ns
-        Of the messages in it.
-    first
-        The number of the first among all messages that are read.
-    staged
-        All messages as bytes, also those that ``batch.errors`` has.
-    """
-
-    batch: Batch
-    log_ns: NDArray[np.int64]
-    publish_ns: NDArray[np.int64]
-    first: int
-    staged: Staged
 
 
 class Channel:
@@ -70,7 +44,7 @@ class Channel:
         The definition that the log has: a text, or a serialised ``FileDescriptorSet``; empty without one.
     """
 
-    def __init__(self, log: Log, connections: tuple[Connection, ...], target: str | None, options: Options) -> None:
+    def __init__(self, log: LogFile, connections: tuple[Connection, ...], target: str | None, options: Options) -> None:
         self._log, self._target, self._options = log, target, options
         self.connections = connections
 
@@ -97,7 +71,7 @@ class Channel:
         return schema if self.schema_encoding == "protobuf" else schema.decode("utf-8", "replace")
 
     @property
-    def log(self) -> Log:
+    def log(self) -> LogFile:
         """The log that it is of."""
         return self._log
 
@@ -176,7 +150,9 @@ class Channel:
 
     def __iter__(self) -> Iterator[Any]:
         """The messages, each a holder of its own."""
-        return (each.message for each in self._log.messages([self]))
+        for block in self._blocks():
+            batch = list(self.decoded(block, block.rows))
+            yield from (batch[row] for row in np.argsort(block.rows.log_ns, kind="stable").tolist())
 
     def __len__(self) -> int:
         return self.count if self.count is not None else sum(len(each.rows) for each in self._blocks())
@@ -288,34 +264,18 @@ class Channel:
         return f"<Channel {self.topic} of {self.type or '?'}{through}, {'?' if self.count is None else self.count} messages>"
 
 
-def _channel_of(log: Log, numbers: frozenset[int], target: str | None, options: Options) -> Channel:
+def _channel_of(log: LogFile, numbers: frozenset[int], target: str | None, options: Options) -> Channel:
     return Channel(log, tuple(each for each in log.connections if each.number in numbers), target, options)
 
 
-def decoded_staged(decoder: Decoder, staged: Staged, batch: Batch | None, on_error: OnError, first: int) -> Part:
-    """Decode what is staged into a batch, if there is one already; ``first`` is the number of its first message among all.
-
-    Raises
-    ------
-    DecodeError
-        A message is not what its type promises; the path begins with its number among all.
-    """
-    try:
-        batch = decoder.many(staged.data.data, staged.offsets, into=batch, on_error=on_error)
-        return Part(batch, staged.log_ns[batch.kept], staged.publish_ns[batch.kept], first, staged)
-    except DecodeError as error:
-        number, _, path = error.path.removeprefix("[").partition("]")
-        raise DecodeError(error.kind, f"[{first + int(number)}]{path}", error.detail, error.offset) from None
-
-
-def _decoder(log: Log, connection: Connection, target: str | None, options: Options) -> Decoder:
+def _decoder(log: LogFile, connection: Connection, target: str | None, options: Options) -> Decoder:
     from rosetta_jit.api.programs import Decoder
 
     name, chosen = _type_and_options(log, connection, target, options)
     return Decoder(name, **chosen) if name == target and name.endswith(".mapping") else Decoder.of(name, **chosen)
 
 
-def _type_and_options(log: Log, connection: Connection, target: str | None, options: Options) -> tuple[str, dict[str, Any]]:
+def _type_and_options(log: LogFile, connection: Connection, target: str | None, options: Options) -> tuple[str, dict[str, Any]]:
     """The mapping or type of a decoder, and the options that it is made with."""
     from rosetta_jit.frameworks.installed import installed
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, Unpack, cast
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, cast
 
 import numpy as np
 
@@ -12,7 +11,8 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.diagnostics import render
 from rosetta_jit.errors import LogError, LogWarning
 from rosetta_jit.logs.base import Wanted
-from rosetta_jit.logs.channel import Channel, OnError
+from rosetta_jit.logs.channel import Channel
+from rosetta_jit.logs.file import LogFile
 from rosetta_jit.logs.moments import Moment, nanoseconds, shown
 from rosetta_jit.logs.storage import open_storage
 from rosetta_jit.logs.table import formats
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.api.options import Options
     from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.logs.base import Block, Connection, Format, Piece, Reader
+    from rosetta_jit.logs.base import Block, Connection, Format
+    from rosetta_jit.logs.parts import OnError
     from rosetta_jit.logs.storage import Storage
 
 MAGIC_BYTES = 64
@@ -37,7 +38,7 @@ class Message(NamedTuple):
     message: Any
 
 
-class Log:
+class Log(LogFile):
     """A log, of which nothing but the index is read when it is opened.
 
     ``log["/imu"]`` is a `Channel`; so are ``log["/imu", "robot/imu.mapping"]``, through a mapping, and ``log["POSE", "exlcm.pose_t"]``, of
@@ -52,34 +53,6 @@ class Log:
         What has been noticed to be wrong with the file so far.
     """
 
-    def __init__(
-        self, storage: Storage, form: Format, on_problem: Callable[[Diagnostic], object], *, check: bool, options: Options
-    ) -> None:
-        self.name, self.format = storage.name, form.name
-        self.problems: list[Diagnostic] = []
-        self._on_problem, self._options, self._check = on_problem, options, check
-        self._storage = storage
-        self._reader: Reader = form.opener()(storage, self._tell, check=check)
-
-    def _tell(self, problem: Diagnostic) -> None:
-        if problem not in self.problems:
-            self.problems.append(problem)
-            self._on_problem(problem)
-
-    @property
-    def path(self) -> Path:
-        return Path(self.name)
-
-    @property
-    def connections(self) -> tuple[Connection, ...]:
-        """The streams of messages, as the log has them: a bag has one for each publisher."""
-        return tuple(self._reader.connections.values())
-
-    @property
-    def topics(self) -> tuple[str, ...]:
-        """The topics, sorted."""
-        return tuple(sorted({each.topic for each in self.connections}))
-
     @property
     def channels(self) -> tuple[Channel, ...]:
         """All channels, sorted by topic; of a topic with several types there are several."""
@@ -87,21 +60,6 @@ class Log:
         for each in sorted(self.connections, key=lambda one: (one.topic, one.type)):
             found.setdefault((each.topic, *_type_key(each)), []).append(each)
         return tuple(Channel(self, tuple(each), None, self._options) for each in found.values())
-
-    @property
-    def start(self) -> int | None:
-        """When the first message was logged, in nanoseconds since 1970; None of a log without messages."""
-        return None if self._reader.extent is None else self._reader.extent.start_ns
-
-    @property
-    def end(self) -> int | None:
-        """When the last one was."""
-        return None if self._reader.extent is None else self._reader.extent.end_ns
-
-    @property
-    def facts(self) -> dict[str, str]:
-        """What else the file tells: its version, chunks and compression."""
-        return dict(self._reader.facts)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.topics)
@@ -140,30 +98,6 @@ class Log:
         if len({_type_key(each) for each in named}) > 1:
             raise LogError((words.several_types(self.name, topic, sorted({each.type for each in found})),))
         return Channel(self, tuple(named), target, cast("Options", {**self._options, **options}))
-
-    @property
-    def pieces(self) -> tuple[Piece, ...]:
-        """The stretches of the log that can be read alone, of which each message is in one: the chunks, where it has any."""
-        return tuple(self._reader.pieces)
-
-    def blocks(self, wanted: Wanted | None = None) -> Iterator[Block]:
-        """The messages as bytes, many at a time, in the order in which they lie; a block is good until the next is asked for."""
-        wanted = wanted or Wanted()
-        if wanted.pieces is not None and not wanted.pieces:
-            return
-        for block in self._reader.blocks(wanted):
-            rows = block.rows
-            kept = np.ones(len(rows), np.bool_)
-            if wanted.connections is not None:
-                kept &= np.isin(rows.channels, list(wanted.connections))
-            if wanted.start_ns is not None:
-                kept &= rows.log_ns >= wanted.start_ns
-            if wanted.end_ns is not None:
-                kept &= rows.log_ns < wanted.end_ns
-            if kept.all():
-                yield block
-            elif kept.any():
-                yield type(block)(block.data, rows.only(kept), block.piece)
 
     def messages(
         self,
@@ -218,16 +152,6 @@ class Log:
         for number in np.unique(block.rows.channels).tolist():
             if number not in known:
                 self._tell(words.unknown_channel(self.name, number))
-
-    def close(self) -> None:
-        """Close the file."""
-        self._storage.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """By its name: whoever unpickles it opens the file. Problems are then warnings, whoever was told of them before."""

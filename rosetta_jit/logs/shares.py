@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.base import Wanted
-from rosetta_jit.logs.channel import CLOCKS
 from rosetta_jit.logs.log import open_log
 from rosetta_jit.logs.moments import nanoseconds
+from rosetta_jit.logs.parts import CLOCKS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-    from rosetta_jit.logs.channel import Part
+    from rosetta_jit.logs.parts import Part
     from rosetta_jit.runtime.batch import Batch
 
 STAMPS = (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec"))

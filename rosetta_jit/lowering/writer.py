@@ -36,18 +36,11 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.shape import subexpressions
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, type_of
+from rosetta_jit.lowering.limits import MAX_SIZE, MAX_STATEMENTS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
-
-MAX_SIZE = 1 << 56
-"""No message that fits in memory is larger, so sums of sizes below this cannot wrap."""
-
-
-MAX_STATEMENTS = 20_000
-"""Statements of one program: some thirteen a field of a bottle, of other wires fewer. So many take half a minute to compile, more of them
-longer in proportion. protobuf's FileDescriptorSet, the largest type that is in wide use, comes to 12,000."""
 
 
 class TooManyStatementsError(Exception):
@@ -103,7 +96,7 @@ class Where:
 
     def element(self, at: Expr) -> Where:
         """An element of it. Only so many indices are reported; deeper ones show as ``[]``."""
-        if len(self.indices) == state.MAX_INDICES:
+        if len(self.indices) == state.INDEX_WORDS:
             return replace(self, path=f"{self.path}[]")
         return Where(f"{self.path}[{{}}]", (*self.indices, at))
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.model.layout import MAX_SLOTS, SPAN_BYTES, WIDTH, recursive_structs, scalar_of
+from rosetta_jit.model.layout import SPAN_BYTES, WIDTH, recursive_structs, scalar_of
+from rosetta_jit.model.limits import MAX_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -19,16 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosetta_jit.model.types import Schema, Type
-
-MAX_BYTES = 1 << 40
-"""Of the arrays whose lengths the type fixes, and elements of one that it bounds: no message is as large, and no arithmetic overflows."""
-
-MAX_NESTED = 32
-"""Structs within each other."""
-
-
-MAX_LINKS = 64
-"""Fields of recursive structs that refer to recursive structs: each is a lane, and a way on."""
 
 
 @dataclass(frozen=True, slots=True)

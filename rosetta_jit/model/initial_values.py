@@ -11,15 +11,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.model.layout import Row, Span, Variant
+from rosetta_jit.model.limits import MAX_BORN_BYTES
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Optional, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.model.layout import Layout, Slot
     from rosetta_jit.model.types import Schema, Type
-
-MAX_BORN_BYTES = 1 << 26
-"""What a message may take before it holds anything. Arrays beyond that begin empty: a line of IDL must not cost a machine its memory."""
 
 
 @dataclass(slots=True, eq=False)

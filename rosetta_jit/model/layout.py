@@ -19,6 +19,7 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.model.limits import MAX_ROW_BYTES, MAX_SLOTS
 from rosetta_jit.model.types import (
     Array,
     Bool,
@@ -45,8 +46,6 @@ SPAN_BYTES = 16
 LINK_WORDS = 6
 UNKNOWN = "(unknown)"
 """The name of the lane of unknown fields; no IDL can give it to a field."""
-MAX_ROW_BYTES, MAX_SLOTS = 1 << 20, 20_000
-"""Larger rows, and types that unfold to more fields, are refused: no schema of people comes near, hostile ones double at each level."""
 WIDTH = {"bool": 1, "i8": 1, "u8": 1, "i16": 2, "u16": 2, "i32": 4, "u32": 4, "i64": 8, "u64": 8, "f32": 4, "f64": 8}
 """Bytes of a scalar in a row."""
 

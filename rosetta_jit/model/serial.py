@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, assert_never, cast
 
+from rosetta_jit.model.limits import MAX_SERIAL_DEPTH
 from rosetta_jit.model.types import (
     Array,
     Bool,
@@ -38,9 +39,6 @@ if TYPE_CHECKING:
 Plain = dict[str, Any]
 """What JSON can carry."""
 
-MAX_DEPTH = 100
-"""Types written inside each other; references do not count."""
-
 
 def to_plain(type_: Type, schema: Schema) -> Plain:
     """The type and every declaration that it reaches, as plain data.
@@ -48,7 +46,7 @@ def to_plain(type_: Type, schema: Schema) -> Plain:
     Raises
     ------
     ValueError
-        If types are written inside each other more than `MAX_DEPTH` deep.
+        If types are written inside each other more than `MAX_SERIAL_DEPTH` deep.
     """
     writing = _Writing()
     root = writing.type(type_, 0)
@@ -83,8 +81,8 @@ class _Writing:
         self.pending: list[str] = []
 
     def type(self, type_: Type, depth: int) -> list[Any]:
-        if depth > MAX_DEPTH:
-            raise ValueError(f"types nest more than {MAX_DEPTH} deep")
+        if depth > MAX_SERIAL_DEPTH:
+            raise ValueError(f"types nest more than {MAX_SERIAL_DEPTH} deep")
         match type_:
             case Bool(spelling):
                 return ["bool", spelling]
@@ -137,7 +135,7 @@ def _expr(plain: Any, depth: int) -> Any:
         return None
     from rosetta_jit.model.serial_expressions import expression_of
 
-    return expression_of(plain, depth, MAX_DEPTH)
+    return expression_of(plain, depth, MAX_SERIAL_DEPTH)
 
 
 def _plain_length(length: object) -> Any:
@@ -166,8 +164,8 @@ def _options(plain: list[Any]) -> tuple[tuple[str, Constant], ...]:
 
 
 def _type(plain: list[Any], depth: int) -> Type:
-    if depth > MAX_DEPTH:
-        raise ValueError(f"types nest more than {MAX_DEPTH} deep")
+    if depth > MAX_SERIAL_DEPTH:
+        raise ValueError(f"types nest more than {MAX_SERIAL_DEPTH} deep")
     match plain:
         case ["bool", spelling]:
             return Bool(spelling)

@@ -10,6 +10,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
+from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosetta_jit.model.types import Field, PartUnit
-
-MAX_PARTS = 500
-"""Parts of one field that have units of their own; of more, nothing is known."""
 
 
 def with_unit(field: Field, text: str | None) -> Field:
@@ -32,7 +30,7 @@ def with_units(field: Field, units: Sequence[str]) -> Field:
     length = field.type.fixed if isinstance(field.type, Array) else None
     if len(units) == 1 or (len(units) == length and len(set(units)) == 1):
         return replace(field, unit=units[0] or None)
-    return replace(field, part_units=tuple(((number,), unit) for number, unit in enumerate(units[:MAX_PARTS]) if unit))
+    return replace(field, part_units=tuple(((number,), unit) for number, unit in enumerate(units[:MAX_UNIT_PARTS]) if unit))
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.model.limits import MAX_LISTED
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Field, Schema, Type
-
-MAX_LISTED = 12
-"""Values of an enum that are listed; more are counted."""
 
 
 def field_words(field: Field, schema: Schema) -> str:

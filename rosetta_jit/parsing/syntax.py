@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.parsing.lalr import END, Token, UnexpectedTokenError
+from rosetta_jit.parsing.limits import MAX_ERRORS
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.parsing.lalr import Grammar, Parser, Tree
     from rosetta_jit.source import Source
-
-MAX_ERRORS = 20
-"""Later mistakes of a text are mostly consequences of earlier ones."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,8 +39,8 @@ from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.stages import shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
-from rosetta_jit.runtime import images
 from rosetta_jit.runtime.cache.kernels import digest_file
+from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import imported
@@ -244,7 +244,7 @@ class Build:
         said = None if self.types.rules is None else self.checked.mapping.limit
         if said is not None:
             return said
-        return images.MAX_BYTES if our_functions(self.kernels) else GRACE_BYTES
+        return MAX_PIXEL_BYTES if our_functions(self.kernels) else GRACE_BYTES
 
     def check_functions(self) -> tuple[str, ...]:
         """The names of the user's functions whose code has addresses of this process. MappingError where one is not what is declared."""

@@ -17,7 +17,8 @@ from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import Context, bind_call
 from rosetta_jit.runtime.decoder import laid_out
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.program import MAX_SPARES, Told, entry_of
+from rosetta_jit.runtime.limits import MAX_SPARES
+from rosetta_jit.runtime.program import Told, entry_of
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.dataclass import dataclass
 

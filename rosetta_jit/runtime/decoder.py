@@ -11,7 +11,7 @@ from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.callable import THREAD
-from rosetta_jit.runtime.holder.objects.foreign import MOST_CLASSES
+from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.room import roomier
 from rosetta_jit.runtime.whole_objects import decoding
@@ -93,7 +93,7 @@ class DecoderBase(Program):
             return quick(message)
         family = self._loaded.holder_type.family_
         whole = family.wholes[object_type]
-        if whole is not None and len(self._quick) < MOST_CLASSES:
+        if whole is not None and len(self._quick) < MAX_CLASSES:
             self._quick[object_type] = decoding(self.builtin, self.new, whole.make)
         givers = family.givers if types is None else self._givers_of(types)
         holder = self._borrow()

@@ -13,7 +13,7 @@ from rosetta_jit.model.types import same_name
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
-from rosetta_jit.runtime.holder.objects.foreign import MOST_CLASSES
+from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.whole_objects import encoding
 
@@ -235,7 +235,7 @@ class EncoderBase(Program):
         if whole is None:
             return self._of_foreign(value, self, *more)
         quick = encoding(self.builtin, self.new, whole)
-        if len(self._quick) < MOST_CLASSES:
+        if len(self._quick) < MAX_CLASSES:
             self._quick[type(value)] = quick
         return quick(value, *more)
 

@@ -13,13 +13,11 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
 from rosetta_jit.errors import MappingError
+from rosetta_jit.runtime.limits import MAX_IMAGE_SIDE, MAX_PIXEL_BYTES
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-MAX_BYTES = 1 << 28
-"""Of the pixels of an image."""
 
 DEFLATE_RATIO = 1032
 """How much shorter deflate makes bytes at most (RFC 1951, 3.2.5: 258 bytes by two bits); a PNG that claims more is none."""
@@ -39,8 +37,6 @@ MODES = (
 """Of "png", "png16" and "jpeg": the kind of pixels by the number of channels."""
 
 QUALITIES = ((0, 9), (0, 9), (1, 100))
-MAX_SIDE = 65500
-"""Of an image that is written: JPEG has 16 bits for it, less what its library keeps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +149,7 @@ def _measured(image: Any, data: bytes) -> Measures | int:
         return UNUSUAL
     measures = Measures(image.width, image.height, CHANNELS[mode], 16 if mode == "I;16" else 8)
     claims_too_much = data.startswith(PNG_SIGNATURE) and image.width * image.height * _bits(data) // 8 > DEFLATE_RATIO * len(data)
-    return LARGE if measures.size > MAX_BYTES or claims_too_much else measures
+    return LARGE if measures.size > MAX_PIXEL_BYTES or claims_too_much else measures
 
 
 def _bits(png: bytes) -> int:
@@ -188,7 +184,7 @@ def _decompressed(data: bytes) -> bytes | int:
 def _compressed(format_: int, width: int, height: int, channels: int, quality: int, pixels: bytes) -> bytes | int:
     mode = MODES[format_].get(channels)
     low, high = QUALITIES[format_]
-    if mode is None or not (0 < width <= MAX_SIDE and 0 < height <= MAX_SIDE and low <= quality <= high):
+    if mode is None or not (0 < width <= MAX_IMAGE_SIDE and 0 < height <= MAX_IMAGE_SIDE and low <= quality <= high):
         return UNKNOWN
     if width * height * channels * (2 if mode == "I;16" else 1) != len(pixels):
         return UNFIT

@@ -37,6 +37,7 @@ from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.beginning import address_of_bytes, begin
 from rosetta_jit.runtime.cells import Array, Arrays, Cells, Memory
 from rosetta_jit.runtime.hidden import Hidden
+from rosetta_jit.runtime.limits import MAX_READINGS
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.memory import ALIGNMENT, address_of, aligned, aligned_bytes
 from rosetta_jit.runtime.plan import Plan, plan
@@ -60,14 +61,11 @@ filling it."""
 MOST_UNASKED = 1 << 14
 """The same of a holder that is not made for a decoder."""
 
-MAX_WASTE = 1 << 16
+TOLERATED_WASTE = 1 << 16
 """Bytes that a holder may leave unused before it tidies up, at least."""
 
 _ONE_AT_A_TIME = shared_lock()
 """Held where lanes make what is made when it is first asked for."""
-
-MAX_READINGS = 100
-"""How often something is read again because another thread has changed it meanwhile."""
 
 
 class Lanes:
@@ -356,7 +354,7 @@ class Lanes:
     def waste(self, lane: int, rows: int) -> None:
         """Rows of a lane are not referred to any more. Where there are many, the next encode tidies up."""
         self.words[WASTED] += rows * self.plan.strides[lane]
-        if self.words[WASTED] > max(MAX_WASTE, sum(buffer.size for buffer in self.buffers) // 2):
+        if self.words[WASTED] > max(TOLERATED_WASTE, sum(buffer.size for buffer in self.buffers) // 2):
             self.unsettle()
 
     def borrowed(self, start: int, size: int) -> memoryview:

@@ -13,6 +13,7 @@ import numpy as np
 from rosetta_jit.kernel.state import USED, VALID, lane_word
 from rosetta_jit.model.layout import Number, Row, Span, Variant
 from rosetta_jit.runtime.lanes import Lanes, in_use
+from rosetta_jit.runtime.limits import MAX_GENERATIONS
 from rosetta_jit.runtime.plan import plan
 from rosetta_jit.runtime.rows import Rows, elements, lent, offsets, picked
 from rosetta_jit.startup.dataclass import dataclass
@@ -27,10 +28,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.layout import Layout, Slot
 
     Index: TypeAlias = slice | ArrayLike
-
-MAX_GENERATIONS = 1000
-"""How often rows of recursive lanes may refer to further ones: ten times what any encoding allows. Those that another thread is writing may
-do so for ever."""
 
 
 @dataclass(frozen=True, slots=True)

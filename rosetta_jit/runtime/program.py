@@ -17,6 +17,7 @@ from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.shapes import is_message_like
+from rosetta_jit.runtime.limits import MAX_SPARES
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, address_of
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
@@ -37,10 +38,6 @@ if TYPE_CHECKING:
 
 MANY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 """The compiled `many` (`backends/entry/many.ll`): buffer, its size, offsets, first, count, state; the first message that was not done."""
-
-
-MAX_SPARES = 8
-"""How many holders a program keeps for objects of other classes: one for each thread that uses it for those at the same time."""
 
 
 @dataclass(frozen=True, slots=True)

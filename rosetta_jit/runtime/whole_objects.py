@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.runtime.program import MAX_SPARES
+from rosetta_jit.runtime.limits import MAX_SPARES
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -25,6 +25,9 @@ OF_FLOATS = {
     "sqrt(abs(.x))": lambda x, _y: math.sqrt(abs(x)),
     "round(.x * 10.0) + floor(.x) - ceil(.x)": lambda x, _y: round(x * 10) + math.floor(x) - math.ceil(x),
     "min(.x, .y, 0.1) + max(.x, -0.5)": lambda x, y: min(x, y, 0.1) + max(x, -0.5),
+    "1.0 if isfinite(.x / .y) else 0.0": lambda x, y: float(y != 0 and math.isfinite(x / y)),
+    "1.0 if isfinite(float32(.y)) and isfinite(3) else 0.0": lambda _x, y: float(abs(y) < 2**127),
+    "1.0 if isnan(.x * (0.0 / abs(.y))) else 0.0": lambda _x, y: float(y == 0),
     "2.0 * atan2(sin(.x), cos(.x))": lambda x, _y: 2.0 * math.atan2(math.sin(x), math.cos(x)),
 }
 INTEGERS = [(7, 2), (-7, 2), (1 << 40, 3), (0, 63)]

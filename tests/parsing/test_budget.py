@@ -11,10 +11,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.language.imports import search
-from rosetta_jit.lowering.writer import MAX_STATEMENTS
-from rosetta_jit.model.expansion import MAX_BYTES, MAX_LINKS, MAX_NESTED, excess
-from rosetta_jit.model.initial_values import MAX_BORN_BYTES
-from rosetta_jit.model.layout import MAX_SLOTS
+from rosetta_jit.lowering.limits import MAX_STATEMENTS
+from rosetta_jit.model.expansion import excess
+from rosetta_jit.model.limits import MAX_BORN_BYTES, MAX_BYTES, MAX_LINKS, MAX_NESTED, MAX_SLOTS
 from rosetta_jit.model.types import Array, Field, Int, Ref, Schema, Struct
 from rosetta_jit.recording import MAX_MESSAGE_BYTES
 from rosetta_jit.runtime.run import ELEMENTS_A_BYTE, GRACE_BYTES

@@ -13,7 +13,8 @@ import pytest
 from rosetta_jit.errors import CacheWarning
 from rosetta_jit.runtime.cache import stores
 from rosetta_jit.runtime.cache.kernels import ENTRY, Cache
-from rosetta_jit.runtime.cache.usage import MAX_RECORDS, USAGE
+from rosetta_jit.runtime.cache.usage import USAGE
+from rosetta_jit.runtime.limits import MAX_USAGE_RECORDS
 
 needs_root = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give a file away")
 
@@ -149,7 +150,7 @@ def test_what_killed_writers_left_is_removed(planted):
     new.write_bytes(b"half")
     long_ago = time.time() - 2 * stores.STALE_S
     os.utime(old, (long_ago, long_ago))
-    for _ in range(MAX_RECORDS):
+    for _ in range(MAX_USAGE_RECORDS):
         Cache(planted).put("another", {}, b"")
     assert not old.exists()
     assert new.exists()

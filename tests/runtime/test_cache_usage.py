@@ -11,7 +11,8 @@ import pytest
 from rosetta_jit.runtime.cache.kernels import Cache
 from rosetta_jit.runtime.cache.sealed import seal
 from rosetta_jit.runtime.cache.stores import FolderStore
-from rosetta_jit.runtime.cache.usage import MAX_RECORDS, TOTAL, USAGE
+from rosetta_jit.runtime.cache.usage import TOTAL, USAGE
+from rosetta_jit.runtime.limits import MAX_USAGE_RECORDS
 
 SIZE = len(seal("000", {}, bytes(1000)))
 
@@ -44,15 +45,15 @@ def size_of(folder):
 
 
 def test_files_are_looked_at_every_so_many_writes(tmp_path, looks):
-    fill(tmp_path / "cache", 2 * MAX_RECORDS)
+    fill(tmp_path / "cache", 2 * MAX_USAGE_RECORDS)
     assert len(looks) == 2
-    assert (tmp_path / "cache" / USAGE).stat().st_size <= 8 * MAX_RECORDS
+    assert (tmp_path / "cache" / USAGE).stat().st_size <= 8 * MAX_USAGE_RECORDS
 
 
 def test_a_full_folder_is_bounded_and_not_looked_at_each_time(tmp_path, looks):
     for start in range(0, 200, 10):
         fill(tmp_path / "cache", 10, max_bytes=40 * SIZE, start=start)
-        assert size_of(tmp_path / "cache") <= 40 * SIZE + 8 * MAX_RECORDS
+        assert size_of(tmp_path / "cache") <= 40 * SIZE + 8 * MAX_USAGE_RECORDS
     assert len(looks) < 200 / 4
 
 
@@ -61,7 +62,7 @@ def test_what_other_processes_wrote_counts(tmp_path):
     processes = [subprocess.Popen([sys.executable, "-c", FILLER, str(folder), str(bound), str(number)]) for number in range(4)]
     assert [process.wait() for process in processes] == [0] * 4
     Cache(folder, max_bytes=bound).put("400", {}, bytes(1000))
-    assert 30 * SIZE < size_of(folder) <= bound + 8 * MAX_RECORDS
+    assert 30 * SIZE < size_of(folder) <= bound + 8 * MAX_USAGE_RECORDS
 
 
 @pytest.mark.parametrize(
@@ -93,11 +94,11 @@ def test_a_damaged_usage_costs_a_look_and_is_replaced(tmp_path, looks, recwarn, 
 def test_a_usage_that_says_too_little_is_not_believed_for_long(tmp_path):
     folder, bound = tmp_path / "cache", 20 * SIZE
     fill(folder, 15, bound)
-    for start in range(15, 15 + MAX_RECORDS, 5):
+    for start in range(15, 15 + MAX_USAGE_RECORDS, 5):
         if start < 200:
             (folder / USAGE).write_bytes((folder / USAGE).read_bytes()[:-40] + TOTAL.to_bytes(8, "little") * 5)
         fill(folder, 5, bound, start=start)
-    assert size_of(folder) <= bound + 8 * MAX_RECORDS
+    assert size_of(folder) <= bound + 8 * MAX_USAGE_RECORDS
 
 
 def test_a_folder_in_the_place_of_the_usage_costs_one_warning(tmp_path, recwarn):

@@ -26,8 +26,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosetta_jit.runtime.functions.content import MAX_FUNCTIONS, content_of
+from rosetta_jit.runtime.functions.content import content_of
 from rosetta_jit.runtime.functions.identity import identify, settle
+from rosetta_jit.runtime.limits import MAX_FUNCTIONS
 
 OFFSET = 0.25
 

@@ -11,7 +11,8 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm.frame import F32, F64, I8, I32, I64, POINTER, constant, intrinsic
 from rosetta_jit.backends.llvm.support import BOTH, declared
-from rosetta_jit.kernel.decimals import FIRST, LAST, LEAST_NORMAL, MAX_DIGITS
+from rosetta_jit.kernel.decimals import FIRST, LAST, LEAST_NORMAL
+from rosetta_jit.kernel.limits import MAX_DIGITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -28,7 +28,7 @@ from rosetta_jit.kernel.state import (
     GROW_LANE,
     GROW_ROWS,
     HIDDEN_COUNT,
-    MAX_INDICES,
+    INDEX_WORDS,
     USED,
     lane_word,
 )
@@ -198,7 +198,7 @@ def _next_attempt(
 
 def _width(kernel: Kernel) -> int:
     """The indices that the kernel's failures report."""
-    return min(MAX_INDICES, max((_index_count(body) for body in kernel.bodies), default=0))
+    return min(INDEX_WORDS, max((_index_count(body) for body in kernel.bodies), default=0))
 
 
 def _exit(entry: ir.IRBuilder, name: str, values: int) -> Exit:

@@ -7,17 +7,12 @@ from typing import TYPE_CHECKING, Protocol
 
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.frameworks.lcm.limits import MAX_COMPARED, MAX_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from rosetta_jit.source import Span
-
-MAX_SHOWN = 60
-"""Characters of a hostile word that a report repeats."""
-
-MAX_COMPARED = 100
-"""Names among which the nearest is looked for; comparing is slow."""
 
 
 class Name(Protocol):

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm import diagnostics as say
-from rosetta_jit.frameworks.lcm.fingerprint import MAX_DEPTH, fingerprint
+from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
+from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH
 from rosetta_jit.model import expr
-from rosetta_jit.model.layout import MAX_SLOTS, recursive_structs
+from rosetta_jit.model.layout import recursive_structs
+from rosetta_jit.model.limits import MAX_SLOTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Blob, Codec, Constant, Count, Encoding, Number, Path, Recursion, Repeat, Seq, Table, recurses

@@ -10,9 +10,9 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.lcm import diagnostics as say
+from rosetta_jit.frameworks.lcm.limits import MAX_FILES, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.reading import read
 from rosetta_jit.frameworks.lcm.scalars import PRIMITIVES
-from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.tree import Member, StructDeclaration, qualified
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.lcm.tree import Declaration, File, Name
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
-
-MAX_FILES = 4096
-"""Files that one file may lead to."""
 
 
 @dataclass(slots=True)

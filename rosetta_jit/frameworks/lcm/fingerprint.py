@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm import diagnostics as say
+from rosetta_jit.frameworks.lcm.limits import MAX_DEPTH, MAX_WAYS
 from rosetta_jit.frameworks.lcm.shape import shape_of, written_sizes
 from rosetta_jit.model.layout import recursive_structs
 from rosetta_jit.model.types import Enum, Ref, Struct
@@ -22,12 +23,6 @@ if TYPE_CHECKING:
 
 MASK = (1 << 64) - 1
 STRUCT_SEED, ENUM_SEED = 0x12345678, 0x87654321
-
-MAX_DEPTH = 100
-"""Structs within structs."""
-
-MAX_WAYS = 20_000
-"""In how many ways structs may be met; only those that contain each other crosswise have more than there are structs."""
 
 
 def fingerprint(struct: Struct, schema: Schema) -> int:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm.endless import check_endless
 from rosetta_jit.frameworks.lcm.files import gather
+from rosetta_jit.frameworks.lcm.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.schema import schema_of
-from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.lcm.fingerprint import fingerprint
 from rosetta_jit.frameworks.lcm.idl import parse
+from rosetta_jit.frameworks.lcm.limits import MAX_FILES
 from rosetta_jit.model.types import Struct
 
 if TYPE_CHECKING:
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosetta_jit.parsing.idl import Load
-
-MAX_FILES = 4096
-"""`.lcm` files that are looked through."""
 
 
 def type_of(wanted: int, folders: Iterable[Path], load: Load) -> tuple[str, str] | None:

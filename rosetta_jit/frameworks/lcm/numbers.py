@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from math import isfinite
 
-MAX_DIGITS = 400
-"""Longer words are no numbers."""
+from rosetta_jit.frameworks.lcm.limits import MAX_DIGITS
 
 _INTEGER = re.compile(r"-?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _DECIMAL = re.compile(r"-?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)([eE]-?[0-9]+)?")

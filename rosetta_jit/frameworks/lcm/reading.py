@@ -6,7 +6,8 @@ import re
 from typing import TYPE_CHECKING, TypeVar
 
 from rosetta_jit.frameworks.lcm import diagnostics as say
-from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS, Token, comment_before, tokens
+from rosetta_jit.frameworks.lcm.limits import MAX_PROBLEMS
+from rosetta_jit.frameworks.lcm.tokens import Token, comment_before, tokens
 from rosetta_jit.frameworks.lcm.tree import Constant, EnumDeclaration, File, Member, Name, StructDeclaration, Word
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass

@@ -6,10 +6,10 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.lcm import diagnostics as say
+from rosetta_jit.frameworks.lcm.limits import MAX_DIMENSIONS, MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.numbers import floating, integer
 from rosetta_jit.frameworks.lcm.scalars import BYTE, CONSTANTS, INTEGERS, PRIMITIVES
 from rosetta_jit.frameworks.lcm.shape import SIZES
-from rosetta_jit.frameworks.lcm.tokens import MAX_PROBLEMS
 from rosetta_jit.frameworks.lcm.tree import Constant, Member, StructDeclaration, qualified
 from rosetta_jit.model import expr
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, NamedConstant, Ref, Schema, Struct
@@ -21,10 +21,8 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.lcm.tree import EnumDeclaration, Name, Word
     from rosetta_jit.model.types import Type
 
-MAX_SIZE = (1 << 31) - 1
-MAX_FLOAT = 3.4028234663852886e38
-MAX_DIMENSIONS = 16
-"""Loops within loops take time to compile; no type of people has half as many."""
+LARGEST_INT32 = (1 << 31) - 1
+LARGEST_FLOAT = 3.4028234663852886e38
 
 
 def schema_of(gathered: Gathered, problems: list[Diagnostic]) -> Schema:
@@ -110,8 +108,8 @@ class _Struct:
         value = integer(text)
         if value is None:
             self.problems.append(say.unknown_size(size, self.known_sizes(), later=self.declared_later(text)))
-        elif not 0 < value <= MAX_SIZE:
-            self.problems.append(say.size_range(size, value, MAX_SIZE))
+        elif not 0 < value <= LARGEST_INT32:
+            self.problems.append(say.size_range(size, value, LARGEST_INT32))
         else:
             return value
         return 1
@@ -129,8 +127,8 @@ class _Struct:
         if not isinstance(constant.value, int):
             self.problems.append(say.size_type(size, "float"))
             return 1
-        if not 0 <= constant.value <= MAX_SIZE:
-            self.problems.append(say.size_range(size, constant.value, MAX_SIZE))
+        if not 0 <= constant.value <= LARGEST_INT32:
+            self.problems.append(say.size_range(size, constant.value, LARGEST_INT32))
             return 1
         return constant.value
 
@@ -156,7 +154,7 @@ def _constant_value(type_: Type, value: Name, problems: list[Diagnostic]) -> int
     real = floating(value.text)
     if real is None:
         problems.append(say.no_number(value))
-    elif isinstance(type_, Float) and type_.bits == 32 and abs(real) > MAX_FLOAT:
+    elif isinstance(type_, Float) and type_.bits == 32 and abs(real) > LARGEST_FLOAT:
         problems.append(say.constant_range(value, type_.spelling))
     return 1.0 if real is None else real
 
@@ -185,7 +183,7 @@ def _enumerator(word: Word, following: int, problems: list[Diagnostic]) -> int |
     value = following if word.number is None else integer(word.number.text)
     if value is None:
         problems.append(say.no_integer(word.number or word.name))
-    elif not -MAX_SIZE - 1 <= value <= MAX_SIZE:
+    elif not -LARGEST_INT32 - 1 <= value <= LARGEST_INT32:
         problems.append(say.constant_range(word.number or word.name, "int32_t"))
     else:
         return value

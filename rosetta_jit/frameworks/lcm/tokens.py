@@ -10,6 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.lcm import diagnostics as say
+from rosetta_jit.frameworks.lcm.limits import MAX_PROBLEMS
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Source
-
-MAX_PROBLEMS = 100
-"""Of a text with more, the rest is not explained."""
 
 _SPACE = r" \t\n\v\f\r"
 _ENDS = r"();\",:'\[\]!~<>=&|^%*+"

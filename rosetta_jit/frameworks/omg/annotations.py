@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Constant, Type
     from rosetta_jit.source import Span
 
-MAX_ID = 0x0FFFFFFF
+LARGEST_ID = 0x0FFFFFFF
 EXTENSIBILITIES = ("final", "appendable", "mutable")
 LIST = re.compile(r"\s*[(\[][^()\[\]{}]*[)\]]\s*")
 """How rosidl writes the default of an array: the text ``(1, 2, 3)``."""
@@ -90,7 +90,7 @@ class Annotations:
 
     def member_id(self, name: str, following: int, *, hashed: bool) -> int:
         """The id of a member (DDS-XTypes 1.3, 7.3.1.2.1.1)."""
-        number = self.number("id", MAX_ID)
+        number = self.number("id", LARGEST_ID)
         if number is not None:
             return number
         if self.find("hashid") is not None:
@@ -133,7 +133,7 @@ class Annotations:
 
 def hash_id(name: str) -> int:
     """28 bits of the MD5 of a name (DDS-XTypes 1.3, 7.3.1.2.1.1)."""
-    return int.from_bytes(md5(name.encode("utf-8", "surrogatepass"), usedforsecurity=False).digest()[:4], "little") & MAX_ID
+    return int.from_bytes(md5(name.encode("utf-8", "surrogatepass"), usedforsecurity=False).digest()[:4], "little") & LARGEST_ID
 
 
 def _default(value: Value, type_: Type, span: Span) -> tuple[Constant | None, dict[str, Constant]]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Sort = OneOf["integer", "floating", "boolean", "character", "wide character", "string", "wide string", "enumerator", "fixed"]
 
 LOWEST, HIGHEST = -(1 << 63), (1 << 64) - 1
-MAX_FLOAT = (2 - 2**-23) * 2.0**127
+LARGEST_FLOAT = (2 - 2**-23) * 2.0**127
 SORTS: dict[str, Sort] = {"string": "string", "wstring": "wide string", "char": "character", "wchar": "wide character"}
 
 
@@ -80,7 +80,7 @@ def fit(value: Value, type_: Type, span: Span) -> Constant:
         case Int(bits, signed), Value("integer", int() as number_) if type_.spelling not in ("char", "wchar"):
             return _ranged(number_ % (1 << bits) if value.complement and number_ < 0 and not signed else number_, type_, span)
         case Float(bits), Value("floating", float() as real):
-            if bits == 32 and abs(real) > MAX_FLOAT:
+            if bits == 32 and abs(real) > LARGEST_FLOAT:
                 raise LookupProblem(say.out_of_range(span, str(real), "float"))
             return real
         case Bool(), Value("boolean", bool() as truth):

@@ -10,6 +10,7 @@ from rosetta_jit.frameworks.omg import tree
 from rosetta_jit.frameworks.omg.annotations import Annotations
 from rosetta_jit.frameworks.omg.constants import Value, as_text, evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import ScopedName
+from rosetta_jit.frameworks.omg.limits import MAX_INHERITED
 from rosetta_jit.frameworks.omg.members import MemberMaker
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.frameworks.omg.scopes import Entry, Scope
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.omg.constants import Lookup
-
-MAX_INHERITED = 100_000
-"""Members that all structs of a file inherit together."""
 
 
 @dataclass(slots=True)

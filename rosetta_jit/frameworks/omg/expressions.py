@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
+from rosetta_jit.frameworks.omg.limits import MAX_OPERATORS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.omg.cursor import Cursor
     from rosetta_jit.frameworks.omg.lexer import Token
     from rosetta_jit.source import Span
-
-MAX_DEPTH = 100
-"""Operators below one another; a chain of n operators is n deep."""
 
 ARITHMETIC: Mapping[str, int] = {"|": 3, "^": 4, "&": 5, "<<": 8, ">>": 8, "+": 9, "-": 9, "*": 10, "/": 10, "%": 10}
 CONDITIONS: Mapping[str, int] = {**ARITHMETIC, "||": 1, "&&": 2, "==": 6, "!=": 6, "<": 7, ">": 7, "<=": 7, ">=": 7}
@@ -99,8 +97,8 @@ def expression(cursor: Cursor, language: Operators, weakest: int = 0, depth: int
             cursor.take()
         right = expression(cursor, language, strength, depth + 1)
         below = max(_depth(left), _depth(right)) + 1
-        if below > MAX_DEPTH:
-            raise SyntaxProblem(say.nesting(first.span, MAX_DEPTH, "operators"))
+        if below > MAX_OPERATORS:
+            raise SyntaxProblem(say.nesting(first.span, MAX_OPERATORS, "operators"))
         left = Binary(operator, left, right, cursor.since(first), below)
 
 
@@ -114,8 +112,8 @@ def _operator(cursor: Cursor, language: Operators) -> str:
 
 def _unary(cursor: Cursor, language: Operators, depth: int) -> Expr:
     first = cursor.token
-    if depth > MAX_DEPTH:
-        raise SyntaxProblem(say.nesting(first.span, MAX_DEPTH, "operators"))
+    if depth > MAX_OPERATORS:
+        raise SyntaxProblem(say.nesting(first.span, MAX_OPERATORS, "operators"))
     if cursor.sees(*language.unary):
         cursor.take()
         operand = _unary(cursor, language, depth + 1)

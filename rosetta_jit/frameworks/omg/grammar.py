@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.grammar_types import TypeReader
+from rosetta_jit.frameworks.omg.limits import MAX_SYNTAX_ERRORS
 from rosetta_jit.frameworks.omg.tree import (
     Aggregate,
     Annotation,
@@ -33,14 +34,11 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
     from rosetta_jit.frameworks.omg.lexer import Token
 
-MAX_ERRORS = 20
-"""A file with more syntax errors is no IDL; the rest of it is not read."""
-
 OPENING, CLOSING = ("{", "(", "["), ("}", ")", "]")
 
 
 class _TooMany(Exception):  # noqa: N818  it ends the reading, and is no error of ours
-    """`MAX_ERRORS` are reached."""
+    """`MAX_SYNTAX_ERRORS` are reached."""
 
 
 def parse(tokens: list[Token], problems: list[Diagnostic]) -> tuple[Definition, ...]:
@@ -75,7 +73,7 @@ class _Reader(TypeReader):
             except SyntaxProblem as error:
                 self.problems.append(error.problem)
                 self._errors += 1
-                if self._errors >= MAX_ERRORS:
+                if self._errors >= MAX_SYNTAX_ERRORS:
                     raise _TooMany from error
                 self.skip(before, closed=closed)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.cursor import Cursor, SyntaxProblem
 from rosetta_jit.frameworks.omg.expressions import ARITHMETIC, Expr, Literal, Operators, ScopedName, expression
+from rosetta_jit.frameworks.omg.limits import MAX_NESTING
 from rosetta_jit.frameworks.omg.tree import Aggregate, Annotation, Basic, Enum, MapOf, Name, Sequence, Text, TypeSpec, Unsupported
 from rosetta_jit.frameworks.omg.words import FOLDED, KEYWORDS, SCALARS, SERVICES
 
@@ -14,9 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.diagnostics import Diagnostic
-
-MAX_NESTING = 32
-"""Modules, structs and sequences within one another."""
 
 LITERALS = ("number", "string", "wstring", "char", "wchar")
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.omg.declare import declare
 from rosetta_jit.frameworks.omg.grammar import parse as definitions_of
+from rosetta_jit.frameworks.omg.limits import MAX_REPORTED
 from rosetta_jit.frameworks.omg.preprocessor import preprocess
 from rosetta_jit.frameworks.omg.usable import attach_constants, usable
 from rosetta_jit.model.types import Schema
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
-
-MAX_REPORTED = 100
-"""Problems that one report lists."""
 
 
 def parse(source: Source, load: Load) -> Schema:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from math import isfinite
 
-MAX_DIGITS = 400
-"""Longer numbers are refused unread; the longest finite `double` without an exponent has 309 digits."""
+from rosetta_jit.frameworks.omg.limits import MAX_DIGITS
 
 FLOATING = re.compile(r"(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[0-9]+[eE][+-]?[0-9]+")
 FIXED = re.compile(r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[dD]")

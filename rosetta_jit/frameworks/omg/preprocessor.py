@@ -13,6 +13,7 @@ from rosetta_jit.frameworks.omg.conditions import answer_defined, holds
 from rosetta_jit.frameworks.omg.cursor import SyntaxProblem
 from rosetta_jit.frameworks.omg.includes import find
 from rosetta_jit.frameworks.omg.lexer import Token, tokens
+from rosetta_jit.frameworks.omg.limits import MAX_EXPANDED, MAX_FILES
 from rosetta_jit.frameworks.omg.literals import LiteralError, unescape
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
@@ -23,12 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
-
-MAX_FILES = 4096
-"""Files that one file may include, directly or not."""
-
-MAX_EXPANDED = 100_000
-"""Tokens and macros that all macros of a file may become; a few lines could ask for any number."""
 
 PREDEFINED = "__OMNIIDL__"
 """Files for several CORBA compilers tell omniidl by this macro; we read what it reads."""

@@ -6,6 +6,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.frameworks.omg import diagnostics as say
+from rosetta_jit.frameworks.omg.limits import MAX_BASES, MAX_NAME
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -19,12 +20,6 @@ if TYPE_CHECKING:
 Kind = Literal[
     "module", "struct", "union", "exception", "enum", "typedef", "constant", "enumerator", "member", "interface", "valuetype", "native"
 ]
-
-MAX_NAME = 512
-"""Characters of a qualified name: a file of n bytes shall not need more than a small multiple of n."""
-
-MAX_BASES = 64
-"""Interfaces among which an inherited name is looked for."""
 
 
 @dataclass(slots=True)

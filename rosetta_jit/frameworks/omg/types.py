@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.frameworks.omg import diagnostics as say
 from rosetta_jit.frameworks.omg.constants import evaluate, fit
 from rosetta_jit.frameworks.omg.expressions import Expr, ScopedName
+from rosetta_jit.frameworks.omg.limits import MAX_TYPE_DEPTH
 from rosetta_jit.frameworks.omg.problems import LookupProblem
 from rosetta_jit.frameworks.omg.tree import Aggregate, Basic, Declarator, Enum, MapOf, Sequence, Text, TypeSpec, Unsupported
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, Map, Ref, String, Type
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.omg.constants import Value
     from rosetta_jit.frameworks.omg.scopes import Entry, Scope
     from rosetta_jit.source import Span
-
-MAX_DEPTH = 32
-"""Arrays, sequences and maps within one another, through typedefs too."""
 
 SCALARS: dict[str, Type] = {
     "boolean": Bool("boolean"),
@@ -160,8 +158,8 @@ def shallow(type_: Type, span: Span) -> Type:
     while isinstance(inner, Array | Map):
         inner = inner.element if isinstance(inner, Array) else inner.value
         depth += 1
-        if depth > MAX_DEPTH:
-            raise LookupProblem(say.nesting(span, MAX_DEPTH, "arrays and sequences"))
+        if depth > MAX_TYPE_DEPTH:
+            raise LookupProblem(say.nesting(span, MAX_TYPE_DEPTH, "arrays and sequences"))
     return type_
 
 

@@ -1,6 +1,7 @@
 """What libclang sees in a header, as plain data. A program of its own: it reads a request from its input and answers on its output.
 
-    request = {"main": path, "files": {path: text}, "user": folder, "standard": folder, "seconds": of processor time}
+    request = {"main": path, "files": {path: text}, "user": folder, "standard": folder, "most": Most}
+    Most    = {"seconds": of processor time, "bytes": of memory, "depth": of types, "members": of structs, "errors": that are told}
     answer  = {"missing": true} | {"failed": true} | {"errors": [[text, Place]]} | {"records": [...], "enums": [...], "aliases": [...]}
     Type    = ["bool"] | ["int", bits, signed, word] | ["float", bits, word] | ["string"] | ["vector", Type] | ["array", Type, length]
             | ["record", name] | ["enum", name] | ["no", reason, word]
@@ -22,8 +23,6 @@ from typing import Any
 NO_FILES = '{"version": 0, "fallthrough": "false", "roots": []}'
 """A file system in which there is nothing (llvm::vfs::RedirectingFileSystem): all that the compiler finds are the texts of the request."""
 
-MEMORY_BYTES = 1 << 30
-MAX_ERRORS, MAX_DEPTH, MAX_MEMBERS = 20, 32, 100_000
 INTEGERS = {
     "CHAR_S": (8, True),
     "SCHAR": (8, True),
@@ -59,6 +58,7 @@ class Reading:
 
     def __init__(self, cindex: Any, index: Any, request: dict[str, Any], no_files: str) -> None:
         self.cindex, self.index, self.request, self.no_files = cindex, index, request, no_files
+        self.most: dict[str, int] = request["most"]
         self.names: dict[str, str] = {}  # of unnamed types, by their USR: the member that has such a type names them
         self.records: dict[str, dict[str, Any]] = {}
         self.enums: list[dict[str, Any]] = []
@@ -70,7 +70,7 @@ class Reading:
         unit = self.parse(self.request["files"])
         errors = [[each.spelling, self.place(each)] for each in unit.diagnostics if each.severity >= self.cindex.Diagnostic.Error]
         if errors:
-            return {"errors": errors[:MAX_ERRORS]}
+            return {"errors": errors[: self.most["errors"]]}
         self.walk(unit.cursor)
         self.measure_bases()
         return {"records": list(self.records.values()), "enums": self.enums, "aliases": self.aliases}
@@ -131,7 +131,7 @@ class Reading:
         inherited = [{**member, "offset": None} for base in known for member in base["members"]]
         record["members"] = [*inherited, *record["members"]]
         self.members += len(record["members"])
-        if self.members > MAX_MEMBERS:
+        if self.members > self.most["members"]:
             raise MemoryError
 
     def base(self, cursor: Any) -> dict[str, Any]:
@@ -159,7 +159,7 @@ class Reading:
 
     def name_unnamed(self, type_: Any, name: str) -> None:
         canonical = type_.get_canonical()
-        for _ in range(MAX_DEPTH):
+        for _ in range(self.most["depth"]):
             if canonical.kind.name != "CONSTANTARRAY":
                 break
             canonical = canonical.element_type
@@ -211,7 +211,7 @@ class Reading:
         canonical = type_.get_canonical()
         kind, word = canonical.kind.name, canonical.spelling.replace("const ", "").replace("volatile ", "")
         match kind:
-            case _ if depth > MAX_DEPTH:
+            case _ if depth > self.most["depth"]:
                 return ["no", "nesting", ""]
             case "BOOL":
                 return ["bool"]
@@ -295,7 +295,7 @@ def main() -> None:
         json.dump({"missing": True}, sys.stdout)
         return
     index = cindex.Index.create()
-    _confine(request["seconds"])
+    _confine(request["most"]["seconds"], request["most"]["bytes"])
     with TemporaryDirectory() as folder:
         no_files = Path(folder) / "none.yaml"
         no_files.write_text(NO_FILES, encoding="utf-8")
@@ -306,12 +306,12 @@ def main() -> None:
     json.dump(answer, sys.stdout)
 
 
-def _confine(seconds: int) -> None:
+def _confine(seconds: int, memory: int) -> None:
     """From here on memory and time are short."""
     if sys.platform != "win32":
         import resource
 
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.includes import MAIN, STANDARD, USER
+from rosetta_jit.frameworks.orocos.limits import MAX_COMPILER_BYTES, MAX_DECLARATION_DEPTH, MAX_ERRORS, MAX_MEMBERS, MAX_PROCESSOR_SECONDS
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -23,8 +24,17 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.orocos.includes import Texts
     from rosetta_jit.source import Source
 
-SECONDS, PROCESSOR_SECONDS = 30, 4
-"""What a header may take; plain data takes some hundredths of a second."""
+SECONDS = 30
+"""How long the answer to a header is waited for, on a machine that has other work."""
+
+MOST = {
+    "seconds": MAX_PROCESSOR_SECONDS,
+    "bytes": MAX_COMPILER_BYTES,
+    "depth": MAX_DECLARATION_DEPTH,
+    "members": MAX_MEMBERS,
+    "errors": MAX_ERRORS,
+}
+"""What the compiler may take and tell."""
 
 _MISSING = re.compile(r"'(.*)' file not found", re.DOTALL)
 PROGRAM = Path(__file__).with_name("clang_reading.py")
@@ -62,7 +72,7 @@ def declarations(texts: Texts) -> dict[str, Any]:
         If libclang is not installed, the header is no C++, or it takes more than it may.
     """
     start = Span(texts.sources[MAIN], 0, 1)
-    request = json.dumps({"main": MAIN, "files": texts.unsaved, "user": USER, "standard": STANDARD, "seconds": PROCESSOR_SECONDS})
+    request = json.dumps({"main": MAIN, "files": texts.unsaved, "user": USER, "standard": STANDARD, "most": MOST})
     command = [sys.executable, "-P", str(PROGRAM)]
     try:
         done = subprocess.run(command, input=request, capture_output=True, text=True, timeout=SECONDS, check=False)  # noqa: S603 - our own program

@@ -11,7 +11,8 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.depth import dependents, nesting_problems, reached
 from rosetta_jit.frameworks.orocos.includes import MAIN
-from rosetta_jit.frameworks.orocos.layout import MAX_SIZE, Extent, Layouts, pinned, unaccounted
+from rosetta_jit.frameworks.orocos.layout import Extent, Layouts, pinned, unaccounted
+from rosetta_jit.frameworks.orocos.limits import MAX_PROBLEMS, MAX_SIZE
 from rosetta_jit.frameworks.orocos.messages import NUMBERS, STRING, array, options_of, with_messages, wrapped
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Int, NamedConstant, Ref, Schema, Struct
 from rosetta_jit.startup.dataclass import dataclass
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Span
 
 _MARKS = re.compile(r"^\s*(/\*\*<?|/\*!<?|///?!?<?|\*)")
-MAX_PROBLEMS = 20
 INT32 = range(-(1 << 31), 1 << 31)
 
 

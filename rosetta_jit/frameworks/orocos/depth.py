@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.orocos import diagnostics as words
+from rosetta_jit.frameworks.orocos.limits import MAX_NESTING
 from rosetta_jit.model.types import Array, Ref, Struct
 
 if TYPE_CHECKING:
@@ -12,8 +13,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.types import Declaration, Type
-
-MAX_NESTING = 32
 
 
 def reference(type_: Type) -> tuple[str | None, int, bool]:

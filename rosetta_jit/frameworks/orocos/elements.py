@@ -9,6 +9,7 @@ from xml.parsers import expat
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
+from rosetta_jit.frameworks.orocos.limits import MAX_ELEMENTS
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.source import Source
 
-MAX_ELEMENTS = 200_000
 TYPES = ("alias", "array", "character", "compound", "container", "enum", "null", "numeric", "opaque", "pointer")
 PARTS = {"compound": "field", "enum": "value"}
 """What stands inside of a type, besides metadata."""

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.layout import UNDERLYING, Layouts
+from rosetta_jit.frameworks.orocos.limits import MAX_FIELDS
 from rosetta_jit.model.layout import recursive_structs, scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Field, Schema, Type
 
 PACKED, DUMPED, MEMORY = "rtt-mqueue", "typelib", "native"
-
-MAX_FIELDS = 1 << 16
-"""Structs that unfold to more numbers are refused: hostile ones double at each level."""
 
 SIZE = Count("u64")
 BOOLEANS = ((0, 0), (1, 1))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
+from rosetta_jit.frameworks.orocos.limits import MAX_CHARACTERS, MAX_FILES
 from rosetta_jit.source import Span
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -26,8 +27,6 @@ USER, STANDARD = "/header/", "/standard/"
 """Where the compiler believes that the user's headers and those of the standard library lie; no such folders need exist."""
 
 MAIN = f"{USER}main.hpp"
-
-MAX_FILES, MAX_CHARACTERS = 200, 8 << 20
 
 EMPTY = (
     "algorithm",

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.frameworks.orocos.limits import MAX_PADDING
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rosetta_jit.model.types import Declaration, Field, Type
-
-MAX_SIZE, MAX_PADDING = 1 << 30, 256
-"""Larger structs, and longer runs of padding, are refused."""
 
 UNDERLYING = "underlying"
 """The option of a field whose enum is not an int: the scalar that it is instead."""

@@ -23,7 +23,8 @@ from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.orocos import diagnostics as words
 from rosetta_jit.frameworks.orocos.depth import nesting_problems, references
 from rosetta_jit.frameworks.orocos.elements import read_elements
-from rosetta_jit.frameworks.orocos.layout import MAX_SIZE, STRING, VECTOR, Layouts, pinned, unaccounted
+from rosetta_jit.frameworks.orocos.layout import STRING, VECTOR, Layouts, pinned, unaccounted
+from rosetta_jit.frameworks.orocos.limits import MAX_PROBLEMS, MAX_SIZE, MAX_TYPE_DEPTH
 from rosetta_jit.frameworks.orocos.messages import NUMBERS, array, with_messages, wrapped
 from rosetta_jit.frameworks.orocos.messages import STRING as TEXT
 from rosetta_jit.model.types import Array, Bytes, Enum, Field, Float, Int, Ref, Schema, Struct
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
-MAX_PROBLEMS, MAX_DEPTH = 20, 32
 INT32 = range(-(1 << 31), 1 << 31)
 
 _DIGITS = re.compile(r"-?[0-9]{1,18}")
@@ -179,8 +179,8 @@ class _Registry:
     def type(self, name: str, user: Element, attribute: str, depth: int = 0) -> Type | None:
         """The type of a name, None where that is wrong."""
         element = self.elements.get(name)
-        if depth > MAX_DEPTH:
-            return self.refuse(words.nested_too_deep(user.span_of(attribute), name[:80], MAX_DEPTH))
+        if depth > MAX_TYPE_DEPTH:
+            return self.refuse(words.nested_too_deep(user.span_of(attribute), name[:80], MAX_TYPE_DEPTH))
         if element is None:
             return self.unregistered(name, user, attribute, depth)
         match element.tag:

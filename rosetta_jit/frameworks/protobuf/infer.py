@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.protobuf import infer_diagnostics as words
+from rosetta_jit.frameworks.protobuf.limits import MAX_INFERRED_DEPTH, MAX_INFERRED_FIELDS
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -22,14 +23,8 @@ if TYPE_CHECKING:
 VARINT, FIXED64, BYTES, FIXED32 = 0, 1, 2, 5
 WIRE_TYPES = {VARINT: "varint", FIXED64: "64 bits", BYTES: "length-delimited", FIXED32: "32 bits"}
 
-MAX_DEPTH = 16
-"""Messages within messages that are looked into."""
-
-MAX_FIELDS = 1_000
-"""Fields of one message type."""
-
 NAME = re.compile(r"([A-Za-z_]\w*\.)*[A-Za-z_]\w*")
-MAX_VARINT = 10
+VARINT_BYTES = 10
 
 
 @dataclass(slots=True)
@@ -106,8 +101,8 @@ def _look(message: bytes, fields: dict[int, Seen]) -> None:
         seen = fields.setdefault(number, Seen(wire))
         if seen.wire != wire:
             raise _UnlikeError(number, (WIRE_TYPES[seen.wire], WIRE_TYPES[wire]))
-        if len(fields) > MAX_FIELDS:
-            raise SchemaError((words.too_many_fields(MAX_FIELDS),))
+        if len(fields) > MAX_INFERRED_FIELDS:
+            raise SchemaError((words.too_many_fields(MAX_INFERRED_FIELDS),))
         seen.values.append(value)
         counts[number] = counts.get(number, 0) + 1
     for number, count in counts.items():
@@ -143,7 +138,7 @@ def _parts(data: bytes) -> Iterator[tuple[int, int, int | bytes]]:
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:
     value = 0
-    for count in range(MAX_VARINT):
+    for count in range(VARINT_BYTES):
         if at + count >= len(data):
             raise _NoMessageError("truncated", "the message ends within a varint", at)
         byte = data[at + count]
@@ -219,7 +214,7 @@ def _of_bytes(values: list[bytes], most: int, depth: int) -> tuple[str | dict[in
         return "bytes", "", "always empty: a text, a message, or bytes"
     if all(map(_is_text, full)):
         return "string", "", sizes
-    inner = _message(values) if depth < MAX_DEPTH else None
+    inner = _message(values) if depth < MAX_INFERRED_DEPTH else None
     if inner:
         return inner, "", sizes
     if most == 1:

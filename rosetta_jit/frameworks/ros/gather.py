@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import diagnostics as say
 from rosetta_jit.frameworks.ros.interfaces import parts
+from rosetta_jit.frameworks.ros.limits import MAX_MESSAGES, MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.names import SUFFIX, Declared, declared_in, places, split
 from rosetta_jit.frameworks.ros.order import dependencies_first
-from rosetta_jit.frameworks.ros.reading import MAX_PROBLEMS, read
+from rosetta_jit.frameworks.ros.reading import read
 from rosetta_jit.frameworks.ros.sections import sections
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.ros.tree import Definition, Field, TypeName
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
-
-MAX_MESSAGES = 4096
-"""Messages that one may need, directly or not."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import diagnostics as say
-from rosetta_jit.model.layout import MAX_SLOTS
+from rosetta_jit.frameworks.ros.limits import MAX_DEPTH
+from rosetta_jit.model.limits import MAX_SLOTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.frameworks.ros.tree import Definition, Field
-
-MAX_DEPTH = 64
-"""Messages within messages."""
 
 
 def dependencies_first(found: Mapping[str, Definition], problems: list[Diagnostic]) -> tuple[Definition, ...]:

@@ -10,6 +10,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.ros import diagnostics as say
+from rosetta_jit.frameworks.ros.limits import MAX_PROBLEMS
 from rosetta_jit.frameworks.ros.tree import Constant, Definition, Field, TypeName, Word
 from rosetta_jit.frameworks.ros.typenames import type_name
 from rosetta_jit.frameworks.ros.values import array_values, scalar_value, wanted
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 BLANKS = " \t\r"
 DECLARATION = re.compile(r"([^ \t]+)([ \t]*)(.*)", re.DOTALL)
-MAX_PROBLEMS = 100
-"""Problems of all files together, beyond which reading stops."""
 
 
 def read(section: Section, dialect: Dialect, problems: list[Diagnostic]) -> Definition:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 TYPE = re.compile(r"(?P<base>[^\[\]<]+)(?P<bound><=(?P<text>[^\[\]]*))?(?P<array>\[(?P<most><=)?(?P<length>[^\[\]]*)\])?")
 LENGTH = re.compile(r"[0-9]{1,12}")
-MAX_LENGTH = (1 << 32) - 1
+LARGEST_LENGTH = (1 << 32) - 1
 """Counts have 32 bits on the wire."""
 
 
@@ -69,7 +69,7 @@ def _may_have_bounds(match: re.Match[str], dialect: Dialect) -> bool:
 
 def _length(text: str) -> int | None:
     number = int(text) if LENGTH.fullmatch(text) else None
-    return number if number is not None and number <= MAX_LENGTH else None
+    return number if number is not None and number <= LARGEST_LENGTH else None
 
 
 def _empty_bound(match: re.Match[str]) -> bool:

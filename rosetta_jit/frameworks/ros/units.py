@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 
+from rosetta_jit.frameworks.ros.limits import MAX_UNIT
+
 IN_BRACKETS = re.compile(r"\[([^,\]]+)\]")
 """A comma makes it a range."""
-
-MAX_UNIT = 64
 
 
 def unit_in(comment: str) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.ros.limits import MAX_DIGITS
 from rosetta_jit.model.types import Bool, Float, Int, String
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
 FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE)
 PYTHON_INTEGER, ZERO = re.compile(r"[+-]?(?:0+|[1-9][0-9]*)"), re.compile(r"[+-]?0+")
-MAX_DIGITS = 80
-"""Of an integer, in whatever base it is written."""
 ELEMENT = re.compile(r""" *("(?:\\"|[^"])*"|'(?:\\'|[^'])*'|[^,"' ][^,]*) *(?:,|$)""")
 """An element of an array of strings, and the comma behind it."""
 

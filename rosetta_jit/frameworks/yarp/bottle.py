@@ -15,8 +15,9 @@ import struct
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import DecodeError, EncodeError
+from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
 from rosetta_jit.frameworks.yarp.tags import DICT, FIXED_FORMATS, list_code, list_units
-from rosetta_jit.frameworks.yarp.tree import MAX_NESTING, Dict, List, Value, narrow, path_text, widen
+from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, narrow, path_text, widen
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:

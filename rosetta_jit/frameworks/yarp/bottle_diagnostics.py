@@ -7,17 +7,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.frameworks.yarp.limits import MAX_COMPARED, MAX_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from rosetta_jit.source import Span
-
-MAX_SHOWN = 100
-"""Characters of a hostile name that a report repeats."""
-
-MAX_COMPARED = 500
-"""Names among which the nearest is looked for; comparing is slow."""
 
 
 def _error(code: str, message: str, span: Span | None, label: str, help_: str = "", *notes: str) -> Diagnostic:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.frameworks.yarp.limits import MAX_VALUE_SHOWN
 from rosetta_jit.frameworks.yarp.names import unique_names
 from rosetta_jit.frameworks.yarp.shape import Entries, Fixed, Keyed, Many, Scalar
 from rosetta_jit.frameworks.yarp.tags import vocab
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
 
 Line = tuple[str, str]
 """Code, and a comment to stand behind it."""
-
-MAX_SHOWN = 40
-"""Characters of a value that a comment shows."""
 
 _VOCAB_TEXT = re.compile(rb"[ !-{}~]+")
 
@@ -110,9 +108,9 @@ def _comment(shape: Shape, constant: str) -> str:
 
 
 def _shown(value: Value) -> str:
-    if isinstance(value.value, bytes) and len(value.value) > MAX_SHOWN:
+    if isinstance(value.value, bytes) and len(value.value) > MAX_VALUE_SHOWN:
         return f"the same {len(value.value)} bytes"
-    text = to_text(List((value,))).decode("utf-8", "replace")[:MAX_SHOWN]
+    text = to_text(List((value,))).decode("utf-8", "replace")[:MAX_VALUE_SHOWN]
     return "".join(char if char.isprintable() else "?" for char in text)
 
 

@@ -9,6 +9,7 @@ from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.bottle import read
 from rosetta_jit.frameworks.yarp.detect import read_any
 from rosetta_jit.frameworks.yarp.draft import draft
+from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
 from rosetta_jit.frameworks.yarp.names import TYPE_NAME
 from rosetta_jit.frameworks.yarp.shape import Clash, Fixed, Many, join_all, join_lists, join_places, shape
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
 
 ANY = "yarp"
 """The encoding that is any of the dialects."""
-
-MAX_PLACES = 64
-"""A message of more elements of one type is a list: nobody would name them one by one."""
 
 
 def infer(messages: Iterable[bytes], *, name: str, encoding: str = "yarp") -> str:

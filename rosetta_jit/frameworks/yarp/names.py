@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.yarp.limits import MAX_KEY
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 FIELD_NAME = re.compile(r"(?!.{101})[A-Za-z_][A-Za-z0-9_]*")
 TYPE_NAME = re.compile(r"(?!.{101})[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
-
-MAX_KEY = 80
-"""Characters of a key that its field's name keeps, which leaves room to tell it from others."""
 
 
 def unique_names(keys: Iterable[str]) -> list[str]:

@@ -7,9 +7,9 @@ from itertools import islice
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
-from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
+from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_TERMS
 from rosetta_jit.model.expr import Binary, Call, Choice, Given, Held, Item, Len, List, Literal, Member, Name, Nearest, Path, Unary
-from rosetta_jit.model.layout import MAX_SLOTS
+from rosetta_jit.model.limits import MAX_SLOTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.types import Field, Type
     from rosetta_jit.source import Span
-
-MAX_TERMS = 256
-"""Terms of a computed value with all that it is computed from; fields can double them line by line."""
 
 Place = tuple[str, str]
 """A field: the declaration that it stands in, and its path from there."""

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 OPERATORS = ("+", "-", "*", "/", "align")
 """What two operands can have between them; `length` has one, a list, string or blob."""
 
-MAX_FLOAT32 = (2 - 2**-23) * 2.0**127
-MAX_FLOAT64 = float_info.max
+LARGEST_FLOAT32 = (2 - 2**-23) * 2.0**127
+LARGEST_FLOAT64 = float_info.max
 
 
 def read_constant(node: Node, type_: Type, problems: list[Diagnostic]) -> Expr | None:
@@ -35,7 +35,7 @@ def read_constant(node: Node, type_: Type, problems: list[Diagnostic]) -> Expr |
             return Literal(value, span)
         case Int(), Word() | Form():
             return read_expr(node, problems)
-        case Float(bits), Number(value, span) if abs(value) <= (MAX_FLOAT32 if bits == 32 else MAX_FLOAT64):
+        case Float(bits), Number(value, span) if abs(value) <= (LARGEST_FLOAT32 if bits == 32 else LARGEST_FLOAT64):
             return Literal(float(value), span)
         case Bool(), Word("true" | "false" as word, span):
             return Literal(word == "true", span)

@@ -7,12 +7,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp.limits import MAX_PADDING
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant, read_expr
 from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Word, head
 from rosetta_jit.frameworks.yarp.tags import DIALECTS
 from rosetta_jit.model.expr import Literal
+from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Bool, Bytes, Float, Int, String
-from rosetta_jit.model.units import MAX_PARTS, with_units
+from rosetta_jit.model.units import with_units
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -63,9 +65,6 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
     }
 )
 """The options of a field, and how each is written."""
-
-
-MAX_PADDING = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +183,7 @@ def _with_units(field: Field, node: Node, problems: list[Diagnostic]) -> Field:
         problems.append(catalogue.misplaced_option(node.span, ":units", "a :list"))
         return field
     match node:
-        case Form((_, *names)) if 0 < len(names) <= MAX_PARTS and all(map(_unit_name, names)):
+        case Form((_, *names)) if 0 < len(names) <= MAX_UNIT_PARTS and all(map(_unit_name, names)):
             return with_units(field, [_unit_name(name) for name in names])
         case _:
             problems.append(catalogue.malformed_option(node.span, OPTIONS[":units"]))

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
 from rosetta_jit.frameworks.yarp.forms import make_union
+from rosetta_jit.frameworks.yarp.limits import MAX_NESTING, MAX_PROBLEMS
 from rosetta_jit.frameworks.yarp.names import FIELD_NAME
 from rosetta_jit.frameworks.yarp.schema_expr import read_constant
 from rosetta_jit.frameworks.yarp.schema_options import CASE, SCALARS, TEXT, Place, sort_rest, text_option, with_options
-from rosetta_jit.frameworks.yarp.sexpr import MAX_PROBLEMS, Form, Number, Text, Vocab, Word, head
-from rosetta_jit.frameworks.yarp.tree import MAX_NESTING
+from rosetta_jit.frameworks.yarp.sexpr import Form, Number, Text, Vocab, Word, head
 from rosetta_jit.model.types import Array, Field, Map, Ref, Struct
 
 if TYPE_CHECKING:

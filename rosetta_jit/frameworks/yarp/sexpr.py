@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import bottle_diagnostics as catalogue
+from rosetta_jit.frameworks.yarp.limits import MAX_DIGITS, MAX_FORMS, MAX_PROBLEMS
 from rosetta_jit.parsing.lalr import UnexpectedCharacterError
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.source import Span
@@ -28,15 +29,6 @@ if TYPE_CHECKING:
     from rosetta_jit.source import Source
 
 GRAMMAR = Path(__file__).with_name("bottle_schema.lark")
-
-MAX_FORMS = 160
-"""Parentheses within parentheses: two for each level of a message, and room for expressions."""
-
-MAX_PROBLEMS = 50
-"""Reading stops after so many: nobody mends more at once, and saying where each stands takes time."""
-
-MAX_DIGITS = 100
-"""Python refuses to convert very long numbers; none of these fits any field."""
 
 _ESCAPES = {"n": "\n", "t": "\t"}
 

@@ -12,8 +12,9 @@ from math import copysign, isnan
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.errors import EncodeError
+from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
 from rosetta_jit.frameworks.yarp.tags import vocab
-from rosetta_jit.frameworks.yarp.tree import MAX_NESTING, Dict, List, Value, path_text, specialised
+from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, path_text, specialised
 
 if TYPE_CHECKING:
     from rosetta_jit.frameworks.yarp.tags import Dialect

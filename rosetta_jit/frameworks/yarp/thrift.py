@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
 from rosetta_jit.frameworks.yarp import thrift_grammar as tree
+from rosetta_jit.frameworks.yarp.limits import MAX_ANCESTORS, MAX_FILES, MAX_FUNCTIONS, MAX_TYPE_DEPTH
 from rosetta_jit.frameworks.yarp.tags import vocab
 from rosetta_jit.frameworks.yarp.thrift_lexer import words_of
 from rosetta_jit.model import expr
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
 
-MAX_FILES = 200
-MAX_ANCESTORS, MAX_FUNCTIONS = 32, 1 << 14
 VOCAB_LETTERS = 4
 """Words of a function's name that are longer are texts."""
 
@@ -156,8 +155,8 @@ class _Reading:
         return Field(member.name, type_, default=default, options=tuple(options), span=member.span)
 
     def type(self, file: tree.File, type_: tree.Type, depth: int) -> Type | None:
-        if depth > tree.MAX_DEPTH:
-            self.problems.append(say.nesting(type_.span, tree.MAX_DEPTH))
+        if depth > MAX_TYPE_DEPTH:
+            self.problems.append(say.nesting(type_.span, MAX_TYPE_DEPTH))
             return None
         if isinstance(type_, tree.Named):
             return self.by_name(file, type_, depth)

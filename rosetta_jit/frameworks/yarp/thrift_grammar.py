@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.yarp import thrift_diagnostics as say
+from rosetta_jit.frameworks.yarp.limits import MAX_THRIFT_DIGITS, MAX_TYPE_DEPTH
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.yarp.thrift_lexer import Word
     from rosetta_jit.source import Span
 
-MAX_DEPTH = 32
-MAX_DIGITS = 400
 Value = bool | int | float | str | None
 """Of a default or a constant; None for lists and maps, which no field can have."""
 
@@ -158,8 +157,8 @@ class _Reading:
 
     def deeper(self) -> None:
         self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise SchemaError((say.nesting(self.next.span, MAX_DEPTH),))
+        if self.depth > MAX_TYPE_DEPTH:
+            raise SchemaError((say.nesting(self.next.span, MAX_TYPE_DEPTH),))
 
     # --- declarations ------------------------------------------------------------------------------------------------
 
@@ -296,7 +295,7 @@ class _Reading:
     def value(self) -> Value:
         word = self.take()
         match word.kind:
-            case "number" if len(word.text) <= MAX_DIGITS:
+            case "number" if len(word.text) <= MAX_THRIFT_DIGITS:
                 return _number(word.text)
             case "text":
                 return word.text[1:-1]

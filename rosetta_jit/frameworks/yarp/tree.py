@@ -20,9 +20,6 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-MAX_NESTING = 64
-"""Lists within lists below the top one. YARP has no limit and overflows its stack."""
-
 Path = tuple[int, ...]
 """Where an item is: its index in the bottle, then its index in the list there, and so on."""
 

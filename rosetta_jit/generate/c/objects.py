@@ -23,8 +23,8 @@ from rosetta_jit.kernel.state import (
     GROW_ROWS,
     HIDDEN,
     HIDDEN_COUNT,
+    INDEX_WORDS,
     LANE_WORDS,
-    MAX_INDICES,
     NOW,
     NUMBER,
     REGISTERS,
@@ -133,7 +133,7 @@ def _tell_failure(writer: Writer, kernel: Kernel, lanes: Lanes) -> None:
     with writer.indented("if (result < 0) {"):
         writer.line("failure->site = -1 - result;")
         writer.line(f"failure->offset = state[{ERROR_OFFSET}];")
-        writer.line(f"memcpy(failure->indices, &state[{ERROR_INDICES}], {MAX_INDICES} * sizeof state[0]);")
+        writer.line(f"memcpy(failure->indices, &state[{ERROR_INDICES}], {INDEX_WORDS} * sizeof state[0]);")
     writer.line("}")
     with writer.indented("if (result == -1) {"):
         writer.line(f"failure->offset = state[{GROW_LANE}];")

@@ -6,6 +6,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, Const, Expr, Get, IsText, Let, Load, Local, Nearest, Used
+from rosetta_jit.kernel.limits import MAX_HOISTED_NODES
 from rosetta_jit.kernel.proof.loops import changed_names
 from rosetta_jit.kernel.rewrite import locals_in, reads_memory, substituted, with_operands
 from rosetta_jit.kernel.shape import bound_names, operands, statements, subexpressions
@@ -14,9 +15,6 @@ from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import For
-
-MAX_NODES = 64
-"""A larger base or step is not worth computing before the loop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +86,7 @@ def rounds_of(loop: For) -> Rounds:
 
 
 def _is_small(expr: Expr) -> bool:
-    return next(islice(subexpressions(expr), MAX_NODES, None), None) is None
+    return next(islice(subexpressions(expr), MAX_HOISTED_NODES, None), None) is None
 
 
 def _sum(left: Affine | None, right: Affine | None) -> Affine | None:

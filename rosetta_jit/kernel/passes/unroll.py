@@ -6,15 +6,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Assign, Block, Call, Const, For, HostCall, Let, Var, While
+from rosetta_jit.kernel.limits import MAX_UNROLLED_ROUNDS, MAX_UNROLLED_STATEMENTS
 from rosetta_jit.kernel.rewrite import ends, substituted, with_blocks, with_bodies, with_expressions
 from rosetta_jit.kernel.shape import bound_names, statements
 from rosetta_jit.kernel.terms import index
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr, Kernel, Stmt
-
-MAX_ROUNDS = 16
-MAX_STATEMENTS = 64
 
 
 def unroll(kernel: Kernel) -> Kernel:
@@ -38,7 +36,7 @@ def _block(block: Block, names: set[str]) -> Block:
 def _is_short(count: int, body: Block) -> bool:
     inner = [stmt for stmt, _ in statements(body)]
     is_innermost = not any(isinstance(stmt, For | While | Call | HostCall) for stmt in inner)
-    return is_innermost and count <= MAX_ROUNDS and count * len(inner) <= MAX_STATEMENTS and not ends(body)
+    return is_innermost and count <= MAX_UNROLLED_ROUNDS and count * len(inner) <= MAX_UNROLLED_STATEMENTS and not ends(body)
 
 
 def _round(body: Block, variable: str, number: int, names: set[str]) -> Block:

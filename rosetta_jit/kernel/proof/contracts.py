@@ -46,7 +46,7 @@ def bind(scope: Scope, routine: Routine, call: Call) -> None:
     `begin`. One without a promise is a number that was read, and may be multiplied.
     """
     inner = Scope(scope.strides, scope.facts, {name: scope.locals[name] for name in MESSAGE}, scope.used, scope.capacity)
-    inner.record, inner.at = scope.record, scope.at
+    inner.record = scope.record
     for parameter, argument in zip(routine.parameters, call.arguments, strict=True):
         inner.locals[parameter.name] = typed = evaluate(scope, argument)
         demand(typed[0] == parameter.type, f"{typed[0]} where {parameter.type} belongs")

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from typing import assert_never
 
+from rosetta_jit.kernel.limits import MAX_FORMULA
 from rosetta_jit.kernel.proof.linear import Linear, minus, shifted, times
 from rosetta_jit.startup.dataclass import dataclass
-
-MAX_FORMULA = 64
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Advance, Assign, Local
+from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block, Expr
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.scope import Scope, Typed
-
-MAX_ROUNDS = 1 << 20
-"""A loop that neither the message nor a value bounds runs at most so often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +74,7 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
         kept = [guess for guess in kept if guess not in dropped]
     if scope.record is not None:
         first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)) for guess in kept]
-        scope.record.owe_all(scope, first, claims.RELATION_FIRST)
+        scope.record.owe_all(first, claims.RELATION_FIRST)
     forget(scope, at_entry, lanes, kept)
 
 
@@ -92,7 +90,7 @@ def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list
         claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess))) for guess in kept]
         lost = [guess for guess, formula in claimed if not facts.proves(formula)]
         if scope.record is not None:
-            scope.record.owe_all(scope, [formula for _, formula in claimed], claims.RELATION_KEPT)
+            scope.record.owe_all([formula for _, formula in claimed], claims.RELATION_KEPT)
     facts.rollback(mark)
     return lost
 
@@ -103,7 +101,7 @@ def bounds(scope: Scope, measure: Linear, condition: Formula, first_atom: int) -
     The last must be the same in each round: made of atoms before ``first_atom``, the first that the round made.
     """
     low, high = scope.facts.lower(measure), scope.facts.upper(measure)
-    within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_ROUNDS else False
+    within = All((shifted(measure, -low), shifted(times(measure, -1), high))) if high - low <= MAX_LOOP_ROUNDS else False
     fixed = (part for part in _conjuncts(condition) if all(atom < first_atom for atom, _ in plus(part, measure).terms))
     return Any((within, minus(linear(scope.locals["end"][1]), measure), *fixed))
 

@@ -17,7 +17,7 @@ class UnprovenError(AssertionError):
 def oblige(scope: Scope, formula: Formula, claim: Claim) -> None:
     """Demand a proof."""
     if scope.record is not None:
-        scope.record.owe(scope, formula, claim)
+        scope.record.owe(formula, claim)
     if not scope.facts.proves_thoroughly(formula):
         raise UnprovenError(claim.otherwise)
 
@@ -25,7 +25,7 @@ def oblige(scope: Scope, formula: Formula, claim: Claim) -> None:
 def certify(scope: Scope, holds: bool, claim: Claim) -> None:
     """Demand what shows in the kernel's constants; the kernel owes it on paths that nothing takes, too."""
     if scope.record is not None:
-        scope.record.owe(scope, holds, claim)
+        scope.record.owe(holds, claim)
     demand(holds, claim.otherwise)
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import z3
 
+from rosetta_jit.kernel.limits import MAX_Z3_STEPS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.meanings import Terms, atoms_in
 from rosetta_jit.kernel.proof.record import chain
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
 
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.record import Obligation, Premise, RecordedFacts
-
-MOST_STEPS = 20_000_000
-"""No question may take z3 more of its steps: some seconds, but the same answer on a machine that has other work."""
 
 Verdict = Literal["proved", "refuted", "unknown"]
 
@@ -139,5 +137,5 @@ def _integer(value: z3.ExprRef) -> int:
 
 def _solver() -> z3.Solver:
     solver = z3.Solver()
-    solver.set("rlimit", MOST_STEPS)
+    solver.set("rlimit", MAX_Z3_STEPS)
     return solver

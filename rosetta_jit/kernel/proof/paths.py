@@ -9,19 +9,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.linear import Linear, coefficient_of, minus, plus, shifted, times
-from rosetta_jit.kernel.proof.scope import MAX_POSITION, MAX_ROWS
+from rosetta_jit.kernel.proof.scope import Arrival
 from rosetta_jit.kernel.proof.symbolic import linear
-from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.kernel.ir import Scalar
     from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.linear import Terms
-    from rosetta_jit.kernel.proof.record import Premise
     from rosetta_jit.kernel.proof.scope import Scope, Typed
 
 BEGIN_ATOM = 0
@@ -29,17 +27,6 @@ BEGIN_ATOM = 0
 
 FAR = 1 << 32
 """A distance that says nothing worth keeping."""
-
-
-@dataclass(frozen=True, slots=True)
-class Arrival:
-    """What one path brings to a meeting point; ``premises`` are what it took as known, where that is written down."""
-
-    changed: dict[str, Typed]
-    used: list[Linear]
-    gained: dict[Terms, int]
-    distances: dict[str, list[tuple[int, int]]]
-    premises: Premise | None = None
 
 
 def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool:
@@ -56,7 +43,7 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
             scope.facts.rollback(mark)
         elif scope.facts.impossible:
             if scope.record is not None:
-                scope.record.owe(scope, formula=False, claim=claims.UNREACHABLE)
+                scope.record.owe(formula=False, claim=claims.UNREACHABLE)
             scope.facts.rollback(mark)
         else:
             changed = scope.changed(here)
@@ -65,7 +52,9 @@ def branch(scope: Scope, ways: list[tuple[Formula, Callable[[], bool]]]) -> bool
         scope.rollback(here)
         scope.used = list(used)
     if arrivals and scope.record is not None:
-        scope.record.meet(scope, before, arrivals, _meet)
+        from rosetta_jit.kernel.proof.meetings import meet
+
+        meet(scope, scope.record, before, arrivals, _meet)
     elif arrivals:
         _meet(scope, before, arrivals)
     elif not returned:

@@ -13,6 +13,7 @@ from collections.abc import Hashable
 from dataclasses import field
 from typing import Literal, NamedTuple, assert_never
 
+from rosetta_jit.kernel.limits import MAX_CASES, MAX_PROPAGATED, MAX_TRIED
 from rosetta_jit.kernel.proof.formula import All, Any, Formula, equal, is_vague, negated, said
 from rosetta_jit.kernel.proof.linear import Linear, Terms, coefficient_of, contradict, minus, replaced, shifted, tightened, times
 from rosetta_jit.startup.dataclass import dataclass
@@ -28,12 +29,6 @@ class Effort(NamedTuple):
 
 GLANCE, SUMS, QUICK, THOROUGH = Effort(0, 0, 0), Effort(2, 0, 0), Effort(2, 32, 300), Effort(2, 96, 4000)
 """For what stands in the table, for what takes no elimination, for a question, and for an obligation."""
-
-MAX_TRIED = 8
-"""Facts about one atom, the latest ones, that are tried as a summand."""
-
-CASE_DEPTH = 2
-MAX_PROPAGATED = 4
 
 Procedure = Literal["constants", "unreachable", "bounds", "sums", "elimination", "cases", "operations", "paths"]
 """Who proves: a look at constants, the contradiction of what a path takes as known, the table of bounds, a sum of few facts,
@@ -250,11 +245,11 @@ class Facts:
 
     def proves(self, formula: Formula) -> bool:
         """Whether a formula follows from what is known, as far as a short look shows."""
-        return self.impossible or self._proves(formula, CASE_DEPTH, QUICK)
+        return self.impossible or self._proves(formula, MAX_CASES, QUICK)
 
     def proves_thoroughly(self, formula: Formula) -> bool:
         """Whether a formula follows from what is known: for what ought to, as a No may take long."""
-        return self.proves(formula) or self._proves(formula, CASE_DEPTH, THOROUGH)
+        return self.proves(formula) or self._proves(formula, MAX_CASES, THOROUGH)
 
     def procedure(self, formula: Formula) -> Procedure | None:
         """The simplest procedure that proves a formula; None where it is not proven."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Expect, HostCall, Require
 from rosetta_jit.kernel.proof import claims
-from rosetta_jit.kernel.proof.formula import All, Any, equal
+from rosetta_jit.kernel.proof.formula import All, equal
 from rosetta_jit.kernel.proof.linear import Linear, minus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.startup.dataclass import dataclass
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Site, Stmt
     from rosetta_jit.kernel.proof.claims import Claim
     from rosetta_jit.kernel.proof.formula import Formula
-    from rosetta_jit.kernel.proof.paths import Arrival
     from rosetta_jit.kernel.proof.prove import Procedure
-    from rosetta_jit.kernel.proof.scope import Scope, Typed, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,45 +140,43 @@ class RecordedFacts(Facts):
 
 
 class Record:
-    """The obligations of one kernel, in the order in which the proof meets them."""
+    """The obligations of one kernel, in the order in which the proof meets them.
+
+    Attributes
+    ----------
+    obligations : list of Obligation
+    stmt : Stmt or None
+        The statement where the proof is.
+    """
 
     def __init__(self) -> None:
         self.obligations: list[Obligation] = []
         self._part = ""
         self._sites: tuple[Site, ...] = ()
-        self._scope: Scope | None = None
+        self.stmt: Stmt | None = None
         self._facts: RecordedFacts
 
     def begin(self, part: str, sites: tuple[Site, ...]) -> None:
         """What follows belongs to a body or a routine."""
-        self._part, self._sites, self._scope = part, sites, None
+        self._part, self._sites, self.stmt = part, sites, None
 
     def facts(self) -> RecordedFacts:
-        """The facts of a part."""
-        self._facts = RecordedFacts(self)
+        """The facts of a part, at its beginning."""
+        self._facts, self.stmt = RecordedFacts(self), None
         return self._facts
-
-    def watch(self, scope: Scope) -> None:
-        """The scope of a part: it tells where the proof is."""
-        self._scope = scope
-
-    @property
-    def stmt(self) -> Stmt | None:
-        """The statement where the proof is."""
-        return None if self._scope is None else self._scope.at
 
     def premises(self) -> Premise | None:
         """What is taken as known where the proof is."""
         return self._facts.premises
 
-    def owe(self, scope: Scope, formula: Formula, claim: Claim) -> None:  # noqa: ARG002 - the facts of a part are those of its scopes
+    def owe(self, formula: Formula, claim: Claim) -> None:
         """Write an obligation down."""
         self.write(self._facts.premises, formula, claim, len(self._facts.lows))
 
-    def owe_all(self, scope: Scope, formulas: Iterable[Formula], claim: Claim) -> None:
+    def owe_all(self, formulas: Iterable[Formula], claim: Claim) -> None:
         """Write several down."""
         for formula in formulas:
-            self.owe(scope, formula, claim)
+            self.owe(formula, claim)
 
     def write(
         self, premises: Premise | None, formula: Formula, claim: Claim, claimed_atoms: int, procedure: Procedure | None = None
@@ -198,23 +194,9 @@ class Record:
         """Cross out what was written since a mark."""
         del self.obligations[mark:]
 
-    def meet(
-        self,
-        scope: Scope,
-        before: dict[str, Typed],
-        arrivals: list[Arrival],
-        walk: Callable[[Scope, dict[str, Typed], list[Arrival]], None],
-    ) -> None:
-        """Go on where paths meet: what is taken as known there must hold on each of them."""
-        common, first = self._facts.premises, len(self._facts.lows)
-        claimed = self._facts.meet(lambda: walk(scope, before, arrivals))
-        ways = Any(tuple(All((*_since(each.premises, common), *_values(scope, before, each))) for each in arrivals))
-        met = Premise(ways, self.stmt, common)
-        for formula in claimed:
-            self.write(met, formula, claims.ALL_PATHS, first, "paths")
-        for arrival in arrivals:
-            for formula in _unlike(scope, before, arrival, first):
-                self.write(arrival.premises, formula, claims.ALL_PATHS, first, "paths")
+    def claimed(self, walk: Callable[[], None]) -> list[Formula]:
+        """Whatever is taken as known in a walk, where paths meet."""
+        return self._facts.meet(walk)
 
     # --- fields ------------------------------------------------------------------------------------------------------
 
@@ -251,37 +233,6 @@ def chain(premise: Premise | None) -> Iterator[Premise]:
     while premise is not None:
         yield premise
         premise = premise.before
-
-
-def _since(premises: Premise | None, common: Premise | None) -> list[Formula]:
-    """What one path took as known since it left the others."""
-    found: list[Formula] = []
-    for premise in chain(premises):
-        if premise is common:
-            break
-        found.append(premise.formula)
-    return found
-
-
-def _values(scope: Scope, before: dict[str, Typed], arrival: Arrival) -> list[Formula]:
-    """That the variables and the used lengths where paths meet are those of one of them."""
-    return [equal(here, there) for here, there in _pairs(scope, before, arrival) if isinstance(here, Linear) and isinstance(there, Linear)]
-
-
-def _unlike(scope: Scope, before: dict[str, Typed], arrival: Arrival, first: int) -> Iterator[Formula]:
-    """Where values are kept that are no new unknowns (atoms from ``first`` on), they must be those of each path."""
-    for here, there in _pairs(scope, before, arrival):
-        if isinstance(here, Linear) and isinstance(there, Linear):
-            if here != there and all(atom < first for atom, _ in here.terms):
-                yield equal(here, there)
-        elif here is not None and here != there:
-            yield False
-
-
-def _pairs(scope: Scope, before: dict[str, Typed], arrival: Arrival) -> list[tuple[Value, Value]]:
-    """The values of variables and the used lengths where paths meet, each with that of one path."""
-    values: list[tuple[Value, Value]] = [(scope.locals[name][1], arrival.changed.get(name, old)[1]) for name, old in before.items()]
-    return [*values, *zip(scope.used, arrival.used, strict=True)]
 
 
 def _within(value: Linear, low: int, high: int) -> Formula:

@@ -6,20 +6,16 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import limits
+from rosetta_jit.kernel.limits import MAX_POSITION, MAX_ROWS
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.prove import Facts
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.kernel.ir import Scalar, Stmt
-    from rosetta_jit.kernel.proof.record import Record
-
-MAX_POSITION = 1 << 60
-"""The end of any buffer: a quarter of all memory that 64 bits can address, and more than any machine has."""
-
-MAX_ROWS = 1 << 48
-"""The capacity of any lane."""
+    from rosetta_jit.kernel.ir import Scalar
+    from rosetta_jit.kernel.proof.linear import Terms
+    from rosetta_jit.kernel.proof.record import Premise, Record
 
 Value = Linear | bool | None | All | Any
 """An integer, or a formula for a bool; None is a value of which nothing is known (every float)."""
@@ -32,7 +28,7 @@ class Scope:
     """What a place of a kernel can see: its locals, the lanes, and the facts about them.
 
     Locals are gained along a path and given up at its end, as facts are, so that a path costs what it changes and not what there is.
-    ``at`` is the statement of that place, and ``record`` writes down what the kernel owes there, where somebody wants to read it.
+    ``record`` writes down what the kernel owes, where somebody wants to read it.
     """
 
     strides: tuple[int, ...]
@@ -40,7 +36,6 @@ class Scope:
     locals: dict[str, Typed] = field(default_factory=dict[str, "Typed"])
     used: list[Linear] = field(default_factory=list[Linear])
     capacity: list[Linear] = field(default_factory=list[Linear])
-    at: Stmt | None = None
     record: Record | None = None
     _trail: list[tuple[str, Typed | None]] = field(default_factory=list[tuple[str, "Typed | None"]])
 
@@ -70,11 +65,20 @@ class Scope:
                 self.locals[name] = old
 
 
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """What one path brings to a meeting point; ``premises`` are what it took as known, where that is written down."""
+
+    changed: dict[str, Typed]
+    used: list[Linear]
+    gained: dict[Terms, int]
+    distances: dict[str, list[tuple[int, int]]]
+    premises: Premise | None = None
+
+
 def entry(strides: tuple[int, ...], record: Record | None = None) -> Scope:
     """The scope at the start of a body. ``end`` is kept as ``begin + length``, so that distances need no fact."""
     scope = Scope(strides, Facts() if record is None else record.facts(), record=record)
-    if record is not None:
-        record.watch(scope)
     facts = scope.facts
     begin, length = facts.fresh(0, MAX_POSITION), facts.fresh(0, MAX_POSITION)
     end = plus(begin, length)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.kernel.arithmetic import FLOATS, limits
-from rosetta_jit.kernel.decimals import MAX_PLACES, MAX_SCALE, MOST_DIGITS
+from rosetta_jit.kernel.decimals import LARGEST_SCALE, MOST_DIGITS
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Binary,
@@ -34,6 +34,7 @@ from rosetta_jit.kernel.ir import (
     Used,
     Wire,
 )
+from rosetta_jit.kernel.limits import MAX_PLACES
 from rosetta_jit.kernel.proof import claims, integers
 from rosetta_jit.kernel.proof.formula import All, Any, bounded, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
@@ -203,7 +204,7 @@ def _decimal(scope: Scope, expr: Nearest | Digits | Scale) -> Typed:
             return "u64", scope.facts.fresh(0, MOST_DIGITS if places is None else limits("u64")[1])
         case Scale(value):
             demand(evaluate(scope, value)[0] in FLOATS, "the scale of an integer")
-            return "i64", scope.facts.fresh(-MAX_SCALE, MAX_SCALE)
+            return "i64", scope.facts.fresh(-LARGEST_SCALE, LARGEST_SCALE)
         case _:
             assert_never(expr)
 

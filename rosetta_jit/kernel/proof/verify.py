@@ -31,6 +31,7 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
 )
+from rosetta_jit.kernel.limits import MAX_PROOFS, MAX_TERMS
 from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
 from rosetta_jit.kernel.proof.formula import All, equal, negated
@@ -50,12 +51,6 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.proof.loops import Guess
     from rosetta_jit.kernel.proof.record import Record
     from rosetta_jit.kernel.proof.scope import Scope, Typed
-
-MAX_PROOFS = 256
-"""Routines of which it is remembered that they were proven."""
-
-MAX_TERMS = 6
-"""A longer sum gets a name: sums over many fields would cost more with each field."""
 
 
 class VerificationError(AssertionError):
@@ -163,19 +158,21 @@ def _whole(walk: _Walk, body: Block) -> None:
 
 def _block(walk: _Walk, block: Block) -> bool:
     """Walk a block; True when every path through it has returned."""
-    outer = walk.scope.at
+    record = walk.scope.record
+    outer = None if record is None else record.stmt
+    ended = False
     for number, stmt in enumerate(block):
-        walk.scope.at = stmt
+        if record is not None:
+            record.stmt = stmt
         try:
             ended = _statement(walk, stmt)
         except UnprovenError as error:
             raise _named(error, stmt) from error.__cause__
         if ended:
             demand(number == len(block) - 1, "statements after the end of their path")
-            walk.scope.at = outer
-            return True
-    walk.scope.at = outer
-    return False
+    if record is not None:
+        record.stmt = outer
+    return ended
 
 
 def _named(error: UnprovenError, stmt: Stmt) -> UnprovenError:

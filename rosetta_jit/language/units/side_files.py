@@ -15,8 +15,9 @@ from rosetta_jit.language.conversions import describe
 from rosetta_jit.language.limits import MAX_UNIT_PROBLEMS
 from rosetta_jit.language.scope import Message, members_of
 from rosetta_jit.language.units.dimensions import conversion, is_unit, known_units
+from rosetta_jit.model.limits import MAX_UNIT_PARTS
 from rosetta_jit.model.types import Array, Float, Int, Struct, Union, name_parts
-from rosetta_jit.model.units import MAX_PARTS, Context
+from rosetta_jit.model.units import Context
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -107,8 +108,8 @@ class _Adding:
         other = first.text if first else declared
         if other is not None and conversion(other, unit.text) != (1.0, 0.0):
             self.problems.append(words.contradicts(unit.span, unit.text, other, first.span if first else None))
-        elif self.counts[struct.name, way[0]] >= MAX_PARTS:
-            self.problems.append(words.too_many_parts(unit.span, MAX_PARTS))
+        elif self.counts[struct.name, way[0]] >= MAX_UNIT_PARTS:
+            self.problems.append(words.too_many_parts(unit.span, MAX_UNIT_PARTS))
         elif first is None:
             self.counts[struct.name, way[0]] += 1
             units[way] = unit

@@ -17,11 +17,11 @@ from rosetta_jit.catalogue import logs as words
 from rosetta_jit.errors import LogError
 from rosetta_jit.logs.ahead import ahead
 from rosetta_jit.logs.base import Wanted
-from rosetta_jit.logs.channel import CLOCKS, decoded_staged
 from rosetta_jit.logs.converting.journal import NAME, PART, Journal, Progress
 from rosetta_jit.logs.converting.parts import Parts
 from rosetta_jit.logs.converting.rejected import Damaged, Rejected
 from rosetta_jit.logs.folder_names import folder_names
+from rosetta_jit.logs.parts import CLOCKS, decoded_staged
 from rosetta_jit.logs.staging import BYTES, Staging
 from rosetta_jit.logs.tables import table_of
 from rosetta_jit.startup.dataclass import dataclass

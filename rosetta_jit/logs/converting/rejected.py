@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosetta_jit.errors import DecodeError
-    from rosetta_jit.logs.channel import OnError
+    from rosetta_jit.logs.parts import OnError
 
 Damaged: TypeAlias = Literal["stop", "skip", "quarantine"]
 

@@ -40,9 +40,6 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.codec.fields import Elements, Fields
     from rosetta_jit.lowering.writer import Writer
 
-MOST, MOST_EACH = 1 << 16, 1 << 6
-"""Elements of arrays in the value of a member; in each element of an array, which a message can have many of."""
-
 
 def give(codec: Codec, fields: Fields, writer: Writer) -> None:
     """Set what a codec describes to the values that it has where it did not come."""

@@ -15,9 +15,10 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Expect, Expr, Get, If,
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import Cell, HolderElements, HolderFields
 from rosetta_jit.lowering.codec.walk import begin_elements, if_present, switch_cases, walk
-from rosetta_jit.lowering.codec.work_list import MAX_DEPTH, link
+from rosetta_jit.lowering.codec.work_list import link
 from rosetta_jit.lowering.codec.xcdr2_members import store_size
-from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
+from rosetta_jit.lowering.limits import MAX_RECURSION, MAX_SIZE
+from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.model.layout import LINK_WORDS
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import MAX_OPEN_SIZES, Cases, Delimited, Maybe, Recursion, Repeat, Seq, open_sizes, recurses
@@ -196,8 +197,8 @@ class Descent:
         """The rows of an array, the first of them next."""
         writer = self.writer
         with writer.nested() as some:
-            shallow = Compare("lt", self.depth, index(MAX_DEPTH))
-            writer.expect(shallow, "nesting", elements.where, f"more than {MAX_DEPTH} structs within each other")
+            shallow = Compare("lt", self.depth, index(MAX_RECURSION))
+            writer.expect(shallow, "nesting", elements.where, f"more than {MAX_RECURSION} structs within each other")
             words = {ROW_WORD: self.row, STATE_WORD: index(then), LEFT_WORD: Binary("sub", count, index(1))}
             self.remember(elements.lane, elements.start, words)
             writer.assign(self.depth, add(self.depth, 1))
@@ -249,14 +250,14 @@ def descend(nested: Mapping[str, Codec], attempt: Codec, fields: HolderFields, w
         writer.emit(Switch(state, tuple(blocks), block(unknown)))
         writer.position = at
         inside = Binary("and", *writer.position_invariant(at))
-        deep = Binary("and", Compare("ge", descent.depth, index(0)), Compare("le", descent.depth, index(MAX_DEPTH)))
+        deep = Binary("and", Compare("ge", descent.depth, index(0)), Compare("le", descent.depth, index(MAX_RECURSION)))
         writer.expect(Binary("and", inside, deep), "length", Where(), "the holder is damaged")  # true anyway; said for the proof
         writer.assign(rounds, add(rounds, 1))
     limit = _most_rounds(writer, fields, len(blocks))
     invariant = (
         Compare("ge", rounds, index(0)),
         Compare("ge", descent.depth, index(0)),
-        Compare("le", descent.depth, index(MAX_DEPTH)),
+        Compare("le", descent.depth, index(MAX_RECURSION)),
         *writer.position_invariant(at),
     )
     goes_on = Binary("and", Compare("ge", state, index(0)), Compare("lt", rounds, limit))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 NONE = -1
 """The guess where there is none: no tag is negative."""
 
-MAX_TAG = 1 << 14
+TWO_BYTE_TAGS = 1 << 14
 """Tags below this take one byte or two."""
 
 RUN = 16
@@ -78,7 +78,7 @@ def _guessing(writer: Writer, case: Case, after: Local, guess: Local, number: in
     """What is read, and the guess, unless a run ends here."""
     body = _further(writer, case.read, after, where) if case.is_long else _body(writer, case.read, after)
     ends_run = number % RUN == 0 and case.guess != case.tag
-    if ends_run or not NONE < case.guess < MAX_TAG:
+    if ends_run or not NONE < case.guess < TWO_BYTE_TAGS:
         return body
     return (*body, Assign(guess.name, index(case.guess)))
 

@@ -30,7 +30,8 @@ from rosetta_jit.kernel.ir import (
     Wire,
 )
 from rosetta_jit.kernel.terms import ROW, add, index, mul, type_of
-from rosetta_jit.lowering.writer import MAX_SIZE, MESSAGE, Where, Writer
+from rosetta_jit.lowering.limits import MAX_SIZE
+from rosetta_jit.lowering.writer import MESSAGE, Where, Writer
 from rosetta_jit.model.layout import UNKNOWN, Layout, Member, Number, Row, Slot, Span, Variant
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -29,7 +29,8 @@ from rosetta_jit.kernel.ir import (
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.codec.computed import evaluate
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, integer
+from rosetta_jit.lowering.limits import MAX_SIZE
+from rosetta_jit.lowering.writer import Where, Writer, integer
 from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Utf16
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from rosetta_jit.kernel.ir import Binary, Compare, Const, Expr, Get, If, Place, 
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields
 from rosetta_jit.lowering.codec.tagged import read_message
-from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, DEPTH_WORD, END_WORD, MAX_DEPTH, MORE_WORD, in_scratch, link
+from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, DEPTH_WORD, END_WORD, MORE_WORD, in_scratch, link
+from rosetta_jit.lowering.limits import MAX_RECURSION
 from rosetta_jit.lowering.writer import Where, Writer, block
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def _read_row(tagged: Tagged, fields: HolderFields, writer: Writer, lane: int, r
     layout, scratch = fields.layout, len(fields.layout.lanes)
     words = [writer.let("word", Get("i64", link(layout, lane, row, word))) for word in (BEGIN_WORD, END_WORD, MORE_WORD, DEPTH_WORD)]
     depth = words[3]
-    writer.expect(_between(depth, index(1), index(MAX_DEPTH)), "nesting", Where(), "the holder is damaged")
+    writer.expect(_between(depth, index(1), index(MAX_RECURSION)), "nesting", Where(), "the holder is damaged")
     begin, end, more = writer.var("begin_of_piece", words[0]), writer.var("end_of_piece", words[1]), writer.var("more", words[2])
     pieces, goes_on = writer.var("pieces", index(0)), writer.var("goes_on", Const("bool", value=True))
     limit = writer.let("limit", add(Binary("sub", END, BEGIN), 1))

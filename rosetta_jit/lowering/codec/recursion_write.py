@@ -31,7 +31,8 @@ from rosetta_jit.lowering.codec.fields import Cell, HolderFields, span_of
 from rosetta_jit.lowering.codec.tagged_write import Lengths, present, write_message, write_tag
 from rosetta_jit.lowering.codec.varint import write_varint
 from rosetta_jit.lowering.codec.work_list import BEGIN_WORD, MORE_WORD, SIZE_WORD, link
-from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block
+from rosetta_jit.lowering.limits import MAX_SIZE
+from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.codec import Entry, Recursion, Tagged
 

@@ -31,8 +31,9 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.terms import BEGIN, END, add, index, mul
 from rosetta_jit.lowering.codec.fields import Cell, HolderFields, converted, scalar_name, span_of
-from rosetta_jit.lowering.codec.varint import MAX_BYTES, size_of_varint, to_varint, varint_bytes, write_varint
-from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block
+from rosetta_jit.lowering.codec.varint import VARINT_BYTES, size_of_varint, to_varint, varint_bytes, write_varint
+from rosetta_jit.lowering.limits import MAX_SIZE
+from rosetta_jit.lowering.writer import Where, Writer, block
 from rosetta_jit.model.layout import UNKNOWN, Row, Span, Variant
 from rosetta_jit.model.layout import Number as NumberSlot
 from rosetta_jit.startup.dataclass import dataclass
@@ -311,7 +312,7 @@ def _packed_varints(
 
 def _measure_varints(writer: Writer, fields: HolderFields, lane: int, start: Expr, count: Expr, varint: Varint, where: Where) -> None:
     """The bytes of all elements. There are so few of them that no sum can be too large, so that nothing is checked in the loop."""
-    writer.expect(Compare("le", count, index(MAX_SIZE // MAX_BYTES)), "length", where, "too many numbers")
+    writer.expect(Compare("le", count, index(MAX_SIZE // VARINT_BYTES)), "length", where, "too many numbers")
     writer.settle()
     first = writer.let("first", writer.position)
     number, at = writer.var("i", index(0)), writer.var("next", first)
@@ -319,7 +320,7 @@ def _measure_varints(writer: Writer, fields: HolderFields, lane: int, start: Exp
         cell = Cell(lane, Binary("add", start, number), fields.layout.lanes[lane].element)
         size = size_of_varint(writer, to_varint(varint, _number(cell)), where.element(number))
         writer.emit(Assign(at.name, Binary("add", at, size)), Assign(number.name, add(number, 1)))
-    most = Compare("le", at, Binary("add", first, mul(number, MAX_BYTES)))
+    most = Compare("le", at, Binary("add", first, mul(number, VARINT_BYTES)))
     invariant = (Compare("ge", number, index(0)), Compare("le", number, count), Compare("ge", at, first), most)
     writer.emit(While(Compare("lt", number, count), block(body), invariant, number))
     writer.position = at

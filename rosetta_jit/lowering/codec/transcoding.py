@@ -35,6 +35,7 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.terms import BEGIN, END, ROW, add, index, mul
 from rosetta_jit.lowering.codec.fields import root_fields, span_of
+from rosetta_jit.lowering.limits import MAX_LIST_NESTING
 from rosetta_jit.lowering.writer import MESSAGE, References, Writer, block, integer
 from rosetta_jit.model.types import Array, Bytes, Field, Int, Ref, Schema, Struct
 
@@ -46,10 +47,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.layout import Layout
     from rosetta_jit.wire.tree import Header, Scalar, Tree
 
-MAX_NESTING = 256
-"""Lists within lists: more is an error of kind ``nesting``."""
-
-MAX_SCALAR = 8
+SCALAR_BYTES = 8
 """Bytes of the largest scalar."""
 
 SCALAR, TEXT, LIST, WHOLE = range(4)
@@ -126,7 +124,7 @@ class _Walk:
         writer = self.writer
         size = writer.let("size", Binary("sub", END, BEGIN))
         self.fields.put_bytes(("data",), BEGIN, size)
-        writer.emit(Reserve(self.stack, index(2 * MAX_NESTING)), Advance(self.stack, index(2 * MAX_NESTING)))
+        writer.emit(Reserve(self.stack, index(2 * MAX_LIST_NESTING)), Advance(self.stack, index(2 * MAX_LIST_NESTING)))
         self.expect_list(BEGIN)
         limit = writer.let("limit", add(mul(size, 2), 2))
         goes_on = Binary("or", Compare("gt", self.left, index(0)), Compare("gt", self.depth, index(0)))
@@ -135,7 +133,7 @@ class _Walk:
             writer.assign(self.rounds, add(self.rounds, 1))
         invariant = (
             *writer.within(self.at),
-            *self.between(self.depth, MAX_NESTING),
+            *self.between(self.depth, MAX_LIST_NESTING),
             *self.between(self.left, 1 << 31),
             Compare("ge", self.rounds, index(0)),
             Compare("le", self.rounds, limit),
@@ -180,7 +178,7 @@ class _Walk:
             writer.emit(If(has_code, self.read_code()))
             writer.assign(self.there, self.code)
             writer.emit(Switch(self.code, tuple(self.cases()), self.refused("no code of this dialect")))
-            bounded = Binary("and", *self.between(self.size, MAX_SCALAR))
+            bounded = Binary("and", *self.between(self.size, SCALAR_BYTES))
             writer.expect(bounded, "length", MESSAGE, "the holder is damaged")  # true anyway; said for the proof
             self.values()
             writer.expect(Binary("and", *writer.within(self.after)), "truncated", MESSAGE, "the message ends here", at=END)
@@ -272,10 +270,10 @@ class _Walk:
         """Go on with the elements of a list, and then with what is behind it."""
         writer, row = self.writer, mul(self.depth, 2)
         writer.expect(
-            Compare("lt", self.depth, index(MAX_NESTING)),
+            Compare("lt", self.depth, index(MAX_LIST_NESTING)),
             "nesting",
             MESSAGE,
-            f"more than {MAX_NESTING} lists within each other",
+            f"more than {MAX_LIST_NESTING} lists within each other",
             at=self.at,
         )
         writer.emit(SetField(Place(self.stack, row), self.left), SetField(Place(self.stack, add(row, 1)), self.unit))

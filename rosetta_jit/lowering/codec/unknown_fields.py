@@ -25,15 +25,13 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.terms import BEGIN, END, add, index
 from rosetta_jit.lowering.codec.varint import read_length, read_tag, read_varint
+from rosetta_jit.lowering.limits import MAX_GROUPS
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
 
 if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Block, Local
     from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.lowering.writer import Where, Writer
-
-MAX_NESTING = 64
-"""Groups within groups: more is an error of kind ``nesting``."""
 
 VARINT, FIXED64, DELIMITED, GROUP, END_GROUP, FIXED32 = 0, 1, 2, 3, 4, 5
 
@@ -77,7 +75,7 @@ def skip(writer: Writer, scratch: int, tag: Local, stop: Expr, where: Where) -> 
 
     The numbers of the groups that are open lie in the scratch lane, which is the stack of this loop.
     """
-    writer.emit(Reserve(scratch, index(MAX_NESTING)))
+    writer.emit(Reserve(scratch, index(MAX_GROUPS)))
     arguments = (writer.position, tag, stop, Used(scratch))
     writer.position, last_tag = writer.call("skip", partial(_skip, scratch=scratch), arguments, where)
     return last_tag
@@ -97,8 +95,8 @@ def _skip(writer: Writer, scratch: int) -> Contract:
         cases = (*_scalar_cases(writer, after, stop, where), *_group_cases(writer, scratch, base, depth, current, where))
         writer.emit(Switch(Binary("and", current, index(7)), cases, _refused(writer, where)))
         writer.position = after
-        within = Binary("and", Compare("ge", depth, index(0)), Compare("le", depth, index(MAX_NESTING)))
-        writer.expect(within, "nesting", where, f"more than {MAX_NESTING} groups within each other")
+        within = Binary("and", Compare("ge", depth, index(0)), Compare("le", depth, index(MAX_GROUPS)))
+        writer.expect(within, "nesting", where, f"more than {MAX_GROUPS} groups within each other")
         writer.expect(Compare("le", after, stop), "truncated", where, "a field goes beyond its message")
         writer.assign(at, after)
         _expect_position(writer, at, where)
@@ -110,14 +108,14 @@ def _skip(writer: Writer, scratch: int) -> Contract:
         Compare("ge", at, start),
         *writer.within(last_tag),
         Compare("ge", depth, index(0)),
-        Compare("le", depth, index(MAX_NESTING)),
+        Compare("le", depth, index(MAX_GROUPS)),
         Compare("ge", rounds, index(0)),
         Compare("le", rounds, limit),
     )
     writer.emit(While(Binary("and", goes_on, Compare("lt", rounds, limit)), block(body), invariant, rounds))
     writer.position = at
     writer.expect(Compare("eq", depth, index(0)), "truncated", where, "the group has no end")
-    has_stack = Compare("ge", base, index(0)), Compare("le", base, Binary("sub", Capacity(scratch), index(MAX_NESTING)))
+    has_stack = Compare("ge", base, index(0)), Compare("le", base, Binary("sub", Capacity(scratch), index(MAX_GROUPS)))
     ensured = *writer.within(at), Compare("ge", at, start), *writer.within(last_tag)
     return Contract((start, tag, stop, base), (at, last_tag), (*writer.within(start), *writer.within(stop), *has_stack), ensured)
 
@@ -136,7 +134,7 @@ def _group_cases(writer: Writer, scratch: int, base: Local, depth: Local, tag: L
     """The start of a group and its end, which must be of the same number."""
     number = Binary("shr", tag, index(3))
     with writer.nested() as opened:
-        writer.expect(Compare("lt", depth, index(MAX_NESTING)), "nesting", where, f"more than {MAX_NESTING} groups within each other")
+        writer.expect(Compare("lt", depth, index(MAX_GROUPS)), "nesting", where, f"more than {MAX_GROUPS} groups within each other")
         writer.emit(SetField(Place(scratch, Binary("add", base, depth)), number))
         writer.assign(depth, add(depth, 1))
     with writer.nested() as closed:

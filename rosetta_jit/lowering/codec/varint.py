@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 SEVEN_BITS = Const("u64", 0x7F)
 ONE, ZERO = Const("u64", 1), Const("u64", 0)
-MAX_BYTES = 10
+VARINT_BYTES = 10
 """Of a varint."""
 GUESSED = 5
 """Bytes of a varint up to which it is read and written byte by byte: those that 32 bits take."""
-MAX_TAG, MAX_LENGTH = (1 << 32) - 1, (1 << 31) - 1
+LARGEST_TAG, LARGEST_LENGTH = (1 << 32) - 1, (1 << 31) - 1
 """Of 29 bits for a field's number and three for how its value is written; and of protobuf's messages."""
 
 
@@ -63,11 +63,11 @@ def _read_size(writer: Writer) -> Contract:
 
 
 def _read_long_size(writer: Writer) -> Contract:
-    return _short(writer, MAX_LENGTH, "a length", "truncated", "length")
+    return _short(writer, LARGEST_LENGTH, "a length", "truncated", "length")
 
 
 def _read_long_tag(writer: Writer) -> Contract:
-    return _short(writer, MAX_TAG, "a tag", "tag", "tag")
+    return _short(writer, LARGEST_TAG, "a tag", "tag", "tag")
 
 
 def _short(writer: Writer, most: int, what: str, too_large: Kind, too_long: Kind) -> Contract:
@@ -227,7 +227,7 @@ def write_varint(writer: Writer, value: Expr, where: Where) -> None:
 
 
 def size_of_varint(writer: Writer, value: Expr, where: Where) -> Local:
-    """How many bytes a u64 takes: one to `MAX_BYTES`."""
+    """How many bytes a u64 takes: one to `VARINT_BYTES`."""
     (size,) = writer.call("varint_size", _size, (value,), where)
     return size
 
@@ -284,7 +284,7 @@ def _write_rest(writer: Writer, at: Local, value: Local, after: Local, written: 
         *writer.within(after),
         Compare("ge", after, at),
         Compare("ge", count, index(0)),
-        Compare("le", count, index(MAX_BYTES - 1)),
+        Compare("le", count, index(VARINT_BYTES - 1)),
     )
     writer.emit(While(_more(rest, count), block(body), invariant, count))
     writer.position = after
@@ -314,12 +314,12 @@ def _long_size(writer: Writer) -> Contract:
 
 
 def _bounds(size: Local) -> tuple[Expr, Expr]:
-    return Compare("ge", size, index(1)), Compare("le", size, index(MAX_BYTES))
+    return Compare("ge", size, index(1)), Compare("le", size, index(VARINT_BYTES))
 
 
 def _more(rest: Expr, written: Expr) -> Expr:
     """Whether another byte follows the one at hand."""
-    return Binary("and", Compare("ge", rest, Const("u64", 128)), Compare("lt", written, index(MAX_BYTES - 1)))
+    return Binary("and", Compare("ge", rest, Const("u64", 128)), Compare("lt", written, index(VARINT_BYTES - 1)))
 
 
 def varint_bytes(value: int) -> bytes:

@@ -14,7 +14,8 @@ from rosetta_jit.lowering.codec.fields import scalar_name
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.codec.xcdr1_members import parameter, parameters
 from rosetta_jit.lowering.codec.xcdr2_members import members, store_size
-from rosetta_jit.lowering.writer import MAX_SIZE, Where, Writer, block, integer
+from rosetta_jit.lowering.limits import MAX_SIZE
+from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.wire.codec import (
     Align,
     Blob,

@@ -14,15 +14,13 @@ from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.lowering.codec.fields import span_of
 from rosetta_jit.lowering.codec.unknown_fields import skip
 from rosetta_jit.lowering.codec.varint import read_length
+from rosetta_jit.lowering.limits import MAX_RECURSION
 from rosetta_jit.lowering.writer import Where, Writer, block
 
 if TYPE_CHECKING:
     from rosetta_jit.lowering.codec.tagged_message import Message
     from rosetta_jit.model.layout import Layout
     from rosetta_jit.wire.codec import Entry, Recursion
-
-MAX_DEPTH = 64
-"""Messages within each other, of recursive structs: more is an error of kind ``nesting``."""
 
 BEGIN_WORD, END_WORD, MORE_WORD, LAST_WORD, DEPTH_WORD, SIZE_WORD = range(6)
 """The hidden words of a row: its first piece, the chain of more pieces (1 + a row of the scratch lane), its depth, its size."""
@@ -68,7 +66,7 @@ def _piece(message: Message, recursion: Recursion, where: Where) -> tuple[Expr, 
 def _new_row(message: Message, lane: int, begin: Expr, end: Expr, where: Where) -> Expr:
     writer, layout = message.writer, message.fields.layout
     depth = writer.let("depth", add(message.depth, 1))
-    writer.expect(Compare("le", depth, index(MAX_DEPTH)), "nesting", where, f"more than {MAX_DEPTH} messages within each other")
+    writer.expect(Compare("le", depth, index(MAX_RECURSION)), "nesting", where, f"more than {MAX_RECURSION} messages within each other")
     row = message.fields.reserve(lane, index(1))
     writer.emit(
         Fill(Place(lane, row), index(layout.lanes[lane].stride)),

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Expr, If, Select, Store, Switch, While
 from rosetta_jit.kernel.terms import BEGIN, add, index
 from rosetta_jit.lowering.codec import leaves
-from rosetta_jit.lowering.codec.absent_members import MOST, MOST_EACH, elements_given, give
+from rosetta_jit.lowering.codec.absent_members import elements_given, give
+from rosetta_jit.lowering.limits import MAX_ABSENT, MAX_ABSENT_EACH
 from rosetta_jit.lowering.writer import Writer, block, integer
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -68,7 +69,7 @@ class Seen:
 
     def complete(self) -> None:
         """Behind the last member: what did not come gets its value, if it is neither optional nor owed."""
-        most = MOST_EACH if self.fields.where.indices else MOST
+        most = MAX_ABSENT_EACH if self.fields.where.indices else MAX_ABSENT
         for number, member in enumerate(self.members):
             if member.optional:
                 continue

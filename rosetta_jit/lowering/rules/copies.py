@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Copy, For, Get, If, Local, Place, Switch
 from rosetta_jit.kernel.terms import index, mul
 from rosetta_jit.lowering.codec.fields import presence_bit
+from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.rules.rescaling import by_number, change_of_member, rescaled
-from rosetta_jit.lowering.writer import MAX_SIZE, block
+from rosetta_jit.lowering.writer import block
 from rosetta_jit.model.layout import Number, Row, Slot, Span, Variant
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, Const, Expect, Failure, If, Site
 from rosetta_jit.kernel.terms import add
+from rosetta_jit.lowering.limits import MAX_VALUE_SHOWN
 from rosetta_jit.lowering.texts.values import text_of
 from rosetta_jit.lowering.texts.views import Quoted, Text, joined, sound
 from rosetta_jit.lowering.writer import block
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
     from rosetta_jit.kernel.ir import Expr
     from rosetta_jit.language import typed
     from rosetta_jit.lowering.evaluation import Evaluation
-
-MAX_SHOWN = 100
-"""Bytes of a value."""
 
 
 def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, values: Evaluation) -> None:
@@ -35,5 +33,5 @@ def reject_with(pieces: tuple[typed.Expr, ...], reason: str, when: Expr | None, 
 def _shown(text: Text, values: Evaluation) -> Text:
     if isinstance(text, Quoted):
         return text
-    after = values.writer.let("cut", Binary("min", text.after, add(text.first, MAX_SHOWN)))
+    after = values.writer.let("cut", Binary("min", text.after, add(text.first, MAX_VALUE_SHOWN)))
     return sound(values.writer, replace(text, after=after))

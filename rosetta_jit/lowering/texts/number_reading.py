@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Fits, If, Nearest, Select, Unary
 from rosetta_jit.kernel.terms import add, index, mul
+from rosetta_jit.lowering.limits import MAX_EXPONENT
 from rosetta_jit.lowering.texts.number_writing import INFINITE, NAN
 from rosetta_jit.lowering.texts.views import TRUE, Scan, View, between, byte_at, is_between, is_one_of, parameters, scanning, sound, within
 from rosetta_jit.lowering.writer import MESSAGE, Contract, block
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
 
 GOOD, NO_NUMBER, TOO_LARGE = 0, 1, 2
 LEAST = -(1 << 63)
-MAX_EXPONENT = 10**12
-"""An exponent beyond is taken for this one: with as many digits as fit in memory the number is infinite, or 0."""
 
 WHOLE, FRACTION, MARK, SIGN, POWER = range(5)
 """Where in a number a reader is: before the point, behind it, at an `e`, at the sign behind it, in the exponent."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from rosetta_jit.kernel.decimals import LARGEST_SCALE
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Digits, Get, If, Place, Scale, Select, Unary, While
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.texts.views import View, between, has_room, kept, lane_of, put, room
@@ -17,16 +18,15 @@ if TYPE_CHECKING:
 INTEGER_ROOM = 21
 """Bytes of an integer of 64 bits: 20 digits and a sign."""
 
-MAX_ROUNDS = 40
+FLOAT_DIGITS = 40
 """Digits of a float and zeros around them."""
 
-FLOAT_ROOM = INTEGER_ROOM + 1 + 2 * MAX_ROUNDS + 5
+FLOAT_ROOM = INTEGER_ROOM + 1 + 2 * FLOAT_DIGITS + 5
 """The digits by themselves, then the text: a sign, before each digit a point for all that the proof knows, an exponent."""
 
 LEAST_PLAIN, MOST_PLAIN = -3, 16
 """Digits before the point between which Python writes a float without an exponent (`repr`)."""
 
-MAX_SCALE = 400
 TEN = Const("u64", 10)
 NAN, INFINITE = int.from_bytes(b"nan", "big"), int.from_bytes(b"inf", "big")
 
@@ -126,7 +126,7 @@ def _write_float(writer: Writer) -> Contract:
     with writer.nested() as number:
         _write_number(writer, _shortened(writer, digits, scale, fixed), fixed, target, to)
     writer.emit(If(Compare("ne", special, index(0)), block(word), block(number)))
-    limits = Compare("ge", scale, index(-MAX_SCALE)), Compare("le", scale, index(MAX_SCALE))
+    limits = Compare("ge", scale, index(-LARGEST_SCALE)), Compare("le", scale, index(LARGEST_SCALE))
     low, high = add(target, INTEGER_ROOM), add(target, FLOAT_ROOM)
     after = writer.let("after", between(to, low, high))
     ends = Compare("ge", after, low), Compare("le", after, high)
@@ -164,7 +164,7 @@ def _write_number(writer: Writer, number: tuple[Local, Local], fixed: Local, tar
     low = writer.let("low", Binary("min", index(0), add(dot, -1)))
     decimal = Binary("and", Compare("eq", plain, index(1)), Compare("eq", fixed, index(0)))
     high = Select(decimal, Binary("max", count, add(dot, 1)), count)
-    rounds = writer.let("rounds", between(Binary("sub", high, low), index(0), index(MAX_ROUNDS)))
+    rounds = writer.let("rounds", between(Binary("sub", high, low), index(0), index(FLOAT_DIGITS)))
     begun, number_at = writer.let("begun", to), writer.var("round", index(0))
     with writer.nested() as body:
         at = writer.let("at", Binary("add", low, number_at))

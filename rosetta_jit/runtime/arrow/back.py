@@ -15,8 +15,8 @@ import pyarrow as pa
 from pyarrow import types
 
 from rosetta_jit.errors import ValuesError
-from rosetta_jit.model.initial_values import MAX_BORN_BYTES
 from rosetta_jit.model.layout import scalar_of
+from rosetta_jit.model.limits import MAX_BORN_BYTES
 from rosetta_jit.runtime.arrow.leaves import blob_of, listed_of, numbers_of, refused, solid, text_of
 from rosetta_jit.runtime.arrow.times import moment_columns
 from rosetta_jit.runtime.cells import dtype_of

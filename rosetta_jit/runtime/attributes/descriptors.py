@@ -9,6 +9,7 @@ from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES, KeptFields
 from rosetta_jit.runtime.cells import SCALARS
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.limits import MAX_VIEWS
 from rosetta_jit.runtime.specs import (
     BASETYPE,
     DEFAULT,
@@ -30,10 +31,6 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry
 
 
-MAX_MEMBERS = 32
-"""Messages with more records in their row than that make the views of them when they are asked for, not at once."""
-
-
 def slots(entries: Iterable[Entry]) -> tuple[str, ...]:
     """Names of the slots in which messages keep what shows these fields."""
     return tuple(f"_kept_{number}" for number, entry in enumerate(entries) if is_kept(entry))
@@ -51,7 +48,7 @@ def take_slots(made: type, entries: Sequence[Entry]) -> KeptFields:
         offsets[entries[int(slot.rpartition("_")[2])].name] = slot_offset(made.__dict__[slot])
         delattr(made, slot)
     records = [entry for entry in entries if isinstance(entry.node, Record)]
-    few = sum(map(_records_within, records)) <= MAX_MEMBERS
+    few = sum(map(_records_within, records)) <= MAX_VIEWS
     return KeptFields(offsets, frozenset(entry.name for entry in records if few))
 
 

@@ -12,18 +12,19 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING
 
+from rosetta_jit.runtime.limits import MAX_USAGE_RECORDS
+
 if TYPE_CHECKING:
     from rosetta_jit.runtime.cache.stores import Store
 
 USAGE = "usage"
-MAX_RECORDS = 256
 TOTAL = 1 << 63
 _RECORD = struct.Struct("<Q")
 
 
 def note(store: Store, size_bytes: int, *, max_bytes: int) -> bool:
     """Note that a file was written; whether all files may be larger now than they should be."""
-    noted = store.append(USAGE, _RECORD.pack(size_bytes), limit=MAX_RECORDS * _RECORD.size)
+    noted = store.append(USAGE, _RECORD.pack(size_bytes), limit=MAX_USAGE_RECORDS * _RECORD.size)
     if noted is None or len(noted) % _RECORD.size:
         return True
     records = [record for (record,) in _RECORD.iter_unpack(noted)]
@@ -38,4 +39,4 @@ def begin_look(store: Store) -> None:
 
 def end_look(store: Store, total_bytes: int) -> None:
     """Note what all files take."""
-    store.append(USAGE, _RECORD.pack(TOTAL + total_bytes), limit=MAX_RECORDS * _RECORD.size)
+    store.append(USAGE, _RECORD.pack(TOTAL + total_bytes), limit=MAX_USAGE_RECORDS * _RECORD.size)

@@ -18,6 +18,7 @@ from rosetta_jit.catalogue import uncertain as words
 from rosetta_jit.runtime.functions import kinds
 from rosetta_jit.runtime.functions.bytecode import named
 from rosetta_jit.runtime.functions.known import is_known, is_known_module
+from rosetta_jit.runtime.limits import MAX_FUNCTION_DEPTH, MAX_FUNCTION_VALUES, MAX_FUNCTIONS
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
 
@@ -25,12 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosetta_jit.runtime.functions.bytecode import Named
-
-MAX_FUNCTIONS = 250
-"""Functions that are followed from one."""
-
-MAX_DEPTH, MAX_VALUES = 100, 100_000
-"""Values within values, and values in all: a tuple of a tuple twice, and so on, has more of them than bytes."""
 
 _ABSENT = object()
 
@@ -165,7 +160,7 @@ class _Walk:
         """A value that numba may compile; what is not known for certain is noted."""
         self.values += 1
         plain = kinds.plain(value)
-        if self.depth > MAX_DEPTH or self.values > MAX_VALUES:
+        if self.depth > MAX_FUNCTION_DEPTH or self.values > MAX_FUNCTION_VALUES:
             self.doubt(words.too_much(path.partition(".")[0]))
         elif plain is not None:
             self.parts.append(f"{type(value).__name__} {plain}")

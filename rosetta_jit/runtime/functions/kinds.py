@@ -19,10 +19,8 @@ from typing import Any, cast
 import numpy as np
 
 from rosetta_jit.runtime.functions.known import is_known
+from rosetta_jit.runtime.limits import MAX_FROZEN_BYTES
 from rosetta_jit.startup.sha import sha256
-
-MAX_FROZEN_BYTES = 10**6
-"""Of larger arrays numba compiles the address (`make_constant_array` of numba/core/base.py)."""
 
 MANNERS = frozenset(("value", "_value_", "name", "_missing_", "__getattribute__", "__getattr__"))
 """What an enumeration of the user's may not define, because it says what members are."""

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, Protocol, assert_never, cast
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
-from rosetta_jit.model.initial_values import MAX_BORN_BYTES
+from rosetta_jit.model.limits import MAX_BORN_BYTES
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
 from rosetta_jit.runtime.holder import arena, coerce, grid, undo, values
 from rosetta_jit.runtime.holder.message import Message, View, beside, element, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
+from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
     from rosetta_jit.model.types import Schema
@@ -314,8 +315,8 @@ def _refuse(kind: str, entry: Entry) -> Setter:
 
 def raw(value: Any, depth: int = 0) -> Any:
     """Values in the form that a field takes, apart from any lanes: messages become dicts, what can be iterated a list."""
-    if depth > 2 * values.MAX_DEPTH:
-        raise EncodeError("nesting", "", f"values contain each other more than {2 * values.MAX_DEPTH} deep")
+    if depth > 2 * MAX_DEPTH:
+        raise EncodeError("nesting", "", f"values contain each other more than {2 * MAX_DEPTH} deep")
     match value:
         case Message():
             return value.lanes_.consistent(_raw_message, value)

@@ -26,6 +26,7 @@ from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequen
 from rosetta_jit.runtime.holder.serialising import serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
+from rosetta_jit.runtime.limits import MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
@@ -99,9 +100,6 @@ def no_members(family: Family) -> dict[str, Any]:  # noqa: ARG001  a plain class
     """Nothing."""
     return {}
 
-
-MOST_RECIPES = 4
-"""Of how many plans a family keeps what makes holders."""
 
 _ONE_AT_A_TIME = shared_lock()
 """Held where a class is made: two of one type would take each other's holders for foreign."""
@@ -253,7 +251,7 @@ class Family:
             return found
         if library() is None:
             return None
-        if len(self._recipes) >= MOST_RECIPES:
+        if len(self._recipes) >= MAX_RECIPES:
             self._recipes.clear()
         found = self._recipes[id(plan)] = recipe(plan, self.array_type, self.root)
         return found

@@ -13,6 +13,7 @@ from rosetta_jit.runtime.holder.access import raw, view_of
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.holder.sequence import Dictionary, store_row
+from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry
@@ -23,8 +24,8 @@ def merge(message: Message, fields: Mapping[str, Any], depth: int = 0) -> None:
 
     Of fields that cannot be absent, zero changes nothing: as in protobuf, it is not regarded as a value that was set.
     """
-    if depth > values.MAX_DEPTH:
-        raise EncodeError("nesting", "", f"messages contain each other more than {values.MAX_DEPTH} deep")
+    if depth > MAX_DEPTH:
+        raise EncodeError("nesting", "", f"messages contain each other more than {MAX_DEPTH} deep")
     for name, value in fields.items():
         if name == UNKNOWN and message.access_.record.unknown is not None:
             with message.lanes_:

@@ -17,8 +17,8 @@ from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
 from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs
-from rosetta_jit.runtime.holder.values import MAX_DEPTH
 from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.limits import MAX_DEPTH
 from rosetta_jit.runtime.memory import ALIGNMENT
 from rosetta_jit.runtime.specs import slot_offset
 

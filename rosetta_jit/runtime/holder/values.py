@@ -16,15 +16,13 @@ from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, grid
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry, Node, ScalarType
 
 Leaf = Scalar | Text | Blob | Numbers | Items
 """What is written at once. Of `Items`, those that have a shape."""
-
-MAX_DEPTH = 100
-"""How deep messages may contain each other, as in protobuf."""
 
 
 class Form(Enumeration):

@@ -12,23 +12,28 @@ from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.holder.record import Scalar
+from rosetta_jit.runtime.limits import (
+    MAX_TEXT_BYTES,
+    MAX_TEXT_CHARACTERS,
+    MAX_TEXT_DEPTH,
+    MAX_TEXT_FIELDS,
+    MAX_TEXT_ITEMS,
+    MAX_TEXT_NUMBERS,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosetta_jit.runtime.holder.record import Entry
 
-MAX_NUMBERS, MAX_ITEMS, MAX_TEXT, MAX_BYTES, MAX_FIELDS, MAX_DEPTH = 12, 4, 120, 24, 50, 6
-"""How much is shown of arrays of numbers, of other arrays and maps, of texts, bytes and messages; and how deep these lie in each other."""
-
 
 def brief_message(message: Message, depth: int = 0) -> str:
     """A message as its constructor would be called with what is present."""
     name = type(message).__name__
-    if depth > MAX_DEPTH:
+    if depth > MAX_TEXT_DEPTH:
         return f"{name}(…)"
-    shown = [f"{entry.name}={brief(value, depth + 1)}" for entry, value in islice(present_fields(message), MAX_FIELDS)]
-    rest = ["…"] if len(shown) == MAX_FIELDS < len(message.access_.record.entries) else []
+    shown = [f"{entry.name}={brief(value, depth + 1)}" for entry, value in islice(present_fields(message), MAX_TEXT_FIELDS)]
+    rest = ["…"] if len(shown) == MAX_TEXT_FIELDS < len(message.access_.record.entries) else []
     return f"{name}({', '.join((*shown, *rest))})"
 
 
@@ -65,20 +70,20 @@ def brief(value: Any, depth: int = 0) -> str:
             return brief_message(value, depth)
         case np.ndarray():
             array = cast("np.ndarray[Any, Any]", value)
-            return _listed(map(str, array.reshape(-1)[:MAX_NUMBERS]), array.size, MAX_NUMBERS)
+            return _listed(map(str, array.reshape(-1)[:MAX_TEXT_NUMBERS]), array.size, MAX_TEXT_NUMBERS)
         case Name():
             return repr(value)
         case str():
-            return repr(value) if len(value) <= MAX_TEXT else f"{value[:MAX_TEXT]!r}… {len(value)} characters"
+            return repr(value) if len(value) <= MAX_TEXT_CHARACTERS else f"{value[:MAX_TEXT_CHARACTERS]!r}… {len(value)} characters"
         case bytes():
-            return repr(value) if len(value) <= MAX_BYTES else f"{value[:MAX_BYTES]!r}… {len(value)} bytes"
+            return repr(value) if len(value) <= MAX_TEXT_BYTES else f"{value[:MAX_TEXT_BYTES]!r}… {len(value)} bytes"
         case Mapping():
             pairs = cast("Mapping[Any, Any]", value)
-            shown = (f"{brief(key)}: {brief(each, depth + 1)}" for key, each in islice(pairs.items(), MAX_ITEMS))
-            return f"{{{_listed(shown, len(pairs), MAX_ITEMS)[1:-1]}}}"
+            shown = (f"{brief(key)}: {brief(each, depth + 1)}" for key, each in islice(pairs.items(), MAX_TEXT_ITEMS))
+            return f"{{{_listed(shown, len(pairs), MAX_TEXT_ITEMS)[1:-1]}}}"
         case Sequence():
             items = cast("Sequence[Any]", value)
-            return _listed((brief(each, depth + 1) for each in items[:MAX_ITEMS]), len(items), MAX_ITEMS)
+            return _listed((brief(each, depth + 1) for each in items[:MAX_TEXT_ITEMS]), len(items), MAX_TEXT_ITEMS)
         case _:
             return repr(value)
 

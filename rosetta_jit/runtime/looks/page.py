@@ -13,6 +13,15 @@ import numpy as np
 from rosetta_jit.kernel.state import VALID
 from rosetta_jit.model.words import field_words
 from rosetta_jit.runtime.holder.message import Message
+from rosetta_jit.runtime.limits import (
+    MAX_PAGE_COLUMNS,
+    MAX_PAGE_DEPTH,
+    MAX_PAGE_FIELDS,
+    MAX_PAGE_IMAGE_BYTES,
+    MAX_PAGE_MESSAGES,
+    MAX_PAGE_PIXELS,
+    MAX_PAGE_ROWS,
+)
 from rosetta_jit.runtime.looks.brief import brief, present_fields
 from rosetta_jit.runtime.looks.png import png
 from rosetta_jit.startup.dataclass import dataclass
@@ -25,11 +34,6 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.batch import Batch
     from rosetta_jit.runtime.holder import Holder
 
-MAX_DEPTH, MAX_MESSAGES, MAX_ROWS, MAX_FIELDS, MAX_COLUMNS = 4, 3, 5, 200, 20
-MAX_PIXELS = 640
-"""The longer side of a drawn image; larger ones are thinned out."""
-MAX_ENCODED = 4 << 20
-"""Bytes of an image that comes compressed and is shown as it is."""
 CURVE_POINTS, CURVE_WIDTH, CURVE_HEIGHT = 100, 160, 24
 CELL = "text-align:left;vertical-align:top;padding:1px 8px"
 STYLE = f"{CELL};white-space:pre-wrap;max-width:60em;overflow-wrap:anywhere"
@@ -46,11 +50,11 @@ def page(holder: Holder) -> str:
 
 def batch_page(batch: Batch) -> str:
     """The first messages of a batch, a row each."""
-    names = list(batch.family_.tree.root.entries)[:MAX_COLUMNS]
+    names = list(batch.family_.tree.root.entries)[:MAX_PAGE_COLUMNS]
     head = "".join(f'<th style="{NAME}">{escape(name)}</th>' for name in names)
     rows = [
         "".join(f'<td style="{STYLE};min-width:10em">{escape(brief(message.access_.getters[name](message)))}</td>' for name in names)
-        for message in islice(batch, MAX_ROWS)
+        for message in islice(batch, MAX_PAGE_ROWS)
     ]
     lines = "".join(f"<tr>{row}</tr>" for row in rows)
     return f"<div><b>{escape(repr(batch))}</b><table><tr>{head}</tr>{lines}</table></div>"
@@ -60,7 +64,7 @@ def batch_page(batch: Batch) -> str:
 class _Page:
     """The rows of one page; of a type of very many fields, or of messages in messages, the first are shown."""
 
-    rows_left: int = MAX_FIELDS
+    rows_left: int = MAX_PAGE_FIELDS
 
     def message(self, message: Message, depth: int) -> Iterator[str]:
         yield f"<b>{escape(message.access_.record.struct)}</b>"
@@ -83,7 +87,7 @@ class _Page:
 
     def value(self, value: Any, depth: int) -> str:
         match value:
-            case Message() if depth < MAX_DEPTH:
+            case Message() if depth < MAX_PAGE_DEPTH:
                 return _folded(brief(value), self.message(value, depth + 1))
             case np.ndarray():
                 return _array(cast("NDArray[Any]", value))
@@ -91,9 +95,9 @@ class _Page:
                 return escape(brief(cast("Any", value)))
             case Sequence():
                 items = cast("Sequence[Any]", value)
-                if items and isinstance(items[0], Message) and depth < MAX_DEPTH:
+                if items and isinstance(items[0], Message) and depth < MAX_PAGE_DEPTH:
                     return _folded(
-                        f"{len(items)} messages", chain.from_iterable(self.message(each, depth + 1) for each in items[:MAX_MESSAGES])
+                        f"{len(items)} messages", chain.from_iterable(self.message(each, depth + 1) for each in items[:MAX_PAGE_MESSAGES])
                     )
                 return escape(brief(items))
             case _:
@@ -136,14 +140,14 @@ def _picture(picture: NDArray[np.uint8] | bytes) -> str:
     """Pixels as PNG; what comes compressed as it came, if a browser knows it."""
     if isinstance(picture, bytes):
         media = next((media for magic, media in MEDIA.items() if picture.startswith(magic)), None)
-        if media is None or len(picture) > MAX_ENCODED:
+        if media is None or len(picture) > MAX_PAGE_IMAGE_BYTES:
             return ""
         return _inline(media, picture, "")
     height, width = picture.shape[:2]
-    step = max(1, -(-max(height, width) // MAX_PIXELS))
+    step = max(1, -(-max(height, width) // MAX_PAGE_PIXELS))
     return _inline("image/png", png(picture[::step, ::step]), f"{width} by {height}")
 
 
 def _inline(media: str, data: bytes, title: str) -> str:
     source = f"data:{media};base64,{base64.b64encode(data).decode('ascii')}"
-    return f'<div><img src="{source}" title="{title}" style="max-width:{MAX_PIXELS}px"></div>'
+    return f'<div><img src="{source}" title="{title}" style="max-width:{MAX_PAGE_PIXELS}px"></div>'

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rosetta_jit.runtime.limits import MAX_SHOWN_SIDE
 from rosetta_jit.runtime.looks.png import eight_bits
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
-
-MAX_SIDE = 1 << 16
 
 
 def interleaved(data: bytes, shape: tuple[int, int, int], row_bytes: int, dtype: DTypeLike, order: tuple[int, ...] = ()) -> Any:
@@ -30,7 +29,7 @@ def interleaved(data: bytes, shape: tuple[int, int, int], row_bytes: int, dtype:
     height, width, channels = shape
     type_ = np.dtype(dtype)
     used = width * channels * type_.itemsize
-    if not (0 < height <= MAX_SIDE and 0 < width <= MAX_SIDE and 0 < channels <= 4 and used <= row_bytes):
+    if not (0 < height <= MAX_SHOWN_SIDE and 0 < width <= MAX_SHOWN_SIDE and 0 < channels <= 4 and used <= row_bytes):
         return None
     if len(data) < (height - 1) * row_bytes + used:
         return None
@@ -42,7 +41,7 @@ def planar(data: bytes, shape: tuple[int, int, int], dtype: DTypeLike, order: tu
     """The same of planes, one for each channel, without padding."""
     height, width, channels = shape
     type_ = np.dtype(dtype)
-    if not (0 < height <= MAX_SIDE and 0 < width <= MAX_SIDE and 0 < channels <= 4):
+    if not (0 < height <= MAX_SHOWN_SIDE and 0 < width <= MAX_SHOWN_SIDE and 0 < channels <= 4):
         return None
     if len(data) < height * width * channels * type_.itemsize:
         return None

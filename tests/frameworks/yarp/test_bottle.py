@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from rosetta_jit.errors import DecodeError, EncodeError
 from rosetta_jit.frameworks.yarp.bottle import read, write
 from rosetta_jit.frameworks.yarp.detect import detect, read_any
+from rosetta_jit.frameworks.yarp.limits import MAX_NESTING
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4, YARP2012, unit_mask
 from rosetta_jit.frameworks.yarp.text import to_text
-from rosetta_jit.frameworks.yarp.tree import MAX_NESTING, Dict, List, Value, narrow, specialised, widen
+from rosetta_jit.frameworks.yarp.tree import Dict, List, Value, narrow, specialised, widen
 
 VECTORS = Path(__file__).parents[2] / "vectors" / "yarp"
 

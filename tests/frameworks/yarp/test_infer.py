@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from rosetta_jit.errors import DecodeError, SchemaError
 from rosetta_jit.frameworks.yarp.bottle import read, write
-from rosetta_jit.frameworks.yarp.infer import MAX_PLACES, infer
+from rosetta_jit.frameworks.yarp.infer import infer
+from rosetta_jit.frameworks.yarp.limits import MAX_PLACES
 from rosetta_jit.frameworks.yarp.schema import parse
 from rosetta_jit.frameworks.yarp.tags import DIALECTS, YARP3, YARP4
 from rosetta_jit.frameworks.yarp.text import parse_text

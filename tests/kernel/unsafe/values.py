@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.kernel.decimals import MAX_SCALE
+from rosetta_jit.kernel.decimals import LARGEST_SCALE
 from rosetta_jit.kernel.ir import (
     Assign,
     Binary,
@@ -174,7 +174,7 @@ OPERATIONS = {
     "float": of(Convert("i64", Convert("u8", Convert("f64", N))), 0, 255, ANY),
     "bits": of(Convert("i64", Convert("u8", Bits("u64", Convert("f64", N)))), 0, 255, ANY),
     "digits": of(Convert("i64", Convert("u8", Digits(Convert("f64", N), 3))), 0, 255, ANY),
-    "scale": of(Scale(Convert("f64", N)), -MAX_SCALE, MAX_SCALE, ANY),
+    "scale": of(Scale(Convert("f64", N)), -LARGEST_SCALE, LARGEST_SCALE, ANY),
 }
 """Each between two bounds that it reaches, or that are the best that the proof knows."""
 

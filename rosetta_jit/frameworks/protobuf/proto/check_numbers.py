@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf.proto.options import flag
 from rosetta_jit.frameworks.protobuf.proto.symbols import fields_of
-from rosetta_jit.frameworks.protobuf.proto.tree import Range
+from rosetta_jit.frameworks.protobuf.proto.tree import LARGEST_FIELD_NUMBER, LARGEST_MESSAGE_SET_NUMBER, Range
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.protobuf.proto.declarations import Declarations, DeclaredMessage
     from rosetta_jit.frameworks.protobuf.proto.tree import Field, Message, Name
 
-MAX_FIELD_NUMBER = 2**29 - 1
-MAX_MESSAGE_SET_NUMBER = 2**31 - 2
 PROTOBUF_OWN = Range(19000, 19999)
 """Numbers that the implementation of protobuf keeps for itself."""
 
@@ -30,13 +28,13 @@ def check_numbers(declared: Declarations) -> Iterator[Diagnostic]:
         yield from _fields(entry)
     for extension in declared.extensions.values():
         target = declared.messages.get(extension.extendee.text[1:])
-        limit = max_number(target.message) if target else MAX_FIELD_NUMBER
+        limit = max_number(target.message) if target else LARGEST_FIELD_NUMBER
         yield from _number(extension.field, limit)
 
 
 def max_number(message: Message) -> int:
     """The greatest number that a field or an extension of a message can have."""
-    return MAX_MESSAGE_SET_NUMBER if flag(message.options, "message_set_wire_format") else MAX_FIELD_NUMBER
+    return LARGEST_MESSAGE_SET_NUMBER if flag(message.options, "message_set_wire_format") else LARGEST_FIELD_NUMBER
 
 
 def containing(ranges: Sequence[Range], number: int) -> Range | None:
@@ -84,7 +82,7 @@ def _fields(entry: DeclaredMessage) -> Iterator[Diagnostic]:
     names = {name.text for name in message.reserved_names}
     users: dict[int, Field] = {}
     for field in fields_of(message):
-        yield from _number(field, MAX_FIELD_NUMBER)
+        yield from _number(field, LARGEST_FIELD_NUMBER)
         first = users.setdefault(field.number, field)
         if first is not field:
             yield say.repeated_number(field.number_span, field.number, first.name, entry.full)

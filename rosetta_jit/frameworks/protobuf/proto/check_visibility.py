@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
-from rosetta_jit.frameworks.protobuf.proto.check_numbers import MAX_FIELD_NUMBER
+from rosetta_jit.frameworks.protobuf.proto.tree import LARGEST_FIELD_NUMBER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,4 +31,4 @@ def _is_namespace(entry: DeclaredMessage, declared: Declarations) -> bool:
     """Whether a message stands at the top, is not exported, and reserves all numbers."""
     nested = entry.full.rpartition(".")[0] in declared.messages
     reserved = {(each.first, each.last) for each in entry.message.reserved}
-    return not nested and entry.message.visibility != "export" and (1, MAX_FIELD_NUMBER) in reserved
+    return not nested and entry.message.visibility != "export" and (1, LARGEST_FIELD_NUMBER) in reserved

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-MAX_COMMENT = 4000
-"""Characters of a comment that are looked at."""
+from rosetta_jit.frameworks.protobuf.limits import MAX_COMMENT
 
 
 def leading_comment(text: str, start: int) -> str:

@@ -13,6 +13,9 @@ from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.proto.syntax import VISIBILITIES
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
+    LARGEST_ENUM_NUMBER,
+    LARGEST_FIELD_NUMBER,
+    LARGEST_MESSAGE_SET_NUMBER,
     Enum,
     EnumValue,
     Extend,
@@ -32,11 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosetta_jit.frameworks.protobuf.proto.values import Node
-
-MAX_NUMBER = 2**31 - 1
-MAX_MESSAGE_SET_NUMBER = 2**31 - 2
-"""`max` in an extension range of a message with `message_set_wire_format`."""
-MAX_FIELD_NUMBER = 2**29 - 1
 
 
 class DeclarationReader(ValueReader):
@@ -77,7 +75,7 @@ class DeclarationReader(ValueReader):
             ),
             enums=tuple(self.enum(child) for child in all_of(node, "enum")),
             extends=extends,
-            extensions=self.extensions(node, MAX_MESSAGE_SET_NUMBER if message_set else MAX_FIELD_NUMBER),
+            extensions=self.extensions(node, LARGEST_MESSAGE_SET_NUMBER if message_set else LARGEST_FIELD_NUMBER),
             extension_options=tuple(option for block in all_of(node, "extensions") for option in self.settings(block)),
             reserved=reserved,
             reserved_names=reserved_names,
@@ -155,7 +153,7 @@ class DeclarationReader(ValueReader):
     def extensions(self, node: Node, limit: int) -> tuple[Range, ...]:
         return tuple(self.range(child, limit) for block in all_of(node, "extensions") for child in all_of(block, "range"))
 
-    def reserved(self, node: Node, limit: int = MAX_FIELD_NUMBER) -> tuple[tuple[Range, ...], tuple[Name, ...]]:
+    def reserved(self, node: Node, limit: int = LARGEST_FIELD_NUMBER) -> tuple[tuple[Range, ...], tuple[Name, ...]]:
         blocks = list(all_of(node, "reserved"))
         return (
             tuple(self.range(child, limit) for block in blocks for child in all_of(block, "range")),
@@ -194,7 +192,7 @@ class DeclarationReader(ValueReader):
     # Enums
 
     def enum(self, node: Node) -> Enum:
-        reserved, reserved_names = self.reserved(node, MAX_NUMBER)
+        reserved, reserved_names = self.reserved(node, LARGEST_ENUM_NUMBER)
         return Enum(
             name=self.name(tokens_of(node)[-1]),
             values=tuple(self.value(child) for child in all_of(node, "value")),

@@ -9,8 +9,8 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.protobuf.limits import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.options import OPTIONS
-from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import Option, Value, Word
 from rosetta_jit.startup.dataclass import dataclass
 

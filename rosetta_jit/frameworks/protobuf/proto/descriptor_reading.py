@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
 from rosetta_jit.frameworks.protobuf.json_names import camel_case
+from rosetta_jit.frameworks.protobuf.limits import MAX_NAME, MAX_SHOWN
 from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
     features,
     has_unknown_features,
@@ -19,7 +20,6 @@ from rosetta_jit.frameworks.protobuf.proto.descriptor_features import (
 )
 from rosetta_jit.frameworks.protobuf.proto.descriptor_options import Extensions, custom_options, extensions_in, own_options
 from rosetta_jit.frameworks.protobuf.proto.literals import EscapeError, number, unescape
-from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import (
     EDITIONS,
     SYNTAXES,
@@ -82,8 +82,6 @@ WORDS: Mapping[int, str] = {
 EDITION_NUMBERS: Mapping[int, Edition] = {1000: "2023", 1001: "2024"}
 """google.protobuf.Edition"""
 PATH = re.compile(r"\.?[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*")
-MAX_SHOWN = 40
-"""Characters of a wrong name that a report repeats."""
 LABEL_REPEATED = 3
 LABELS: Mapping[int, Label] = {1: "optional", 2: "required", 3: "repeated"}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
+from rosetta_jit.frameworks.protobuf.limits import MAX_FILES
 from rosetta_jit.frameworks.protobuf.proto.file_set import FileSet
 from rosetta_jit.frameworks.protobuf.proto.reading import read
 from rosetta_jit.frameworks.protobuf.proto.wellknown import well_known
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from rosetta_jit.frameworks.protobuf.proto.tree import File, Import, ImportKind
     from rosetta_jit.parsing.idl import Load
     from rosetta_jit.source import Source
-
-MAX_FILES = 4096
-"""Files that one file may import, directly or not."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.check import check
 from rosetta_jit.frameworks.protobuf.proto.declarations import declarations
 from rosetta_jit.frameworks.protobuf.proto.names import absolute
-from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED, refuse
+from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 from rosetta_jit.frameworks.protobuf.proto.schema import build
 from rosetta_jit.frameworks.protobuf.proto.symbols import declare
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import re
 
+from rosetta_jit.frameworks.protobuf.limits import MAX_DIGITS
+
 INTEGER = re.compile(r"0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*")
 FLOAT = re.compile(r"(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][+-]?[0-9]+)?")
 ESCAPE = re.compile(
@@ -14,8 +16,6 @@ ESCAPE = re.compile(
     r"|(?P<letter>[abfnrtv\\'\"?])|(?P<wrong>(?s:.)?))"
 )
 LETTERS = {"a": 7, "b": 8, "f": 12, "n": 10, "r": 13, "t": 9, "v": 11}
-MAX_DIGITS = 40
-"""No integer of the language has more; Python's own conversion takes quadratic time on long ones."""
 
 
 class EscapeError(ValueError):

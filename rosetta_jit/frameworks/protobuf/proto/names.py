@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 from rosetta_jit.catalogue.spelling import closest
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import edition_diagnostics as say_edition
-from rosetta_jit.frameworks.protobuf.proto.problems import MAX_REPORTED
+from rosetta_jit.frameworks.protobuf.limits import MAX_COMPARED, MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.scalars import SCALARS
 from rosetta_jit.frameworks.protobuf.proto.symbols import ALL_KINDS, TYPES, Kind, Symbols, join, package_of
 from rosetta_jit.frameworks.protobuf.proto.tree import (
@@ -38,9 +38,6 @@ EXTENSION: frozenset[Kind] = frozenset(("extension",))
 MESSAGE: frozenset[Kind] = frozenset(("message",))
 FEATURE_SET = "google.protobuf.FeatureSet"
 """The message that custom features extend."""
-
-MAX_COMPARED = 500
-"""Names among which a similar one is looked for; comparing is slow."""
 
 
 def absolute(file: File, symbols: Symbols, problems: list[Diagnostic]) -> File:

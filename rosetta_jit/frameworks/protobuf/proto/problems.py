@@ -5,15 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import SchemaError
+from rosetta_jit.frameworks.protobuf.limits import MAX_REPORTED
 
 if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
-
-MAX_REPORTED = 100
-"""Problems that one report lists; beyond them nothing is explained that costs time to explain."""
-
-MAX_NAME = 512
-"""Characters of an absolute name: a file of n bytes shall not need more than a small multiple of n."""
 
 
 def refuse(problems: list[Diagnostic]) -> None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Literal, assert_never, get_args
 
 from rosetta_jit.frameworks.protobuf import diagnostics as say
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
+from rosetta_jit.frameworks.protobuf.limits import MAX_NAME, MAX_REPORTED
 from rosetta_jit.frameworks.protobuf.proto.features import DEFAULTS, choose
-from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME, MAX_REPORTED, refuse
+from rosetta_jit.frameworks.protobuf.proto.problems import refuse
 from rosetta_jit.frameworks.protobuf.proto.tree import Enum, Field, MapType, Message, Name, Oneof
 from rosetta_jit.frameworks.protobuf.proto.visibility import is_exported
 from rosetta_jit.startup.dataclass import dataclass

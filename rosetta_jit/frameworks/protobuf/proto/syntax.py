@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
+from rosetta_jit.frameworks.protobuf.limits import MAX_NESTING, MAX_SYNTAX_ERRORS
 from rosetta_jit.parsing.lalr import END, UnexpectedTokenError
 from rosetta_jit.parsing.parsers import parser_of
 from rosetta_jit.source import Source, Span
@@ -26,12 +27,6 @@ GRAMMAR = Path(__file__).with_name("proto.lark")
 START = "file"
 MISTAKES = ("UNCLOSED_STRING", "UNCLOSED_COMMENT", "UNKNOWN")
 """Tokens that stand for mistakes."""
-
-MAX_NESTING = 32
-"""Messages within messages, and lists and messages within an option's value; protoc stops at the same depth."""
-
-MAX_ERRORS = 20
-"""A file with more syntax errors is no `.proto` file; the rest of it is not read."""
 
 OPENING = frozenset(("LBRACE", "LSQB", "LESSTHAN"))
 CLOSING = frozenset(("RBRACE", "RSQB", "MORETHAN"))
@@ -104,7 +99,7 @@ def _feed(source: Source, tokens: list[Token], problems: list[Diagnostic]) -> Tr
     parser = grammar().parser()
     statement = _Statement(0)
     index = 0
-    for _ in range(MAX_ERRORS):
+    for _ in range(MAX_SYNTAX_ERRORS):
         try:
             while index < len(tokens):
                 parser.feed(tokens[index])

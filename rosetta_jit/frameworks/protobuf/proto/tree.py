@@ -80,6 +80,12 @@ class Option:
         return ".".join(self.parts)
 
 
+LARGEST_FIELD_NUMBER = 2**29 - 1
+LARGEST_ENUM_NUMBER = 2**31 - 1
+LARGEST_MESSAGE_SET_NUMBER = 2**31 - 2
+"""`max` in an extension range of a message with `message_set_wire_format`."""
+
+
 @dataclass(frozen=True, slots=True)
 class Range:
     """Numbers `first` to `last`, both included."""

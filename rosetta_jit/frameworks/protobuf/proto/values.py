@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, cast
 
 from rosetta_jit.frameworks.protobuf import file_diagnostics as of_file
+from rosetta_jit.frameworks.protobuf.limits import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto import literals, syntax
 from rosetta_jit.frameworks.protobuf.proto.comments import leading_comment
-from rosetta_jit.frameworks.protobuf.proto.problems import MAX_NAME
 from rosetta_jit.frameworks.protobuf.proto.tree import Aggregate, Entry, Listing, Name, Option, Value, Version, Word
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.source import Source, Span

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -82,10 +83,6 @@ class Wholes(dict[type, "Whole | None"]):
 
     def __missing__(self, object_type: type) -> Whole | None:
         found = self._family.manners.foreign.whole(self._family, object_type)
-        if len(self) < MOST_CLASSES:
+        if len(self) < MAX_CLASSES:
             self[object_type] = found
         return found
-
-
-MOST_CLASSES = 64
-"""For how many classes it is remembered. A program that makes classes all the time does not keep them alive."""

@@ -18,7 +18,7 @@ from rosetta_jit.model.types import Enum, Struct
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.objects import shapes, unions
 from rosetta_jit.runtime.holder.record import Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
-from rosetta_jit.runtime.holder.values import MAX_DEPTH
+from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.family import Family

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any
 
-from rosetta_jit.runtime.holder.objects.foreign import MOST_CLASSES
+from rosetta_jit.runtime.limits import MAX_CLASSES
 
 
 class ByClass(dict[type, Callable[..., Any]]):
@@ -20,7 +20,7 @@ class ByClass(dict[type, Callable[..., Any]]):
 
     def __missing__(self, object_type: type) -> Callable[..., Any]:
         made = self.make(object_type)
-        if len(self) < MOST_CLASSES:
+        if len(self) < MAX_CLASSES:
             self[object_type] = made
         return made
 
