@@ -34,6 +34,9 @@ else:
 _Message = TypeVar("_Message", bound="Message")
 _FIRST_LANE = 8 * lane_word(0, ADDRESS)
 
+MAX_SPARES, MOST_SPARED = 8, 1 << 13
+"""Of how many holders that have ended the lanes are kept for new ones, and up to how many bytes of each."""
+
 
 class Message(Base):
     """A message in lanes.
@@ -82,11 +85,16 @@ def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     return True
 
 
-def recipe(plan: Plan, array_type: type, access: Access) -> tuple[Any, ...]:
-    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do."""
-    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows"))
-    words = struct.pack("=10q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
-    return Lanes, plan, array_type, access, plan.begin, plan.places, words
+def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = None) -> tuple[Any, ...]:
+    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do.
+
+    Its memory begins as another plan says, if there is one.
+    """
+    begins = first or plan
+    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows", "spares"))
+    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
+    spares = [None] * MAX_SPARES if plan.fresh and plan.size_bytes <= MOST_SPARED else None
+    return Lanes, plan, array_type, access, begins.begin, plan.places, words, begins.fresh, spares
 
 
 def beside(view: _Message, message: Message, access: Access) -> _Message:
