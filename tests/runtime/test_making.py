@@ -12,8 +12,8 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.runtime.attributes.code import library
-from rosetta_jit.runtime.holder.message import MAX_SPARES
 from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.limits import MAX_ENDED
 from rosetta_jit.runtime.specs import slot_offset
 
 pytestmark = pytest.mark.skipif(library() is None, reason="this Python is none that compiled code knows")
@@ -63,7 +63,7 @@ def test_slots_lie_where_compiled_code_seeks_them():
 
 
 def test_a_class_makes_what_its_constructor_makes(quaternion):
-    for each in [quaternion() for _ in range(3 * MAX_SPARES)]:
+    for each in [quaternion() for _ in range(3 * MAX_ENDED)]:
         assert (each.x, each.y, each.z, each.w) == (0.0, 0.0, 0.0, 1.0)
     changed = quaternion(x=2.0)
     assert (changed.x, changed.w) == (2.0, 1.0)
@@ -78,10 +78,10 @@ def test_a_class_makes_what_its_constructor_makes(quaternion):
 def test_nothing_is_left_of_one_that_has_ended(decoder, joint_state):
     for new in (decoder.new, joint_state, joint_state().new):
         for _ in range(3):
-            several = [filled(new()) for _ in range(2 * MAX_SPARES)]
+            several = [filled(new()) for _ in range(2 * MAX_ENDED)]
             assert all(each.name[1] == "bc" for each in several)
             del several
-        for each in [new() for _ in range(2 * MAX_SPARES)]:
+        for each in [new() for _ in range(2 * MAX_ENDED)]:
             assert each.to_dict() == joint_state.from_dict({}).to_dict()
             assert each == joint_state.from_dict({})
 
@@ -90,7 +90,7 @@ def test_who_shows_a_holder_that_has_ended_keeps_it(decoder):
     made = filled(decoder.new())
     array, header, names, stamp = made.position, made.header, made.name, made.header.stamp
     del made
-    others = [filled(decoder.new()) for _ in range(2 * MAX_SPARES)]
+    others = [filled(decoder.new()) for _ in range(2 * MAX_ENDED)]
     for each in others:
         each.position, each.header.frame_id, each.header.stamp.sec, each.name = [9.0, 9.0, 9.0], "else", 9, ["x", "y"]
     assert np.array_equal(array, [1.0, 2.0, 3.0])

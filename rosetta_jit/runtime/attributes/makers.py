@@ -107,7 +107,8 @@ def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
     """Make a class's objects of this from now on when it is called without arguments; it must live until another one is set. Without one,
     call the class as any other.
     """
-    write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
+    if is_native():
+        write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
 
 
 def call_as_any(holder_type: type) -> None:

@@ -18,7 +18,7 @@ from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.limits import MAX_DEPTH
+from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
 from rosetta_jit.runtime.specs import slot_offset
 
@@ -33,9 +33,6 @@ else:
 
 _Message = TypeVar("_Message", bound="Message")
 _FIRST_LANE = 8 * lane_word(0, ADDRESS)
-
-MAX_SPARES, MOST_SPARED = 8, 1 << 13
-"""Of how many holders that have ended the lanes are kept for new ones, and up to how many bytes of each."""
 
 
 class Message(Base):
@@ -93,7 +90,7 @@ def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = No
     begins = first or plan
     slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows", "spares"))
     words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
-    spares = [None] * MAX_SPARES if plan.fresh and plan.size_bytes <= MOST_SPARED else None
+    spares = [None] * MAX_ENDED if plan.fresh and plan.size_bytes <= MAX_ENDED_BYTES else None
     return Lanes, plan, array_type, access, begins.begin, plan.places, words, begins.fresh, spares
 
 
