@@ -18,7 +18,7 @@ from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
 from rosetta_jit.runtime.holder.record import Child, Items, Pairs
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.limits import MAX_DEPTH
+from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
 from rosetta_jit.runtime.specs import slot_offset
 
@@ -82,11 +82,16 @@ def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     return True
 
 
-def recipe(plan: Plan, array_type: type, access: Access) -> tuple[Any, ...]:
-    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do."""
-    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows"))
-    words = struct.pack("=10q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
-    return Lanes, plan, array_type, access, plan.begin, plan.places, words
+def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = None) -> tuple[Any, ...]:
+    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do.
+
+    Its memory begins as another plan says, if there is one.
+    """
+    begins = first or plan
+    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows", "spares"))
+    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
+    spares = [None] * MAX_ENDED if plan.fresh and plan.size_bytes <= MAX_ENDED_BYTES else None
+    return Lanes, plan, array_type, access, begins.begin, plan.places, words, begins.fresh, spares
 
 
 def beside(view: _Message, message: Message, access: Access) -> _Message:
