@@ -20,6 +20,7 @@ ORDER = (
     "reorder",
     "groups",
     "state",
+    "wires",
     "mapped",
     "bridges",
     "peers",
