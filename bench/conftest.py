@@ -20,6 +20,7 @@ ORDER = (
     "reorder",
     "groups",
     "state",
+    "filters",
     "mapped",
     "bridges",
     "peers",
