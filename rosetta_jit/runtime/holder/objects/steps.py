@@ -7,7 +7,7 @@ value that lies in the message's own row, or in a lane of its own: there is none
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
@@ -16,14 +16,15 @@ from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.descriptors import accessors
 from rosetta_jit.runtime.attributes.places import PLACE_BYTES
-from rosetta_jit.runtime.holder.objects import reading, shapes, unions
+from rosetta_jit.runtime.holder.objects import shapes, unions
 from rosetta_jit.runtime.holder.record import Bit, Blob, Items, Numbers, Record, Scalar, Text
 from rosetta_jit.runtime.specs import read_word, slot_offset
+from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosetta_jit.runtime.holder import Family
+    from rosetta_jit.runtime.attributes.places import KeptFields
     from rosetta_jit.runtime.holder.record import Entry
 
 LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)
@@ -34,12 +35,50 @@ BY_NAME, IS_DICT, HAS_DICT = 0, 1, 2
 VERSION = 384
 """Where a class has its version: of PyTypeObject, Include/cpython/object.h."""
 
-CONVERTED: Mapping[type, tuple[Callable[[Any], Any], tuple[type, ...]]] = {
-    Blob: (reading.octets, (bytes,)),
-    Numbers: (reading.numbers, (list, tuple, np.ndarray)),
-    Items: (reading.listed, (list,)),
+ACCEPTED: Mapping[type, tuple[type, ...]] = {
+    Scalar: (int,),
+    Blob: (bytes,),
+    Numbers: (list, tuple, np.ndarray),
+    Items: (list,),
 }
-"""What makes a value for a field of each kind, and of which classes it is one already."""
+"""Of which classes the value of a field is as it is, where others are converted."""
+
+
+class Known(Protocol):
+    """What is known of the objects of a framework, and of the holders that take them."""
+
+    assigns_whole: bool
+    array_type: type[np.ndarray[Any, Any]]
+
+    def shown(self, record: Record) -> frozenset[str]:
+        """The fields of a record that are attributes of its messages."""
+        ...
+
+    def kept_of(self, struct: str) -> KeptFields | None:
+        """Where messages of a struct keep what shows their fields."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """How Python takes objects, as far as steps need it.
+
+    Attributes
+    ----------
+    names : callable
+        What the attribute of a field may be called, given its record and its name.
+    without_meaning : callable
+        Attributes that an object may have though they are no fields of a record.
+    is_whole : callable
+        Whether objects of a class are handed over at once, given the record.
+    converts : mapping of type to callable
+        What makes a value for fields whose nodes are of a class.
+    """
+
+    names: Callable[[Record, str], tuple[str, ...]]
+    without_meaning: Callable[[Record], frozenset[str]]
+    is_whole: Callable[[Record, type], bool]
+    converts: Mapping[type, Callable[[Any], Any]]
 
 
 class Steps:
@@ -60,11 +99,11 @@ class Steps:
         If there can be no such table.
     """
 
-    def __init__(self, family: Family, record: Record, like: Any) -> None:
+    def __init__(self, family: Known, ways: Ways, record: Record, like: Any) -> None:
         if library() is None:
             raise TypeError("there is no compiled code")
         self.covers = True
-        self._family = family
+        self._family, self._ways = family, ways
         self._alive: list[Any] = []
         self._classes: list[tuple[type, int]] = []
         self.table = self._table(record, like)
@@ -77,7 +116,7 @@ class Steps:
     def _table(self, record: Record, like: Any) -> int:
         object_type = cast("type[object]", type(like))
         mode = IS_DICT if object_type is dict else HAS_DICT if _keeps_all_in_a_dict(object_type) else BY_NAME
-        names = _names(self._family, record, like, mode)
+        names = _names(self._ways, record, like, mode)
         words = np.zeros((len(names), 10), np.int64)
         for step, entry in zip(words, record.entries.values(), strict=True):
             self._fill(step, record, entry, like, names[entry.name], mode)
@@ -101,9 +140,9 @@ class Steps:
             self.covers = False
             step[0] = SETTER if is_dict else OPTIONAL
         step[3], step[4] = self._setter(record, entry)
-        convert, accepted = _converted(entry)
-        if convert is not None:
-            step[5] = self._borrow(convert)
+        if _is_converted(entry):
+            accepted = ACCEPTED[type(entry.node)]
+            step[5] = self._borrow(self._ways.converts[type(entry.node)])
             step[6 : 6 + len(accepted)] = [id(each) for each in accepted]
 
     def _message(self, record: Record, entry: Entry, node: Record, value: Any) -> tuple[int, int]:
@@ -128,30 +167,32 @@ class Steps:
         return id(held)
 
 
-def _converted(entry: Entry) -> tuple[Callable[[Any], Any] | None, tuple[type, ...]]:
-    node = entry.node
-    if isinstance(node, Scalar):
-        return (reading.number, (int,)) if isinstance(node.type, Enum) else (None, ())
-    if isinstance(node, Text):
-        return None, ()
-    is_simple = not isinstance(node.type, Enum) if isinstance(node, Numbers) else isinstance(node, Blob)
-    if is_simple or (isinstance(node, Items) and isinstance(node.element, Text)):
-        return CONVERTED[type(node)]
-    raise TypeError("such arrays are set in Python")
+def _is_converted(entry: Entry) -> bool:
+    """Whether a value may have to be made of what is given for a field."""
+    match entry.node:
+        case Scalar(type=type_):
+            return isinstance(type_, Enum)
+        case Text():
+            return False
+        case Blob() | Items(element=Text()):
+            return True
+        case Numbers(type=type_) if not isinstance(type_, Enum):
+            return True
+        case _:
+            raise TypeError("such fields are set in Python")
 
 
-def _names(family: Family, record: Record, like: Any, mode: int) -> dict[str, str]:
+def _names(ways: Ways, record: Record, like: Any, mode: int) -> dict[str, str]:
     """What the attributes of all fields are called: the object has these, and no others that would say something."""
     if mode == IS_DICT:
         if like.keys() != record.entries.keys():
             raise TypeError("a dict that does not name all fields is taken in Python")
         return {name: name for name in record.entries}
     object_type = cast("type[object]", type(like))
-    own: Family = family.of_struct(record.struct).family_
-    if not shapes.has_messages(object_type) or own.wholes[object_type] is not None or unions.discriminator_of(record) is not None:
+    if not shapes.has_messages(object_type) or ways.is_whole(record, object_type) or unions.discriminator_of(record) is not None:
         raise TypeError("such objects are taken in Python")
-    found = {name: _name(like, family.manners.foreign.names(record, name)) for name in record.entries}
-    allowed = reading.without_meaning(record, family).union(found.values())
+    found = {name: _name(like, ways.names(record, name)) for name in record.entries}
+    allowed = ways.without_meaning(record).union(found.values())
     if shapes.attributes_of(like) - allowed or (mode == BY_NAME and shapes.has_dict(object_type)):
         raise TypeError("objects with other attributes are taken in Python")
     return found

@@ -16,7 +16,7 @@ from rosetta_jit.runtime.holder.classes import plain
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.objects import reading, shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
-from rosetta_jit.runtime.holder.objects.steps import LEFT, Steps
+from rosetta_jit.runtime.holder.objects.steps import LEFT, Steps, Ways
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.startup.cached import cached_property
@@ -68,6 +68,16 @@ class Takers:
         """How compiled code takes objects of a class; None if it cannot, or none has come."""
         return self._steps.get(object_type)
 
+    @cached_property
+    def _ways(self) -> Ways:
+        family = self._family
+        return Ways(
+            family.manners.foreign.names,
+            lambda record: reading.without_meaning(record, family),
+            lambda record, object_type: family.of_struct(record.struct).family_.wholes[object_type] is not None,
+            {Scalar: reading.number, Blob: reading.octets, Numbers: reading.numbers, Items: reading.listed},
+        )
+
     def is_stale(self, object_type: type) -> bool:
         """Whether compiled code knew how to take objects of a class, which has changed since; then it is to learn it anew."""
         steps = self._steps.get(object_type)
@@ -82,7 +92,7 @@ class Takers:
         found = self._steps.get(object_type, _UNKNOWN)
         if found is _UNKNOWN:
             try:
-                found = Steps(self._family, self._family.tree.root, value)
+                found = Steps(self._family, self._ways, self._family.tree.root, value)
             except LEFT:
                 found = None
             if len(self._steps) < MAX_CLASSES:
