@@ -10,8 +10,9 @@ declare void @PyObject_GC_UnTrack(ptr)
 declare void @PyObject_ClearWeakRefs(ptr)
 declare i32 @PyObject_CallFinalizerFromDealloc(ptr)
 
-; The dealloc of holder classes. Classes derived from them come here when they have let go of what is their own.
-define void @end_holder(ptr %self) {
+; The dealloc of holder classes. Classes derived from them come here when they have let go of what is their own. Its address is taken, which
+; is no slot that a linker fills, but a distance: only so can the code be linked beforehand, and a warm start does without LLVM.
+define dso_local void @end_holder(ptr %self) {
   %type = call ptr @pointer(ptr %self, i64 8)
   %finalize = call ptr @pointer(ptr %type, i64 392)
   %has.end = icmp ne ptr %finalize, null

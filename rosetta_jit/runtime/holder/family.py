@@ -19,9 +19,9 @@ from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.sameness import Sameness
-from rosetta_jit.runtime.holder.access import Access, read_field, write_field
+from rosetta_jit.runtime.holder.access import getter, setter
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
-from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row, recipe
+from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
@@ -212,7 +212,7 @@ class Family:
         """How the fields of a record are read and written."""
         access = self._accesses.get(id(record))
         if access is None:
-            access = self._accesses[id(record)] = Access(record, self)
+            access = self._accesses[id(record)] = Access(record, self, getter, setter)
         return access
 
     def learn_room(self, lanes: Lanes) -> None:
