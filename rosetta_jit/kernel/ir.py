@@ -497,7 +497,8 @@ class Routine:
 class Kernel:
     """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones.
 
-    ``registers`` is how many its program has at least.
+    ``registers`` is how many its program has at least. ``rare`` bodies, the last ones, are for messages that hardly ever come: whoever
+    compiles them takes no time for their speed.
     """
 
     name: str
@@ -508,6 +509,7 @@ class Kernel:
     routines: tuple[Routine, ...] = ()
     hidden: int = 0
     registers: int = 0
+    rare: int = 0
 
     @property
     def lanes(self) -> int:
