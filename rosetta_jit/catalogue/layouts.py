@@ -65,6 +65,34 @@ def no_size(span: Span | None) -> Diagnostic:
     return error("layout-size", "a count or a size must be an integer above 0", span, help_=help_)
 
 
+def filter_without_elements(span: Span | None) -> Diagnostic:
+    """A condition on elements where there are none."""
+    help_ = "`.near[] = .ranges[] where .ranges[] < 1.0` takes elements; `when` chooses whether a rule runs"
+    return error("filter", "`where` chooses among elements, and no array is read here element by element", span, help_=help_)
+
+
+def filter_order(span: Span | None) -> Diagnostic:
+    """A filter of an array in another order."""
+    help_ = "filter plain arrays, slices, and `numbers(.data, float32)`"
+    return error("filter", "a filter takes the elements of arrays as they lie, and this has another order", span, help_=help_)
+
+
+def filter_length(span: Span | None) -> Diagnostic:
+    """A filter that fills an array whose length is known."""
+    help_ = "a filter sets the length of its array: fill one of any length, without a rule for its `len`"
+    return error("filter", "how many elements a filter keeps is not known before, and here a length is told", span, help_=help_)
+
+
+def other_filter(span: Span | None) -> Diagnostic:
+    """Rules for the elements of one array that keep different ones."""
+    return error(
+        "filter",
+        "another rule for elements of this array has another `where`, or none",
+        span,
+        help_="write the same `where` in all rules for the elements of one array, so that they keep the same ones",
+    )
+
+
 def no_number_type(span: Span | None, types: Iterable[str]) -> Diagnostic:
     """Bytes of numbers that are of no type."""
     listed = ", ".join(f"`{each}`" for each in types)

@@ -156,6 +156,17 @@ def via_of_several(span: Span) -> Diagnostic:
     return error("syntax", "`via` maps one message, and several places stand here", span, help_="write a rule for each message")
 
 
+def filter_both_ways(span: Span) -> Diagnostic:
+    """A filter in a relation."""
+    help_ = "write it with `=` below `unpack-rules:`, and below `pack-rules:` what the array of the wire is to be"
+    return error("filter", "a filter goes one way: the elements that it drops do not come back", span, help_=help_)
+
+
+def filter_of_several(span: Span) -> Diagnostic:
+    """A filter of several places at once."""
+    return error("filter", "a filter is of one array, and several places stand here", span, help_="write a rule with `where` for each")
+
+
 def picked(span: Span | None) -> Diagnostic:
     """An element of a list of elements that is no number."""
     return error(

@@ -232,7 +232,7 @@ def _set_by(rule: Rule) -> list[Place]:
 def _head(rule: Rule) -> object:
     """The part of a rule that is not in its blocks, unless that is all there is to it."""
     match rule:
-        case typed.For(_, start, stop):
+        case typed.For(_, start, stop, kept=kept) if kept is None:
             return (start, stop)
         case typed.When(condition) if not all(span_of(each.span) == span_of(rule.span) for each in (*rule.then, *rule.otherwise)):
             return condition

@@ -53,7 +53,10 @@ def _notes(rule: Rule) -> Iterator[Note]:
             yield from _conversions((place, value))
         case typed.SetLength(place, value):
             yield from _conversions((place, value))
-        case typed.For(_, start, stop):
+        case typed.For(_, start, stop, kept=kept):
+            if kept is not None:
+                yield Note("elements for which the condition does not hold are dropped", lossy=True)
+                yield from _conversions(kept.condition)
             yield from _conversions((start, stop))
         case typed.SetState(_, value):
             yield from _conversions(value)

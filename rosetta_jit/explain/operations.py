@@ -59,8 +59,11 @@ def operations_of(rules: tuple[Rule, ...], *, chosen: bool = False) -> Iterator[
                 if isinstance(rule, typed.Assign):
                     yield from _of_nodes(rule.by)
                     yield from _of_assignment(rule, chosen=chosen)
-            case typed.For(_, start, stop, body):
+            case typed.For(_, start, stop, body, kept=kept):
                 yield "subtype loops"
+                if kept is not None:
+                    yield "predicate assignment"
+                    yield from _of_nodes(kept.condition)
                 yield from _of_nodes((start, stop))
                 yield from operations_of(body, chosen=chosen)
             case typed.When(condition, then, otherwise):

@@ -79,9 +79,11 @@ def _read(rules: tuple[Rule, ...]) -> Iterator[Place]:
             case typed.Assign(place, value) | typed.SetLength(place, value):
                 yield from _in_indices(place)
                 yield from _in(value)
-            case typed.For(_, start, stop, body):
+            case typed.For(_, start, stop, body, kept=kept):
                 yield from _in(start)
                 yield from _in(stop)
+                if kept is not None:
+                    yield from _in(kept.condition)
                 yield from _read(body)
             case typed.When(condition, then, otherwise):
                 yield from _in(condition)

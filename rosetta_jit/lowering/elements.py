@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import For, Local
+from rosetta_jit.lowering.arithmetic import inside
 from rosetta_jit.lowering.writer import block
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -36,6 +37,7 @@ class Elements:
         """Around what is done with each value, from the first to the last."""
         writer, number = self.writer, Local("i64", self.writer.fresh("element"))
         self.values.look_ahead((self.reduce.value,))
+        writer.certain |= {inside(number, count) for count in (self.count, self.values.of(self.reduce.count))}
         with self.values.source.forgetting(), writer.nested() as body:
             yield self.values.with_local(self.reduce.variable.name, number).of(self.reduce.value)
         writer.emit(For(number.name, self.count, block(body)))

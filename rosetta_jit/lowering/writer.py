@@ -120,7 +120,8 @@ class Writer:
     """Collects statements. ``position`` is always a local plus a constant; alignment counts from ``origin``.
 
     ``strides`` are those of the holder's lanes, and then of the ``hidden`` ones, which are known by a name. ``registers`` are
-    variables with what registers hold from the next message on.
+    variables with what registers hold from the next message on. ``certain`` are conditions that hold since the bounds of a loop say so,
+    which are not asked, and checks that cannot fail for the same reason.
     """
 
     direction: Direction
@@ -138,6 +139,7 @@ class Writer:
     tally: Tally = field(default_factory=Tally)
     references: References | None = None
     registers: dict[int, Local] = field(default_factory=dict[int, Local])
+    certain: set[Expr | Stmt] = field(default_factory=set["Expr | Stmt"])
 
     def left_in_message(self, lane: int, size: Expr) -> Expr | None:
         """The count of a span whose bytes stay in the message; None if they are to be copied. Its sign says whose bytes they are, unless
@@ -222,7 +224,8 @@ class Writer:
         return Failure(self.sites.setdefault(site, len(self.sites)), self.position if at is None else at, where.indices)
 
     def expect(self, condition: Expr, kind: str, where: Where, detail: str, *, at: Expr | None = None, line: str = "") -> None:
-        self.emit(Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
+        if condition not in self.certain:
+            self.emit(Expect(condition, self.failure(kind, where, detail, at=at, line=line)))
 
     def require(self, size: Expr | int, where: Where, detail: str = "the message ends here", *, at: Expr | None = None) -> None:
         """The next bytes, or those at a place, are there."""

@@ -1,10 +1,10 @@
 """The rules that the mapping as it is written and the typed one have in common, generic over what they are made of.
 
-    Rule = Assign(Place, Expr, by) | SetLength(Place, Expr) | For(variable, start, stop, Rule*) | When(condition, Rule*, Rule*)
+    Rule = Assign(Place, Expr, by, where) | SetLength(Place, Expr) | For(variable, start, stop, Rule*, Kept) | When(condition, Rule*, Rule*)
          | Reject(text) | Ignore(Place) | Default(Place) | SetState(variable, Expr)
 
 As it is written (`model.mapping`) a place is a path, a state variable its name, and an expression has no type; typed (`language.typed`),
-all have theirs.
+all have theirs. Filters (an Assign with ``where``) are loops there, of which some rounds are ``kept``.
 """
 
 from __future__ import annotations
@@ -26,12 +26,16 @@ Variable_co = TypeVar("Variable_co", covariant=True)
 
 @dataclass(frozen=True, slots=True)
 class Assign(Generic[Place_co, Expr_co, Way_co]):
-    """``.place = value``; ``by`` is how the value becomes one of the place, where that is more than an implicit conversion."""
+    """``.place = value where condition``: of the elements of arrays, those for which the condition holds.
+
+    ``by`` is how the value becomes one of the place, where that is more than an implicit conversion.
+    """
 
     place: Place_co
     value: Expr_co
     span: Span | None = field(default=None, compare=False, repr=False)
     by: Way_co | None = None
+    where: Expr_co | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +48,27 @@ class SetLength(Generic[Place_co, Expr_co]):
 
 
 @dataclass(frozen=True, slots=True)
+class Kept(Generic[Expr_co]):
+    """The rounds of a loop for which ``condition`` holds. ``variable`` counts them from 0; typed, ``count`` is how many there are."""
+
+    condition: Expr_co
+    variable: str
+    count: Expr_co | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class For(Generic[Rule_co, Expr_co]):
-    """``for variable from start to stop ... end``; ``stop`` is exclusive, and below ``start`` it is an error of kind ``count``."""
+    """``for variable from start to stop ... end``; ``stop`` is exclusive, and below ``start`` it is an error of kind ``count``.
+
+    Where some rounds are ``kept``, the body runs in these alone.
+    """
 
     variable: str
     start: Expr_co
     stop: Expr_co
     body: tuple[Rule_co, ...]
     span: Span | None = field(default=None, compare=False, repr=False)
+    kept: Kept[Expr_co] | None = None
 
 
 @dataclass(frozen=True, slots=True)

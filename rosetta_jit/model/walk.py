@@ -75,12 +75,16 @@ def rebuilt(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:
 def with_expressions(rule: Rule, change: Callable[[Expr], Expr]) -> Rule:
     """A rule with the expressions changed that it has itself; the rules within it are as they were."""
     match rule:
-        case mapping.Assign(place, value) | mapping.SetLength(place, value):
+        case mapping.Assign(place, value, where=where):
+            where = None if where is None else change(where)
+            return replace(rule, place=with_indices(place, change), value=change(value), where=where)
+        case mapping.SetLength(place, value):
             return replace(rule, place=with_indices(place, change), value=change(value))
         case mapping.Relation(place, value):
             return replace(rule, place=_with_indices(place, change), value=change(value))
         case mapping.For(start=start, stop=stop):
-            return replace(rule, start=change(start), stop=change(stop))
+            kept = None if rule.kept is None else replace(rule.kept, condition=change(rule.kept.condition))
+            return replace(rule, start=change(start), stop=change(stop), kept=kept)
         case mapping.When(condition=condition):
             return replace(rule, condition=change(condition))
         case mapping.Ignore(place) | mapping.Default(place):

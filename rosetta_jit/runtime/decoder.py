@@ -240,7 +240,7 @@ class DecoderBase(Program):
                 result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
             if result < 0:
                 raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
-            self._plan = roomier(self._plan, lanes)
+            self._need(roomier(self._plan, lanes))
             lanes.source[0] = source if self._loaded.borrow else None
             lanes.words[VALID] = CLEAN
         del before  # outside: what ends with it may run any code

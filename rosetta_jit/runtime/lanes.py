@@ -99,6 +99,8 @@ class Lanes:
         One element: the message from which spans are borrowed, or None.
     rows : int
         How many messages they hold, from row 0 of lane 0 on.
+    spares : list
+        Where compiled code leaves the lanes for another holder, when theirs has ended.
     """
 
     __slots__ = (
@@ -117,6 +119,7 @@ class Lanes:
         "registers",
         "rows",
         "source",
+        "spares",
         "state",
         "words",
     )

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.attributes.code import functions
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.makers import maker
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.shapes import is_message_like
@@ -184,6 +185,8 @@ class Program(Told):
         self._loaded, self._asks, self._registers = loaded, loaded.told, loaded.state.registers()
         self._holder = loaded.holder_type()
         self._plan = loaded.holder_type.family_.plan
+        if library() is not None:
+            vars(self)["new"] = maker(loaded.holder_type, self._plan)
         lanes = self._holder.lanes_
         context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers))
         bind_call(self, entry_of(loaded.library, loaded.state), context)
@@ -204,25 +207,17 @@ class Program(Told):
         """The class of the holders that this program fills or reads."""
         return self._loaded.holder_type
 
-    def new(self) -> Any:
+    def new(self) -> Any:  # where there is compiled code, that does it, as an attribute of each program
         """A holder of one's own, with room for what has been decoded until now, unless that is much."""
-        own, family, roomy, spawn, holder_type, recipe = self._latest
-        if own is self._plan and roomy is family.roomy:
-            return spawn(holder_type, recipe)
-        return self._new()
+        own, family = self._plan, self._loaded.holder_type.family_
+        return family.new(own if own.size_bytes > family.roomy.size_bytes else family.roomy)
 
-    _latest: tuple[Any, ...] = (None,) * 6
-
-    def _new(self) -> Any:
-        """A new holder, when there was another plan for the last one."""
-        own, holder_type = self._plan, self._loaded.holder_type
-        family = holder_type.family_
-        plan = own if own.size_bytes > family.roomy.size_bytes else family.roomy
-        recipe = family.recipe(plan)
-        if recipe is None:
-            return family.new(plan)
-        self._latest = own, family, family.roomy, functions()["spawn"], holder_type, recipe
-        return functions()["spawn"](holder_type, recipe)
+    def _need(self, plan: Plan) -> None:
+        """From now on, give new holders the room of a plan."""
+        if plan is not self._plan:
+            self._plan = plan
+            if library() is not None:
+                vars(self)["new"].room(plan)
 
     def _borrow(self) -> Any:
         """An empty holder that nobody else has, until it comes back by `_give_back`."""

@@ -98,7 +98,7 @@ class Feed:
             self._start = self._searched = stop
             self._ask(piece)
 
-    def feed(self, data: bytes) -> None:
+    def feed(self, data: bytes | memoryview) -> None:
         """Hand on bytes that lie elsewhere; as `filled`."""
         rest = memoryview(data)
         while rest:

@@ -21,6 +21,7 @@ from rosetta_jit.catalogue import nested as nested_words
 from rosetta_jit.catalogue import number_bytes as number_bytes_words
 from rosetta_jit.catalogue import reductions as reductions_words
 from rosetta_jit.catalogue import resolve as resolve_words
+from rosetta_jit.catalogue import rest as rest_words
 from rosetta_jit.catalogue import state as state_words
 from rosetta_jit.catalogue import texts as texts_words
 from rosetta_jit.catalogue import unit_files as unit_files_words
@@ -51,6 +52,7 @@ FILES = {path.name: path.read_text() for path in (*SCHEMAS, *(FOLDER / "used").i
 CATALOGUE = (
     mapping_words,
     resolve_words,
+    rest_words,
     check_words,
     derive_words,
     units_words,

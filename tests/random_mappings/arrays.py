@@ -40,7 +40,7 @@ class Arrays:
 
     def of(self, name: str, type_: str, depth: int = 2) -> Rules:
         """Rules for an array of "float64", "int64" or "string"."""
-        choice = self.rng.randrange(7)
+        choice = self.rng.randrange(8)
         if choice == 0 and depth:
             return self.block(name, type_, depth)
         if choice == 1:
@@ -49,6 +49,8 @@ class Arrays:
             return self.each(name, type_)
         if choice == 6 and type_ != "string":
             return self.reduced(name, type_)
+        if choice == 7:
+            return self.filtered(name, type_)
         return self.members(name, type_) if choice == 3 or type_ == "string" else self.ordered(name, type_)
 
     def block(self, name: str, type_: str, depth: int) -> Rules:
@@ -103,6 +105,26 @@ class Arrays:
 
         zero = "0.0" if of_floats else "0"
         return Rules(f".{name}[] = {text} if .ks[] > {limit} else {zero}", evaluate)
+
+    def filtered(self, name: str, type_: str) -> Rules:
+        """The elements for which a condition on them holds, by their values, their numbers, or both."""
+        array, of_one = ("ps", self.rng.choice([".x", ".n"])) if type_ == "string" else ("xs" if type_ == "float64" else "ks", "")
+        element = f"{array}[]{of_one}"
+        kind = "float64" if of_one == ".x" or array == "xs" else "int32"
+        condition = Maker(self.rng, {**self.scalars, element: kind}).live("bool", 2)
+        every = self.rng.choice([1, 2, 3])
+        text = f"({condition.text}) and index() % {every} == 0" if every > 1 else condition.text
+        place = "ps[].s" if of_one else element
+
+        def evaluate(fields: Fields) -> list[Any]:
+            found = []
+            for number, each in enumerate(fields[array]):
+                value = each if not of_one else each[of_one[1:]]
+                if condition.evaluate({**fields, element: value}) and number % every == 0:
+                    found.append(each["s"] if of_one else each)
+            return found
+
+        return Rules(f".{name}[] = .{place} where {text}", evaluate)
 
     def members(self, name: str, type_: str) -> Rules:
         member = {"float64": "x", "int64": "n", "string": "s"}[type_]

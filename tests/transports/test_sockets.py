@@ -61,6 +61,19 @@ def test_datagrams_have_a_limit():
             sink.send(bytes(65_508))
 
 
+def test_datagrams_that_the_system_drops_are_counted(monkeypatch):
+    monkeypatch.setattr("rosetta_jit.transports.datagrams.BUFFER_BYTES", 1 << 16)
+    port, free = free_port(), threading.Event()
+    with rj.subscribe(f"udp:{port}", lambda _: free.wait(5)) as source, rj.publish(f"udp:{port}") as sink:
+        for _ in range(1000):
+            sink.send(bytes(1000))
+        free.set()
+        until(lambda: source.messages)
+        time.sleep(0.1)
+        sink.send(b"the next one that arrives says how many did not")
+        until(lambda: source.messages + source.lost["the system's receive buffer was full"] == 1001)
+
+
 def test_groups_stay_on_loopback():
     address = f"udp:239.255.76.67:{free_port()}"
     with rj.subscribe(address) as one, rj.subscribe(address) as two, rj.publish(address) as sink:

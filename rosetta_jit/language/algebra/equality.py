@@ -72,6 +72,13 @@ def has_state(expr: Expr) -> bool:
     return any(found)
 
 
+def is_part(part: Expr, expr: Expr) -> bool:
+    """Whether an expression has another one within it, or is it."""
+    found = [expr == part]
+    rebuilt(expr, lambda each: found.append(is_part(part, each)) or each)
+    return any(found)
+
+
 def fact(expr: Expr, value: Expr) -> Fact | None:
     """That a field or length is a number, for `same_number`."""
     if not isinstance(expr.type, Int) or not isinstance(value.type, Int):

@@ -31,6 +31,7 @@ from rosetta_jit.language.typed import (
     Unary,
     When,
 )
+from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Bytes, String
 
 if TYPE_CHECKING:
@@ -95,6 +96,8 @@ def _normal(rule: Rule, names: dict[str, Expr]) -> Rule:
             return replace(rule, place=placed(place, change))
         case For(variable, start, stop, body):
             number = Local(f"${len(names)}")
+            if rule.kept is not None:
+                return _kept(rule, rule.kept, names, change)
             inner = normal(body, {**names, variable: number})
             return replace(rule, variable=number.name, start=change(start), stop=change(stop), body=inner)
         case When():
@@ -104,6 +107,17 @@ def _normal(rule: Rule, names: dict[str, Expr]) -> Rule:
             return replace(rule, condition=change(rule.condition), then=normal(rule.then, names), otherwise=normal(rule.otherwise, names))
         case _:
             return rule
+
+
+def _kept(rule: For[Rule, Expr], kept: Kept[Expr], names: dict[str, Expr], change: Callable[[Expr], Expr]) -> Rule:
+    """A loop of which some rounds are kept: what counts these is known by depth, as the variable of a loop over them would be."""
+    counter, number = Local(f"${len(names)}"), Local(f"${len(names) + 1}")
+    inner = {**names, rule.variable: number}
+    condition = renamed(_plain(kept.condition), inner)
+    count = None if kept.count is None else change(kept.count)
+    body = normal(rule.body, {**names, kept.variable: counter, rule.variable: number})
+    found = Kept(condition, counter.name, count)
+    return replace(rule, variable=number.name, start=change(rule.start), stop=change(rule.stop), body=body, kept=found)
 
 
 def _plain(expr: Expr) -> Expr:

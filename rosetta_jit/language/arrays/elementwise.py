@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import layouts as words
 from rosetta_jit.language.arrays.counts import ONE, LayoutError, times
 from rosetta_jit.language.arrays.element_loops import Moves, element_of
+from rosetta_jit.language.arrays.filters import filter_of, is_filtered, joined
 from rosetta_jit.language.arrays.layouts import ARGUMENTS, NUMBER_BYTES, PADDED, number_type, view_of
 from rosetta_jit.language.arrays.parts import has_each, is_many, open_parts, sources_in, substituted
 from rosetta_jit.language.conversions import is_single, same, widens
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
     from rosetta_jit.source import Span
 
+SINGLE = (Bool, Enum, Float, Int, Struct)
+"""Types of one value."""
 
 Lengths = dict[Path, "Expr"]
 """What is known of the lengths of the target's arrays."""
@@ -91,7 +94,7 @@ class _Expansion:
             return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
         if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.by == "checked"):
             rule = _each(rule, rule.value)
-        if not any(is_many(part) for side in (rule.place, rule.value) for part in open_parts(side)):
+        if rule.where is None and not any(is_many(part) for side in (rule.place, rule.value) for part in open_parts(side)):
             return (rule,)
         is_each = any(has_each(part) for side in (rule.place, rule.value) for part in open_parts(side))
         try:
@@ -132,6 +135,8 @@ class _Expansion:
         return rest
 
     def loops(self, rule: Assignment, lengths: Lengths, level: int, *, whole: bool) -> tuple[Rule, ...]:
+        if rule.where is not None:
+            return self.filtered(rule, lengths, level)
         value, padding = _padded(rule.value)
         value, packed = _packed(value)
         is_whole = isinstance(value, Path) if packed else whole or padding
@@ -139,7 +144,7 @@ class _Expansion:
         views = {source: view_of(source) for source in sources}
         place = rule.place if has_each(rule.place) else replace(rule.place, steps=(*rule.place.steps, Each(rule.place.span)))
         target = view_of(place)
-        if isinstance(self.type_of(target.array), Bool | Enum | Float | Int | Struct):
+        if isinstance(self.type_of(target.array), SINGLE):
             raise LayoutError(_many(rule))
         width = ONE if packed is None else packed.size
         given = [times(padding[0], padding[2])] if padding else [times(view.total, width) for view in views.values()]
@@ -158,9 +163,32 @@ class _Expansion:
         moves = Moves(replace(rule, value=value), target, views, number, padding, level, self.variable, expanded, packed)
         return (*before, *moves.rules())
 
+    def filtered(self, rule: Assignment, lengths: Lengths, level: int) -> tuple[Rule, ...]:
+        """A rule with `where`, as a loop of which some rounds are kept."""
+        asked = [part for side in (rule.place, rule.value, rule.where) if side is not None for part in open_parts(side)]
+        is_one = isinstance(rule.value, Path) and not isinstance(self.type_of(rule.value), Array | Bytes | Map | None)
+        if not any(map(is_many, asked)) and is_one:
+            raise LayoutError(words.filter_without_elements(rule.span))
+        found = filter_of(rule, self.variable(level), self.variable(level, "kept"))
+        array = found.target.array
+        if isinstance(self.type_of(array), SINGLE):
+            raise LayoutError(_many(rule))
+        known = lengths.get(array)
+        if self.fixed_length(array) is not None or not (known is None or is_filtered(known)):
+            raise LayoutError(words.filter_length(rule.place.span))
+        if known not in (None, found.length):
+            raise LayoutError(words.other_filter(rule.place.span))
+        lengths[array] = found.length
+        refused = [each for view in found.views for each in view.refused]
+        before: list[Rule] = [When(condition, (Reject(reason, rule.span),), (), rule.span) for condition, reason in refused]
+        before += [check for view in found.views for check in _unless_equal(view.total, found.loop.stop, rule.span)]
+        return (*before, replace(found.loop, body=self.block((found.element,), lengths, level + 1)))
+
     def counted(self, rule: Assignment, target: View, given: list[Expr], lengths: Lengths) -> tuple[Expr, list[Rule]]:
         """How many elements a rule sets, and what checks or sets that."""
         known = self.known_count(target, lengths)
+        if is_filtered(known):
+            raise LayoutError(words.other_filter(rule.place.span))
         is_open = _is_open(target)
         if known is not None:
             return known, [check for total in given for check in _unless_equal(total, known, rule.span)]
@@ -215,9 +243,9 @@ class _Expansion:
                     return None
         return type_
 
-    def variable(self, level: int) -> str:
-        """The name of the loop at a level, which no rule of the mapping uses."""
-        name = "element" if level == 0 else f"element_{level + 1}"
+    def variable(self, level: int, word: str = "element") -> str:
+        """The name of the loop at a level, or of what it counts, which no rule of the mapping uses."""
+        name = word if level == 0 else f"{word}_{level + 1}"
         while name in self.names:
             name += "_"
         return name
@@ -251,6 +279,9 @@ def _is_open(target: View) -> bool:
 
 def _add(made: list[Rule], rule: Rule, variable: str) -> None:
     """One more rule; a loop of ours over the elements of an array joins the one that is there, behind the checks between them."""
+    if isinstance(rule, For) and rule.kept is not None:
+        made.append(joined(made, rule))
+        return
     checks = 0
     while checks < len(made) and isinstance(made[-1 - checks], When):
         checks += 1

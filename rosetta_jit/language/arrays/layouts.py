@@ -294,7 +294,7 @@ def _numbers(view: View, number: NumberType, call: Call) -> View:
     *outer, last = view.axes
     if view.number is not None or last.listed is not None or last.step != ONE or view.rest:
         raise LayoutError(words.scattered_bytes(call.span))
-    return replace(view, axes=(*outer, Axis(over(last.count, number.size, call), number.size)), number=number)
+    return replace(view, axes=_kept(*outer, Axis(over(last.count, number.size, call), number.size)), number=number)
 
 
 def _triangle(view: View, size: Expr, call: Call, *, is_upper: bool) -> View:

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from rosetta_jit.model.expr import Expr
 
 
+NUMBER = Call("index", ())
+"""The number of the element that a rule for each of them is at."""
+
+
 def sources_in(value: Expr) -> Iterator[Path | Call]:
     """The arrays whose elements a value is computed from: the outermost of each."""
     if is_reduction(value):
@@ -80,6 +84,8 @@ def substituted(expr: Expr, known: Mapping[Expr, Expr], number: Expr) -> Expr:
         return known[expr]
     if is_reduction(expr):
         return expr
+    if expr == NUMBER:
+        return number
     if isinstance(expr, Len) and isinstance(element := known.get(expr.path), Path):
         return replace(expr, path=element)
     if isinstance(expr, Held) and has_each(expr.place):

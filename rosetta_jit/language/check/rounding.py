@@ -24,8 +24,9 @@ def rounded(rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
             case Assign(value=value) | SetLength(value=value):
                 yield from _constants(value)
                 yield from _by_unit(rule)
-            case For(_, start, stop, body):
-                yield from (each for bound in (start, stop) for each in _constants(bound))
+            case For(_, start, stop, body, kept=kept):
+                asked = () if kept is None else (kept.condition,)
+                yield from (each for bound in (start, stop, *asked) for each in _constants(bound))
                 yield from rounded(body)
             case When(condition, then, otherwise):
                 yield from _constants(condition)

@@ -21,6 +21,7 @@ from rosetta_jit.language.algebra.polynomial import (
 from rosetta_jit.language.check.tiling import Run
 from rosetta_jit.language.places import field_names, places_in
 from rosetta_jit.language.typed import Assign, Default, FieldStep, For, Ignore, Reject, SetLength, SetState, When
+from rosetta_jit.model.rules import Kept
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -74,6 +75,9 @@ def writes_of(
                     pass
                 case SetLength(place, value, span):
                     found.append(Write(_steps(place), loops, None, polynomial_of(value), span))
+                case For(body=body, kept=Kept(variable=variable, count=count)) if count is not None:
+                    loop = Loop(variable, number(0), polynomial_of(count))
+                    found += writes_of(body, problems, broken, (*loops, loop))
                 case For(variable, start, stop, body):
                     first = polynomial_of(start)
                     loop = Loop(variable, first, subtract(polynomial_of(stop), first))

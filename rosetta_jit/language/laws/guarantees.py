@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosetta_jit.language.algebra.equality import given_back, has_state, reads_other, same_number
+from rosetta_jit.language.algebra.equality import given_back, has_state, is_part, reads_other, same_number
 from rosetta_jit.language.algebra.normal_form import normal
 from rosetta_jit.language.laws.chain import UNSHOWN, Lost, Rounding, come_back
-from rosetta_jit.language.laws.roundtrip import Result, Trip
+from rosetta_jit.language.laws.roundtrip import FILTERED, Result, Trip
 from rosetta_jit.language.laws.ways import UnfollowedError, Way, ways
 from rosetta_jit.language.limits import MAX_WORK
 from rosetta_jit.language.places import field_names, shown_names, shown_place
@@ -164,6 +164,8 @@ def _value_outcome(result: Result, trip: Trip) -> Outcome:
             return Lost("it is left out: 0, empty or absent")
         case _ if has_state(value):
             return Lost("it depends on state, which other messages have left")
+        case _ if is_part(FILTERED, value):
+            return Lost("a filter drops some elements, and which it keeps is not followed")
         case Local("?"):
             return Lost("it cannot be shown by which block of a `when` it comes back")
         case Access(other) | LenOf(other) if other.side != place.side:

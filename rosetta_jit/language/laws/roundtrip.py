@@ -43,6 +43,7 @@ from rosetta_jit.language.typed import (
     When,
 )
 from rosetta_jit.model.expr import Literal
+from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Float, Map, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -54,6 +55,10 @@ if TYPE_CHECKING:
     from rosetta_jit.language.typed import Assignment, Expr, Place, Rule
     from rosetta_jit.model.expr import Side
     from rosetta_jit.source import Span
+
+
+FILTERED = Local("filtered")
+"""The value of what a filter sets: which element it is of is not followed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +160,9 @@ class Trip:
                     yield Result(where, isinstance(rule, SetLength), made, rule.span, self.ranges, may_refuse(value, self.of))
                 case Default(place):
                     yield Result(place, is_length=False, value=None, span=rule.span, ranges=self.ranges)
+                case For(body=body, kept=Kept()):
+                    for write in _writes((rule,), self.ranges):
+                        yield Result(write.place, write.is_length, write.value, rule.span, write.ranges)
                 case For(_, start, stop, body):
                     around, self.ranges = self.ranges, (*self.ranges, (self.of(start), self.of(stop)))
                     yield from self.run(body)
@@ -335,6 +343,9 @@ def _writes(rules: tuple[Rule, ...], ranges: Ranges) -> Iterator[_Write]:
         match rule:
             case Assign(place, value) | SetLength(place, value):
                 yield _Write(isinstance(rule, SetLength), place, _changed(rule, value), ranges)
+            case For(_, start, body=body, kept=Kept(count=count)) if count is not None:
+                for each in _writes(body, (*ranges, (start, count))):
+                    yield replace(each, value=FILTERED)
             case For(_, start, stop, body):
                 yield from _writes(body, (*ranges, (start, stop)))
             case When(_, then, otherwise):

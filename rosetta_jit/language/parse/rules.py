@@ -115,17 +115,22 @@ def read_rule(tree: Tree, context: Context) -> Rule:
 def _set(tree: Tree, context: Context, span: Span) -> Rule:
     """A place, or several, and what is assigned or related to them."""
     parts = _trees(tree)
+    where = [_trees(parts.pop())[0]] if parts[-1].data == "where" else []
     via = [parts.pop()] if parts[-1].data == "via" else []
     *places, value = parts
     found = [_path(place, context.target, context) for place in places]
     is_relation = tree.data == "relation"
+    if is_relation:
+        context.problems.extend(words.filter_both_ways(context.span(each)) for each in where)
     if len(found) > 1:
         context.problems.extend(words.via_of_several(context.span(each)) for each in via)
+        context.problems.extend(words.filter_of_several(context.span(each)) for each in where if not is_relation)
         return Several(tuple(found), read_expression(value, context), span, is_relation=is_relation)
     (place,) = found
     if is_relation:
         return Relation(place, read_expression(value, context), span, _via(via, context))
-    return Assign(place, read_expression(value, context), span, _via(via, context))
+    condition = next((read_expression(each, context) for each in where), None)
+    return Assign(place, read_expression(value, context), span, _via(via, context), condition)
 
 
 def _left_alone(tree: Tree, context: Context, span: Span) -> Rule:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import rest as about_rest
 from rosetta_jit.catalogue import state as states
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
@@ -32,16 +33,21 @@ from rosetta_jit.language.resolve.nested import nest
 from rosetta_jit.language.resolve.overriding import last_ones
 from rosetta_jit.language.resolve.rest import defaulted, elements_filled, ignored
 from rosetta_jit.language.resolve.same_names import OF_TYPES, rules_of, unlike
-from rosetta_jit.language.scope import Broken, Message, Scope, resolve_path
+from rosetta_jit.language.scope import Broken, Message, Scope, element_type, resolve_path
 from rosetta_jit.language.typed import (
+    INT64,
     Assign,
     Choice,
     Const,
     Convert,
     Default,
+    FieldStep,
     For,
     Ignore,
+    IndexStep,
+    Local,
     Place,
+    Reduce,
     Reject,
     SetLength,
     SetState,
@@ -52,6 +58,7 @@ from rosetta_jit.language.units.wholes import change_within
 from rosetta_jit.language.uses import EnoughError
 from rosetta_jit.model import expr
 from rosetta_jit.model import mapping as model
+from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, String
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -138,7 +145,7 @@ class _Block:
         typed = [made for rule in rules for made in self.made(rule, scope)]
         found = tuple(rule for rule in typed if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
-        scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
+        scope.problems.extend(about_rest.repeated_same_names(rule.span) for rule in same[1:])
         return lengths_first(found if not same else (*found, *self.same_names(same[0], found, scope)))
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
@@ -152,7 +159,7 @@ class _Block:
         taken |= {step.name for each in rule.renames for step in each.place.steps[:1] if isinstance(step, expr.Member)}
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted and not rule.renames:
-            scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
+            scope.problems.append(about_rest.no_same_names(rule.span, aim.name, origin.name))
         return [each for made in rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
 
     def same_name(self, rule: model.Assignment, names: model.SameNames, scope: Scope) -> list[Rule]:
@@ -176,6 +183,8 @@ class _Block:
                 return [*nested]
             if (group := group_of(rule.value)) is not None:
                 return self.group(rule, group, scope)
+        if isinstance(rule, model.For) and rule.kept is not None:
+            return self.filtered(rule, rule.kept, scope)
         found = self.rule(rule, scope)
         if not isinstance(found, Default):
             return [found]
@@ -206,7 +215,7 @@ class _Block:
             case model.SameNames():
                 return None  # when all other rules of the block are known
             case model.Rest():
-                scope.problems.append(words.rest_in_block(rule.span, rule.word))
+                scope.problems.append(about_rest.rest_in_block(rule.span, rule.word))
                 return None
             case model.Relation() | model.Arranged() | model.Several():
                 raise AssertionError(rule)
@@ -221,7 +230,7 @@ class _Block:
         if isinstance(rule, model.Ignore):
             return Ignore(place, rule.span)
         if has_array(place.type, scope.messages[scope.target].schema, told=True):
-            scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            scope.problems.append(about_rest.no_default(rule.span, describe(place.type)))
             self.broken.append(field_names(place))
             return None
         return Default(place, rule.span)
@@ -310,6 +319,36 @@ class _Block:
             self.broken.extend(field_names(place) for place in places_in(body))
             return None
         return For(rule.variable + scope.suffix, start, stop, body, rule.span)
+
+    def filtered(self, rule: model.For[model.Rule, expr.Expr], kept: Kept[expr.Expr], scope: Scope) -> list[Rule | None]:
+        """A loop of which some rounds are kept, behind the lengths of the arrays that have an element for each of them."""
+        inside = scope.inside(rule.variable)
+        stop = type_integer(rule.stop, scope, "where a loop ends")
+        condition = type_condition(kept.condition, inside, type_expr)
+        body = self.rules(rule.body, inside.inside(kept.variable))
+        if stop is None or condition is None:
+            self.broken.extend(field_names(place) for place in places_in(body))
+            return [None]
+        variable, counter = Local(rule.variable + scope.suffix), kept.variable + scope.suffix
+        count = Reduce("count", variable, stop, condition, INT64, span=rule.span)
+        loop = For(variable.name, Const(0, INT64), stop, body, rule.span, Kept(condition, counter, count))
+        arrays = dict.fromkeys(array for place in places_in(body) if (array := _array_of(place, counter, scope)) is not None)
+        return [*(SetLength(array, count, rule.span) for array in arrays), loop]
+
+
+def _array_of(place: Place, counter: str, scope: Scope) -> Place | None:
+    """The array whose element of a counter's number a place is, or is in."""
+    number = next((number for number, step in enumerate(place.steps) if step == IndexStep(Local(counter))), None)
+    if number is None:
+        return None
+    message = scope.messages[place.side]
+    type_: Type = message.root
+    for step in place.steps[:number]:
+        if isinstance(step, FieldStep):
+            type_ = message.value_type(step.field.type)
+        elif isinstance(type_, Array | Bytes | Map):
+            type_ = message.value_type(element_type(type_))
+    return Place(place.side, place.steps[:number], type_, place.span)
 
 
 def _rounded(value: Expr, target: Type, scope: Scope) -> Expr:

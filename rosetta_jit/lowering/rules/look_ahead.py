@@ -108,8 +108,10 @@ def _in_rules(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Expr]:
             case typed.Assign(place, value) | typed.SetLength(place, value):
                 yield value
                 yield from (step.index for step in place.steps if isinstance(step, typed.IndexStep))
-            case typed.For(_, start, stop, body):
+            case typed.For(_, start, stop, body, kept=kept):
                 yield from (start, stop)
+                if kept is not None:
+                    yield kept.condition
                 yield from _in_rules(body)
             case typed.When(condition, then, otherwise):
                 yield condition

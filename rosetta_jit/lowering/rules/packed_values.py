@@ -165,8 +165,8 @@ def _array_places(rules: tuple[typed.Rule, ...]) -> Iterator[typed.Place]:
                 yield place
             case typed.Assign(_, value) | typed.SetLength(_, value) | typed.SetState(_, value):
                 yield from _read(value)
-            case typed.For(_, start, stop, body):
-                yield from _read(start, stop)
+            case typed.For(_, start, stop, body, kept=kept):
+                yield from _read(start, stop, *(() if kept is None else (kept.condition,)))
                 yield from _array_places(body)
             case typed.When(condition, then, otherwise):
                 yield from _read(condition)

@@ -19,6 +19,7 @@ from rosetta_jit.lowering.arithmetic import binary
 from rosetta_jit.lowering.calls import lowered
 from rosetta_jit.lowering.codec.wire_fields import NotInPlaceError
 from rosetta_jit.lowering.rules.copies import copy, is_endless
+from rosetta_jit.lowering.rules.filters import filtered
 from rosetta_jit.lowering.rules.holder_side import HolderSide, presence
 from rosetta_jit.lowering.rules.look_ahead import look_ahead
 from rosetta_jit.lowering.rules.packed_values import place_of
@@ -29,6 +30,7 @@ from rosetta_jit.lowering.texts.separated import count_of_parts, parts_of
 from rosetta_jit.lowering.texts.values import checked, text_of
 from rosetta_jit.lowering.texts.views import placed
 from rosetta_jit.lowering.writer import Writer, block
+from rosetta_jit.model.rules import Kept
 from rosetta_jit.model.types import Array, Bytes, Map, Ref, String, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -61,6 +63,8 @@ class Runner:
                     self.assign(place, value, here, rule.by)
                 case typed.SetLength(place, value):
                     self.take(place, self.count(here.of(value)), here)
+                case typed.For(kept=Kept() as kept):
+                    filtered(self, rule, kept, here)
                 case typed.For():
                     self.loop(rule, here)
                 case typed.When(condition, (typed.Reject(text, span, pieces),), ()):
@@ -100,6 +104,10 @@ class Runner:
     def count(self, value: Expr) -> Expr:
         """A length that is used more than once."""
         return self.writer.let("length", value)
+
+    def count_of(self, place: typed.Place, values: Values) -> Expr:
+        """How many elements an array of the target has, whose length was set."""
+        return self.target.count(place, values)
 
     def take(self, place: typed.Place, count: Expr, values: Values) -> None:
         """Room for so many elements or bytes, if the target's type can have as many; those of a wire in place are bounded by the walk."""

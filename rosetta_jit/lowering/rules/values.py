@@ -169,7 +169,7 @@ class Values:
         writer, first = self.writer, self.of(left)
         with self.source.forgetting(), writer.nested() as step:
             second = self.of(right)
-        if not any(isinstance(stmt, FAILING) for stmt, _ in statements(block(step))):
+        if not any(isinstance(stmt, FAILING) and stmt not in writer.certain for stmt, _ in statements(block(step))):
             writer.emit(*step)
             return binary(writer, operator, first, second, self.where, self.line)
         found = writer.var("joined", first)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Load, Store, Wire
+from rosetta_jit.kernel.ir import WIDTH, Address, Binary, Compare, Const, Expr, Load, Require, Store, Wire
 from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.language import typed
 from rosetta_jit.language.typed import FieldStep, IndexStep
@@ -82,6 +82,11 @@ class WireSide:
         if not isinstance(region.step, Const):  # written down, for it follows from a product
             self.writer.expect(Compare("ge", at, region.first), "index", where, "no such element", line=values.line)
         self.writer.require(WIDTH[region.scalar], where, at=at)
+        match self.writer.block:
+            case [*_, Require(at=required) as check] if required == at and inside(number, count) in self.writer.certain:
+                self.writer.certain.add(check)
+            case _:
+                pass
         return region, at
 
     # --- writing -------------------------------------------------------------------------------------------------------

@@ -1,0 +1,77 @@
+"""Filters in generated source: C, C++, Python and Lisp keep the elements that the library keeps."""
+
+from __future__ import annotations
+
+import sys
+import types
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import request_of
+from rosetta_jit.generate.build import generated
+from tests.generate import cpp, lisp
+from tests.generate.driver import answers, driver, expected, harmed, needs_gcc, write
+from tests.generate.test_python import answer
+
+FILES = {
+    "m.bottle-schema": '"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)))',
+    "m.proto": 'syntax = "proto2"; package lab; message M { repeated double a = 1; repeated int32 n = 2; repeated string names = 3; }',
+    "m.mapping": """import "m.bottle-schema"
+import "m.proto"
+data-holder: lab.M
+wire-schema: m
+unpack-rules:
+  .a = .a where isfinite(.a[]) and .a[] < 2.0
+  .n = .n where index() % 2 == 0
+  .names = .names where .names[] != "off"
+pack-rules:
+  .a = .a where not isnan(.a[])
+  .n = .n where .n[] > 0
+  .names = .names
+""",
+}
+REQUEST = request_of("decode", {"encoding": "yarp4", "schema": FILES}, mapping="m.mapping")
+BOTH = ("decode", "encode")
+
+
+@pytest.fixture(scope="module")
+def programs():
+    options = {"schema": FILES, "encoding": "yarp4"}
+    return rj.Decoder("m.mapping", **options), rj.Encoder("m.mapping", **options)
+
+
+@pytest.fixture(scope="module")
+def messages():
+    of = rj.Encoder.of("m", schema=FILES, imports=["m.bottle-schema"], encoding="yarp4")
+    full = {"a": [0.5, float("nan"), 3.0, float("-inf"), 1.0], "n": [1, 2, -3, 4, 5], "names": ["on", "off", "", "off", "x"]}
+    good = [of(of.holder_type.from_dict(values)) for values in ({"a": [], "n": [], "names": []}, full, {**full, "a": [9.0]})]
+    return [*good, *harmed(good, 4, "filters")]
+
+
+@needs_gcc
+@pytest.mark.campaign
+def test_c_keeps_the_same(tmp_path, programs, messages):
+    program = driver(tmp_path, write(tmp_path, generated(REQUEST, "c", BOTH, "unit")))
+    assert answers(program, messages) == [expected(*programs, each) for each in messages]
+
+
+@cpp.needs_cpp
+@pytest.mark.campaign
+def test_cpp_keeps_the_same(tmp_path, programs, messages):
+    program = cpp.program(tmp_path, cpp.write(tmp_path, generated(REQUEST, "cpp", BOTH, "unit")))
+    assert answers(program, messages) == [expected(*programs, each) for each in messages]
+
+
+def test_python_keeps_the_same(monkeypatch, programs, messages):
+    made = types.ModuleType("generated_unit")
+    monkeypatch.setitem(sys.modules, made.__name__, made)
+    exec(compile(generated(REQUEST, "python", BOTH, "unit")["unit.py"], "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
+    assert [answer(made, each) for each in messages] == [expected(*programs, each) for each in messages]
+
+
+@lisp.needs_sbcl
+@pytest.mark.campaign
+def test_lisp_keeps_the_same(tmp_path, programs, messages):
+    (found,) = lisp.answers(tmp_path, [(REQUEST, messages)])
+    assert found == lisp.expected(REQUEST, *programs, messages)
