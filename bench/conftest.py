@@ -21,6 +21,7 @@ ORDER = (
     "groups",
     "state",
     "wires",
+    "filters",
     "mapped",
     "bridges",
     "peers",

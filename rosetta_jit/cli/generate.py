@@ -33,6 +33,12 @@ def add(commands: Commands) -> None:
         "--include", metavar="HEADER", help="the header that declares these classes (default: by the rules of their framework)"
     )
     command.add_argument(
+        "--arrays",
+        choices=("list", "numpy"),
+        default="list",
+        help="what arrays of numbers are in Python: lists, or numpy's (default: list)",
+    )
+    command.add_argument(
         "--directions",
         type=_directions,
         default=("decode", "encode"),
@@ -76,7 +82,7 @@ def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
     from rosetta_jit.generate.build import Wishes, generated
 
     name = arguments.name or _name(arguments.subject)
-    wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "")
+    wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "", numpy=arguments.arrays == "numpy")
     return generated(_request(arguments), arguments.language, arguments.directions, name, wishes)
 
 

@@ -65,11 +65,12 @@ class LowByteFirst(AheadOfTime):
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What a user wants besides: ``freestanding`` source, classes of a ``holder``, the header to ``include`` for them."""
+    """What a user wants besides: ``freestanding`` source, a ``holder``, the header to ``include`` for it, arrays of ``numpy``."""
 
     freestanding: bool = False
     holder: str = ""
     include: str = ""
+    numpy: bool = False
 
 
 NO_WISHES = Wishes()
@@ -112,6 +113,7 @@ def unit_of(
         wishes.include,
         _origins(builds),
         tuple((name, word) for name, _, word in first.header["state"]["variables"]),
+        wishes.numpy,
     )
 
 
@@ -218,6 +220,8 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     known = installed()
     if language not in known:
         raise SchemaError((words.unknown_language(language, tuple(known)),))
+    if wishes.numpy and not known[language].numpy:
+        raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
     with within_stack():
         machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
         return known[language].files(unit_of(request, known[language].roles(roles), name, wishes, machine))

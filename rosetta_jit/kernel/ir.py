@@ -498,7 +498,8 @@ class Routine:
 class Kernel:
     """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones.
 
-    ``registers`` is how many its program has at least. ``kept`` are the lanes whose rows stay when a message is decoded into row 0; none
+    ``registers`` is how many its program has at least. ``rare`` bodies, the last ones, are for messages that hardly ever come: whoever
+    compiles them takes no time for their speed. ``kept`` are the lanes whose rows stay when a message is decoded into row 0; none
     unless the message is one of several that fill the holder, and then lane 0 is one of them.
     """
 
@@ -510,6 +511,7 @@ class Kernel:
     routines: tuple[Routine, ...] = ()
     hidden: int = 0
     registers: int = 0
+    rare: int = 0
     kept: tuple[int, ...] = ()
 
     @property

@@ -143,7 +143,9 @@ class _Lowering:
         attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
         bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
-        return Kernel(name, self.direction, strides, bodies, tuple(writer.sites), routines, len(strides) - own, self.registers, self.kept)
+        sites, hidden = tuple(writer.sites), len(strides) - own
+        rare = self.encoding.rare if self.direction == "decode" else 0
+        return Kernel(name, self.direction, strides, bodies, sites, routines, hidden, self.registers, rare, self.kept)
 
     def body(self, writer: Writer, attempt: Codec, relate: Relate) -> Block:
         writer.registers = {}

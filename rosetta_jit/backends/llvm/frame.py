@@ -115,7 +115,8 @@ class Exit:
 class Frame:
     """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
 
-    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
+    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``. ``is_rare`` says that LLVM
+    will take no time for the body's speed.
     """
 
     module: ir.Module
@@ -130,6 +131,7 @@ class Frame:
     emptied: frozenset[int]
     routines: Mapping[str, ir.Function | Routine]
     caller: tuple[Frame, Call] | None = None
+    is_rare: bool = False
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
 

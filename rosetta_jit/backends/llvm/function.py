@@ -51,12 +51,21 @@ TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) -> ir.Function:
+def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, rare: ir.Module | None = None) -> ir.Function:
     """Define the kernel's function in the module.
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact. Unless the module is to be ``whole``, it only
-    declares the functions of `support` that the kernel calls.
+    declares the functions of `support` that the kernel calls, and rare bodies if there is a module for these.
     """
+    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
+    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name), rare)
+    if whole:
+        definitions.define(module)
+    return _behind_check(module, kernel, function, name) if kernel.hidden else function
+
+
+def _routines(module: ir.Module, kernel: Kernel, name: str) -> Mapping[str, ir.Function | Routine]:
+    """What calls of routines become: functions of the module, or their statements."""
     calls, routines = _calls(kernel), dict[str, "ir.Function | Routine"]()
     for routine in kernel.routines:
         if _is_in_place(routine, calls[routine.name]):
@@ -65,11 +74,7 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) ->
         function = routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
         if calls[routine.name] >= _many(routine):
             function.attributes.add("noinline")
-    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
-    _attempt(function, kernel, kernel.bodies, routines)
-    if whole:
-        definitions.define(module)
-    return _behind_check(module, kernel, function, name) if kernel.hidden else function
+    return routines
 
 
 def _calls(kernel: Kernel) -> Counter[str]:
@@ -158,7 +163,13 @@ def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value
     builder.ret(whole)
 
 
-def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]) -> None:
+def _attempt(
+    function: ir.Function,
+    kernel: Kernel,
+    bodies: Sequence[Block],
+    routines: Mapping[str, ir.Function | Routine],
+    rare: ir.Module | None = None,
+) -> None:
     """The first of the bodies, whose failures lead to the next one. What has failed so far stands in the state.
 
     Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
@@ -167,6 +178,7 @@ def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], rou
     done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
     parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
     frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
+    frame.is_rare = len(bodies) <= kernel.rare
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     llvm_checks.body(frame, bodies[0])
     if not frame.builder.block.is_terminated:
@@ -181,18 +193,30 @@ def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], rou
     if len(bodies) == 1:
         builder.ret(builder.sub(constant(-1), site))
     else:
-        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines), function.args))
+        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines, rare), function.args))
 
 
 def _next_attempt(
-    function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]
+    function: ir.Function,
+    kernel: Kernel,
+    bodies: Sequence[Block],
+    routines: Mapping[str, ir.Function | Routine],
+    rare: ir.Module | None,
 ) -> ir.Function:
     """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
-    following = _function(function.module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
-    following.linkage = "internal"
+    following = _following(function.module, function)
+    if rare is None or len(bodies) > kernel.rare:
+        following.linkage = "internal"
+        _attempt(following, kernel, bodies, routines, rare)
+    else:
+        _attempt(_following(rare, function), kernel, bodies, _routines(rare, kernel, f"{function.name}.rare"))
+    return following
+
+
+def _following(module: ir.Module, function: ir.Function) -> ir.Function:
+    following = _function(module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
     following.attributes.add("noinline")
     following.calling_convention = "preserve_mostcc"
-    _attempt(following, kernel, bodies, routines)
     return following
 
 
