@@ -30,7 +30,7 @@ def messages(x=2.0):
 
 def test_an_odometry_of_a_pose_and_a_velocity():
     decode, encode = rj.Decoders(ODOMETRY), rj.Encoders(ODOMETRY)
-    whole = rj.Encoder.of("nav_msgs/Odometry", encoding="ros1")
+    whole = decode.encoder(encoding="ros1")
     pose, _ = messages()
     decode.pose(pose)
     assert decode.missing == ("velocity",)
