@@ -15,7 +15,8 @@ from tests.generate.driver import answers, driver, expected, harmed, needs_gcc, 
 from tests.generate.test_python import answer
 
 FILES = {
-    "m.bottle-schema": '"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)) ("steps" (:list :int)) ("cells" (:list :int)) ("counts" (:list :int)) ("mask" :blob))',
+    "m.bottle-schema": """"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)) ("steps" (:list :int))
+("cells" (:list :int)) ("counts" (:list :int)) ("mask" :blob))""",
     "m.proto": """syntax = "proto2"; package lab;
 message M { repeated double a = 1; repeated int32 n = 2; repeated string names = 3; repeated int64 ticks = 4; repeated int32 cells = 5;
   repeated bool flags = 6; }""",
