@@ -20,6 +20,7 @@ ORDER = (
     "reorder",
     "groups",
     "state",
+    "wires",
     "filters",
     "mapped",
     "bridges",

@@ -293,7 +293,6 @@ def is_for_types(node):
 
 TOGETHER = [
     {"model.expr", "model.types"},
-    {"runtime.holder.access", "runtime.holder.message", "runtime.holder.undo"},
     {"runtime.batch", "runtime.holder", "runtime.looks.described", "runtime.looks.page"}
     | {f"runtime.holder.{name}" for name in ("classes", "family", "serialising")}
     | {f"runtime.holder.objects.{name}" for name in ("foreign", "giving", "reading", "taking")},

@@ -8,47 +8,28 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rosetta_jit.kernel import arithmetic, decimals
+from rosetta_jit.kernel import arithmetic
 from rosetta_jit.kernel.arithmetic import demand
+from rosetta_jit.kernel.evaluation import Machine, bytes_at, field, integer, value_of
 from rosetta_jit.kernel.host import NO_FUNCTIONS, RefusedError
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Advance,
     Assign,
-    Binary,
-    Bits,
     Call,
-    Capacity,
-    Compare,
-    Const,
-    Convert,
     Copy,
-    Digits,
     Expect,
     Fill,
-    Fits,
     For,
-    Get,
     HostCall,
     If,
-    IsText,
     Let,
-    Load,
-    Local,
-    Nearest,
-    Place,
-    Register,
     Require,
     Reserve,
     Return,
-    Scale,
-    Select,
     SetField,
     Store,
     Switch,
-    Told,
-    Unary,
-    Used,
     Var,
     While,
     Wire,
@@ -71,11 +52,10 @@ from rosetta_jit.kernel.terms import BEGIN, END, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, MutableSequence, Sequence
+    from collections.abc import Callable, MutableSequence, Sequence
 
-    from rosetta_jit.kernel.arithmetic import Value
     from rosetta_jit.kernel.host import Functions
-    from rosetta_jit.kernel.ir import Address, Block, Expr, Failure, Kernel, Known, Routine, Stmt
+    from rosetta_jit.kernel.ir import Block, Failure, Kernel, Stmt
 
     Memory = bytes | bytearray | memoryview
     State = np.ndarray[tuple[int], np.dtype[np.int64]]
@@ -108,22 +88,6 @@ class _Done:
 
 _Outcome = _Done | _Failed | _Full | None
 """What a statement did: a message done, a failure, a full lane, or None to go on."""
-
-
-@dataclass(slots=True)
-class _Machine:
-    """What an attempt sees and changes."""
-
-    strides: tuple[int, ...]
-    message: memoryview
-    lanes: list[memoryview]
-    capacities: list[int]
-    used: list[int]
-    routines: Mapping[str, Routine]
-    told: Mapping[str, int]
-    registers: tuple[int, ...]
-    functions: Functions
-    locals: dict[str, Value]
 
 
 def runnable(kernel: Kernel, functions: Functions) -> Callable[..., int]:
@@ -203,17 +167,17 @@ def run(
     return _report(state, worst)
 
 
-def _machine(kernel: Kernel, buffer: Memory, state: State, lanes: Sequence[Memory], row: int, functions: Functions) -> _Machine:
+def _machine(kernel: Kernel, buffer: Memory, state: State, lanes: Sequence[Memory], row: int, functions: Functions) -> Machine:
     """What each attempt starts with."""
     views = [memoryview(lane).cast("B") for lane in lanes]
     views += [memoryview(bytearray())] * (len(kernel.strides) - len(views))
     own, hidden = range(kernel.lanes), range(kernel.lanes, len(kernel.strides))
     capacities = [int(state[lane_word(k, CAPACITY)]) for k in own] + [len(views[k]) // kernel.strides[k] for k in hidden]
     starts_empty = kernel.direction == "decode" and row == 0
-    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
+    used = [0 if starts_empty and k and k not in kernel.kept else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
     routines = {routine.name: routine for routine in kernel.routines}
     told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
-    return _Machine(kernel.strides, memoryview(buffer).cast("B"), views, capacities, used, routines, told, (), functions, {})
+    return Machine(kernel.strides, memoryview(buffer).cast("B"), views, capacities, used, routines, told, (), functions, {})
 
 
 def _report(state: State, failed: _Failed) -> int:
@@ -223,7 +187,7 @@ def _report(state: State, failed: _Failed) -> int:
     return -1 - failed.site
 
 
-def _block(machine: _Machine, block: Block) -> _Outcome:
+def _block(machine: Machine, block: Block) -> _Outcome:
     for stmt in block:
         outcome = _statement(machine, stmt)
         if outcome is not None:
@@ -231,27 +195,27 @@ def _block(machine: _Machine, block: Block) -> _Outcome:
     return None
 
 
-def _statement(machine: _Machine, stmt: Stmt) -> _Outcome:
+def _statement(machine: Machine, stmt: Stmt) -> _Outcome:
     match stmt:
         case Require(at, size, failure):
-            start, length = _integer(machine, at), _integer(machine, size)
-            inside = start >= 0 and length >= 0 and start + length <= _integer(machine, END)
+            start, length = integer(machine, at), integer(machine, size)
+            inside = start >= 0 and length >= 0 and start + length <= integer(machine, END)
             return None if inside else _failed(machine, failure)
         case Expect(condition, failure):
-            return None if _value(machine, condition) else _failed(machine, failure)
+            return None if value_of(machine, condition) else _failed(machine, failure)
         case Let(name, value) | Var(name, value) | Assign(name, value):
-            machine.locals[name] = _value(machine, value)
+            machine.locals[name] = value_of(machine, value)
             return None
         case Return(position, registers):
-            changed = tuple((number, _integer(machine, value)) for number, value in registers)
-            return _Done(_integer(machine, position), changed)
+            changed = tuple((number, integer(machine, value)) for number, value in registers)
+            return _Done(integer(machine, position), changed)
         case Reserve(lane, count):
-            rows = _integer(machine, count)
+            rows = integer(machine, count)
             demand(rows >= 0, "a negative count of rows")
             room = machine.capacities[lane] - machine.used[lane]
             return None if rows <= room else _Full(lane, rows - room)
         case Advance(lane, count):
-            rows = _integer(machine, count)
+            rows = integer(machine, count)
             demand(0 <= rows <= machine.capacities[lane] - machine.used[lane], "rows that were not reserved")
             machine.used[lane] += rows
             return None
@@ -267,24 +231,24 @@ def _statement(machine: _Machine, stmt: Stmt) -> _Outcome:
             assert_never(stmt)
 
 
-def _call(machine: _Machine, call: Call) -> _Outcome:
+def _call(machine: Machine, call: Call) -> _Outcome:
     routine = machine.routines[call.routine]
     names = BEGIN.name, END.name, *(parameter.name for parameter in routine.parameters)
-    values = (_value(machine, expr) for expr in (BEGIN, END, *call.arguments))
+    values = (value_of(machine, expr) for expr in (BEGIN, END, *call.arguments))
     inner = replace(machine, locals=dict(zip(names, values, strict=True)))
-    demand(all(_value(inner, required) for required in routine.requires), "a call that asks for what is not there")
+    demand(all(value_of(inner, required) for required in routine.requires), "a call that asks for what is not there")
     outcome = _block(inner, routine.body)
     if isinstance(outcome, _Failed):
-        return _Failed(outcome.offset, call.sites[outcome.site - 1], tuple(_integer(machine, i) for i in call.indices))
-    demand(all(_value(inner, ensured) for ensured in routine.ensures), "a routine that breaks its promise")
+        return _Failed(outcome.offset, call.sites[outcome.site - 1], tuple(integer(machine, i) for i in call.indices))
+    demand(all(value_of(inner, ensured) for ensured in routine.ensures), "a routine that breaks its promise")
     for local, result in zip(call.results, routine.results, strict=True):
         machine.locals[local.name] = inner.locals[result.name]
     return outcome
 
 
-def _host_call(machine: _Machine, call: HostCall) -> _Failed | None:
-    given = [_value(machine, argument) for argument in call.arguments]
-    extents = [_bytes(machine, each.address, _integer(machine, each.size)) for each in extents_of(call)]
+def _host_call(machine: Machine, call: HostCall) -> _Failed | None:
+    given = [value_of(machine, argument) for argument in call.arguments]
+    extents = [bytes_at(machine, each.address, integer(machine, each.size)) for each in extents_of(call)]
     read = extents[: len(call.inputs)]
     try:
         found = machine.functions[call.function](*given, *(part.toreadonly() for part in read), *extents[len(call.inputs) :])
@@ -294,28 +258,28 @@ def _host_call(machine: _Machine, call: HostCall) -> _Failed | None:
     return None
 
 
-def _effect(machine: _Machine, stmt: Store | SetField | Copy | Fill) -> None:
+def _effect(machine: Machine, stmt: Store | SetField | Copy | Fill) -> None:
     match stmt:
         case Store(at, value, order):
             type_ = type_of(value)
-            _bytes(machine, Wire(at), WIDTH[type_])[:] = arithmetic.to_bytes(type_, _value(machine, value), order)
+            bytes_at(machine, Wire(at), WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value), order)
         case SetField(place, value):
             type_ = type_of(value)
-            _field(machine, place, WIDTH[type_])[:] = arithmetic.to_bytes(type_, _value(machine, value))
+            field(machine, place, WIDTH[type_])[:] = arithmetic.to_bytes(type_, value_of(machine, value))
         case Copy(target, source, size):
-            length = _integer(machine, size)
-            _bytes(machine, target, length)[:] = bytes(_bytes(machine, source, length))
+            length = integer(machine, size)
+            bytes_at(machine, target, length)[:] = bytes(bytes_at(machine, source, length))
         case Fill(target, size, byte):
-            length = _integer(machine, size)
-            _bytes(machine, target, length)[:] = bytes([byte]) * length
+            length = integer(machine, size)
+            bytes_at(machine, target, length)[:] = bytes([byte]) * length
         case _:
             assert_never(stmt)
 
 
-def _nested(machine: _Machine, stmt: For | While | If | Switch) -> _Outcome:
+def _nested(machine: Machine, stmt: For | While | If | Switch) -> _Outcome:
     match stmt:
         case For(variable, count, body):
-            for index in range(_integer(machine, count)):
+            for index in range(integer(machine, count)):
                 machine.locals[variable] = index
                 outcome = _block(machine, body)
                 if outcome is not None:
@@ -324,125 +288,24 @@ def _nested(machine: _Machine, stmt: For | While | If | Switch) -> _Outcome:
         case While():
             return _while(machine, stmt)
         case If(condition, then, otherwise):
-            return _block(machine, then if _value(machine, condition) else otherwise)
+            return _block(machine, then if value_of(machine, condition) else otherwise)
         case Switch(value, cases, default):
-            return _block(machine, dict(cases).get(_integer(machine, value), default))
+            return _block(machine, dict(cases).get(integer(machine, value), default))
         case _:
             assert_never(stmt)
 
 
-def _while(machine: _Machine, loop: While) -> _Outcome:
+def _while(machine: Machine, loop: While) -> _Outcome:
     while True:
-        demand(all(_value(machine, kept) for kept in loop.invariant), "an invariant does not hold")
-        if not _value(machine, loop.condition):
+        demand(all(value_of(machine, kept) for kept in loop.invariant), "an invariant does not hold")
+        if not value_of(machine, loop.condition):
             return None
-        before = _integer(machine, loop.measure)
+        before = integer(machine, loop.measure)
         outcome = _block(machine, loop.body)
         if outcome is not None:
             return outcome
-        demand(_integer(machine, loop.measure) > before, "a round made no progress")
+        demand(integer(machine, loop.measure) > before, "a round made no progress")
 
 
-def _failed(machine: _Machine, failure: Failure) -> _Failed:
-    return _Failed(_integer(machine, failure.at), failure.site, tuple(_integer(machine, i) for i in failure.indices))
-
-
-def _integer(machine: _Machine, expr: Expr) -> int:
-    value = _value(machine, expr)
-    if not isinstance(value, int):
-        raise AssertionError("a float where an integer belongs")  # noqa: TRY004  # our bug, not a caller's
-    return value
-
-
-def _value(machine: _Machine, expr: Expr) -> Value:
-    match expr:
-        case Const(type_, value):
-            return arithmetic.constant(type_, value)
-        case Local(_, name):
-            return machine.locals[name]
-        case Load(type_, at, order):
-            return arithmetic.from_bytes(type_, bytes(_bytes(machine, Wire(at), WIDTH[type_])), order)
-        case Get(type_, place):
-            return arithmetic.from_bytes(type_, bytes(_field(machine, place, WIDTH[type_])))
-        case Used() | Capacity() | Told() | Register():
-            return _known(machine, expr)
-        case Unary(function, operand):
-            return arithmetic.unary(type_of(operand), function, _value(machine, operand))
-        case Binary(op, left, right):
-            return arithmetic.binary(type_of(left), op, _value(machine, left), _value(machine, right))
-        case Compare(op, left, right):
-            return arithmetic.compare(op, _value(machine, left), _value(machine, right))
-        case Fits(op, left, right):
-            return arithmetic.fits(op, _integer(machine, left), _integer(machine, right))
-        case Convert(type_, operand) | Bits(type_, operand):
-            value = _value(machine, operand)
-            is_bits = isinstance(expr, Bits)
-            return arithmetic.same_bits(type_, type_of(operand), value) if is_bits else arithmetic.convert(type_, value)
-        case Select(condition, then, otherwise):
-            chosen, other = _value(machine, then), _value(machine, otherwise)
-            return chosen if _value(machine, condition) else other
-        case IsText(address, size):
-            return _is_text(bytes(_bytes(machine, address, _integer(machine, size))))
-        case Nearest() | Digits() | Scale():
-            return _decimal(machine, expr)
-        case _:
-            assert_never(expr)
-
-
-def _known(machine: _Machine, expr: Known) -> int:
-    match expr:
-        case Used(lane):
-            return machine.used[lane]
-        case Capacity(lane):
-            return machine.capacities[lane]
-        case Told(what):
-            return machine.told[what]
-        case Register(number):
-            return machine.registers[number]
-        case _:
-            assert_never(expr)
-
-
-def _decimal(machine: _Machine, expr: Nearest | Digits | Scale) -> Value:
-    match expr:
-        case Nearest(address, size, exponent):
-            return decimals.nearest(bytes(_bytes(machine, address, _integer(machine, size))), _integer(machine, exponent))
-        case Digits(value, places):
-            return decimals.digits(type_of(value), float(_value(machine, value)), places)
-        case Scale(value):
-            return decimals.scale(type_of(value), float(_value(machine, value)))
-        case _:
-            assert_never(expr)
-
-
-def _is_text(data: bytes) -> bool:
-    try:
-        data.decode()
-    except UnicodeDecodeError:
-        return False
-    return True
-
-
-def _bytes(machine: _Machine, address: Address, size: int) -> memoryview:
-    """``size`` bytes of the message or of a lane, which must lie inside."""
-    demand(size >= 0, "a negative size")
-    match address:
-        case Wire(at):
-            start = _integer(machine, at)
-            low, high = _integer(machine, BEGIN), _integer(machine, END)
-            demand(low <= start <= high - size, f"[{start}, {start + size}) is outside the message")
-            return machine.message[start : start + size]
-        case Place(lane, row, offset):
-            stride, index = machine.strides[lane], _integer(machine, row)
-            start = index * stride + offset
-            demand(index >= 0 <= offset, "a negative place")
-            demand(start + size <= machine.capacities[lane] * stride, f"row {index} is outside lane {lane}")
-            return machine.lanes[lane][start : start + size]
-        case _:
-            assert_never(address)
-
-
-def _field(machine: _Machine, place: Place, width: int) -> memoryview:
-    """One field of one row."""
-    demand(place.offset + width <= machine.strides[place.lane], "a field outside its row")
-    return _bytes(machine, place, width)
+def _failed(machine: Machine, failure: Failure) -> _Failed:
+    return _Failed(integer(machine, failure.at), failure.site, tuple(integer(machine, i) for i in failure.indices))

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.catalogue.wires import single as single_wire
+from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -22,23 +23,21 @@ from rosetta_jit.kernel.proof.verify import VerificationError
 from rosetta_jit.kernel.shape import is_told, our_functions
 from rosetta_jit.language.check.mapping import Checked, check
 from rosetta_jit.language.function import files_of_offered
-from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
+from rosetta_jit.language.imports.search import Reading, SearchPath
 from rosetta_jit.language.parse.mapping import parse as parse_mapping
-from rosetta_jit.language.parse.unit_file import SUFFIX
 from rosetta_jit.lowering.lower import Mapped, lower
 from rosetta_jit.lowering.writer import TooManyStatementsError
-from rosetta_jit.model.expansion import excess
 from rosetta_jit.model.layout import Layout, layout
-from rosetta_jit.model.relax import without_text
-from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Ref, Schema, Struct, same_name
+from rosetta_jit.model.serial import to_plain
+from rosetta_jit.model.types import Ref, Schema, Struct
 from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept import kept_of
 from rosetta_jit.pipeline.request import ByteOrder
-from rosetta_jit.pipeline.similar_types import similar_types
 from rosetta_jit.pipeline.stages import shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
+from rosetta_jit.pipeline.wires import types_of_wire
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
@@ -49,14 +48,13 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
 
     from rosetta_jit.backends.backend import Backend
-    from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.kernel.host import UserFunction
     from rosetta_jit.kernel.ir import Kernel, Site
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.lowering.writer import References
     from rosetta_jit.pipeline.request import GivenFunction, Request
     from rosetta_jit.pipeline.stages import Made
-    from rosetta_jit.source import Source, Span
+    from rosetta_jit.source import Span
     from rosetta_jit.wire.codec import Encoding
 
 
@@ -66,9 +64,7 @@ class Build:
     def __init__(self, request: Request, references: References | None = None) -> None:
         self.request = request
         self.references = references
-        self.reading = Reading()
-        self.files_given = _named_files(self.request)
-        self.search = SearchPath.of(self.request.folders, files=self.files_given)
+        self.sources = files_of(request)
 
     def referring(self, references: References) -> Build:
         """The same, with bytes left in the message."""
@@ -77,14 +73,16 @@ class Build:
     @cached_property
     def checked(self) -> Checked:
         """The mapping, with the parameters of the request."""
-        source = self.search.open(self.request.mapping or "")
-        self.reading.record(source.name, None, source)
-        return check(parse_mapping(source), _readers(self.request), self.search, self.reading, json.loads(self.request.parameters))
+        source = self.sources.search.open(self.request.mapping or "")
+        self.sources.reading.record(source.name, None, source)
+        readers, parameters = readers_of(self.request), json.loads(self.request.parameters)
+        return check(parse_mapping(source), readers, self.sources.search, self.sources.reading, parameters)
 
     @cached_property
     def types(self) -> Types:
-        types = _mapped_types(self) if self.request.mapping is not None else _of_a_size(self.request, _own_types(self))
-        check_given(self.request, types.functions)
+        request = self.request
+        types = _mapped_types(self) if request.mapping is not None else of_a_size(request, declared_types(request, self.sources))
+        check_given(request, types.functions)
         return types
 
     @cached_property
@@ -92,10 +90,10 @@ class Build:
         framework = self.wire_framework
         name = self.request.encoding or next(iter(framework.encodings))
         if name not in framework.encodings:
-            raise _report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
+            raise report(self.request, words.unknown_encoding(name, framework.name, tuple(framework.encodings)))
         encoding = framework.encoding(name)(self.types.wire, self.types.schema, name, self._choices(framework, name))
         if self.request.direction == "encode" and encoding.written is None:
-            raise _report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
+            raise report(self.request, words.ambiguous_encoding(name, tuple(each for each in framework.encodings if each != name)))
         return encoding
 
     @cached_property
@@ -106,7 +104,7 @@ class Build:
         try:
             return self._layout_of(struct.name, self.types.schema)
         except ValueError as error:
-            raise _report(self.request, words.too_large(struct.name, struct.span, str(error))) from error
+            raise report(self.request, words.too_large(struct.name, struct.span, str(error))) from error
 
     def _layout_of(self, name: str, schema: Schema) -> Layout:
         """Where the fields of a struct lie."""
@@ -127,7 +125,7 @@ class Build:
         try:
             return self._optimised(kernel)
         except VerificationError as error:
-            raise _report(self.request, words.unproven(self._span, str(error))) from error
+            raise report(self.request, words.unproven(self._span, str(error))) from error
 
     def _optimised(self, kernel: Kernel) -> Kernel:
         """The kernel after the passes; VerificationError if it cannot be proven safe."""
@@ -142,7 +140,7 @@ class Build:
                 self.encoding, self.layout, direction, name=types.wire.name, mapped=mapped, borrow=borrow, references=self.references
             )
         except TooManyStatementsError as error:
-            raise _report(self.request, words.too_many_statements(self._span, str(error))) from error
+            raise report(self.request, words.too_many_statements(self._span, str(error))) from error
 
     @property
     def _span(self) -> Span | None:
@@ -152,19 +150,19 @@ class Build:
     def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
         types = self.types
         ends = Ref(types.holder.name), Ref(types.wire.name)
-        return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial))
+        return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial), share=types.share)
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """What the request says about the encoding, if the encoding leaves it to say."""
         request = self.request
         if request.byte_order not in (None, *get_args(ByteOrder)):
-            raise _report(request, words.unknown_byte_order(request.byte_order))
+            raise report(request, words.unknown_byte_order(request.byte_order))
         if request.byte_order is not None and encoding not in framework.byte_orders:
-            raise _report(request, words.fixed_byte_order(encoding))
+            raise report(request, words.fixed_byte_order(encoding))
         known = tuple(framework.leniencies.get(encoding, ()))
         for name in request.lenient:
             if name not in known:
-                raise _report(request, words.unknown_leniency(name, encoding, known))
+                raise report(request, words.unknown_leniency(name, encoding, known))
         return Choices(request.byte_order, frozenset(request.lenient))
 
     # --- frameworks --------------------------------------------------------------------------------------------------
@@ -184,7 +182,7 @@ class Build:
 
     def _framework(self, struct: Struct) -> Framework:
         """The framework whose IDL declares a type."""
-        readers = _readers(self.request)
+        readers = readers_of(self.request)
         owner = readers.owner(struct.span.source.name) if struct.span is not None else None
         return owner or readers.frameworks[self.request.framework or ""]
 
@@ -195,7 +193,7 @@ class Build:
         """The one that was asked for, or LLVM."""
         found = backend_named(self.request.backend)
         if found is None:
-            raise _report(self.request, words.unknown_backend(self.request.backend or "", tuple(installed_backends())))
+            raise report(self.request, words.unknown_backend(self.request.backend or "", tuple(installed_backends())))
         return found
 
     @cached_property
@@ -215,7 +213,7 @@ class Build:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
-        state = json.dumps(self.header["state"])
+        state = json.dumps([self.header["state"], self.wires, self.header["wire"]])
         return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), state, holder, *kernels, *digests])
 
     @cached_property
@@ -236,6 +234,8 @@ class Build:
             "state": kept_of(self.kernels, {"": self.types.state}),
             "host": our_functions(self.kernels),
             "limit": self.limit,
+            "wires": self.wires,
+            "wire": None if self.types.share is None else self.types.share.number,
         }
 
     @property
@@ -245,6 +245,11 @@ class Build:
         if said is not None:
             return said
         return MAX_PIXEL_BYTES if our_functions(self.kernels) else GRACE_BYTES
+
+    @property
+    def wires(self) -> list[str]:
+        """The names of the mapping's wires, of which the program's own is one; none where it has one wire."""
+        return [] if self.request.mapping is None else [each.name for each in self.checked.mapping.wires]
 
     def check_functions(self) -> tuple[str, ...]:
         """The names of the user's functions whose code has addresses of this process. MappingError where one is not what is declared."""
@@ -264,12 +269,12 @@ class Build:
 
     def files(self) -> dict[str, str | None]:
         """The files that were read, by digest, and those that would have been read instead if they existed."""
-        in_memory = self.files_given
+        in_memory = self.sources.given
         found: dict[str, str | None] = {}
-        for lookup in self.reading.lookups:
+        for lookup in self.sources.reading.lookups:
             if lookup.found not in in_memory:
-                found |= dict.fromkeys(self.search.preferred(lookup), None)
-        for lookup in self.reading.lookups:
+                found |= dict.fromkeys(self.sources.search.preferred(lookup), None)
+        for lookup in self.sources.reading.lookups:
             if lookup.found not in in_memory:
                 found[lookup.found] = lookup.digest
         offered = files_of_offered() if self.request.mapping is not None else ()
@@ -304,6 +309,11 @@ def _mapped_types(build: Build) -> Types:
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
+    if checked.mapping.wires:
+        return types_of_wire(checked, request, _both(checked), rules)
+    if request.wire is not None:
+        span = checked.mapping.wire_span
+        raise MappingError((unknown_wire(span, request.wire, ()) if request.wire else single_wire(span),))
     return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions, checked.state)
 
 
@@ -312,91 +322,7 @@ def _both(checked: Checked) -> Schema:
     return Schema({**holder.types, **wire.types}, constants={**holder.constants, **wire.constants})
 
 
-def _own_types(build: Build) -> Types:
-    request = build.request
-    for name in json.loads(request.parameters):
-        raise _report(request, needless(name))
-    if request.plain is not None:
-        type_, schema = from_plain(json.loads(request.plain))
-        struct = schema.resolve(type_)
-        assert isinstance(struct, Struct)
-        return Types(struct, struct, schema, None)
-    schema = _imported(build)
-    if "text" in request.lenient:
-        schema = without_text(schema)
-    found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
-    if not found:
-        why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
-        near = () if request.imports or build.files_given else similar_types(request.type or "", _readers(request), build.search)
-        raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", (*schema.types, *near)),))
-    return Types(found[0], found[0], schema, None)
-
-
-def _of_a_size(request: Request, types: Types) -> Types:
-    """Types that can be laid out and compiled; those of a mapping are checked with it."""
-    why = excess(types.holder, types.schema)
-    if why:
-        raise _report(request, words.too_large(types.holder.name, types.holder.span, why))
-    return types
-
-
-def _named_files(request: Request) -> dict[str, str]:
-    """The files that came as texts. One without a name declares the type, in the language of the framework that is asked for."""
-    files = dict(request.files)
-    if "" in files:
-        if request.encoding is None and request.framework is None:
-            raise _report(request, words.nameless_schema())
-        text = files.pop("")
-        files[_readers(request).likely[0].file_of(request.type or "schema", text)] = text
-    return files
-
-
-def _readers(request: Request) -> Readers:
-    readers = Readers(installed(), request.framework, request.encoding)
-    if request.framework is not None and request.framework not in readers.frameworks:
-        raise _report(request, words.unknown_framework(request.framework, tuple(readers.frameworks)))
-    return readers
-
-
-def _imported(build: Build) -> Schema:
-    """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
-    request, readers = build.request, _readers(build.request)
-    asked = request.type or ""
-    given = tuple(name for name in build.files_given if not name.endswith(SUFFIX))
-    names = request.imports or given or tuple(readers.guesses(asked))
-    types: dict[str, Any] = {}
-    constants: dict[str, Any] = {}
-    left_out: dict[str, Any] = {}
-    for name in names:
-        source = _named(name, readers, build.search) if request.imports else build.search.find(name)
-        if source is not None:
-            build.reading.record(name, None, source)
-            end = readers.find(source.name)
-            if end is None:
-                raise SchemaError((words.unknown_suffix(name, readers.suffixes),))
-            found = end(source, build.search.loader(build.reading, source))
-            types |= found.types
-            constants |= found.constants
-            left_out |= found.left_out
-            if not request.imports and not request.files and any(same_name(each, asked) for each in types):
-                break
-        elif request.imports:
-            raise SchemaError((words.no_such_file(name, tuple(map(str, build.search.folders))),))
-    return Schema(types, constants=constants, left_out=left_out)
-
-
-def _named(name: str, readers: Readers, search: SearchPath) -> Source | None:
-    """The file that the user names: by its path, or by a type that it declares."""
-    found = search.named(name)
-    homes = () if found is not None or readers.find(name) is not None else readers.homes(name)
-    return found or next((source for home in homes if not refusal(home) and (source := search.find(home)) is not None), None)
-
-
 def plain_site(site: Site) -> list[Any]:
     """A site as the headers of programs have it."""
     parts = [[part.offset, part.size, part.path, part.step] for part in site.parts]
     return [site.kind, site.path, site.detail, site.line, parts, site.detail_lane]
-
-
-def _report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:
-    return (MappingError if request.mapping is not None else SchemaError)((diagnostic,))

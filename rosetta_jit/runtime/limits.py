@@ -16,6 +16,12 @@ MAX_READINGS = 100
 MAX_SPARES = 8
 """holders that a program keeps for objects of other classes: one for each thread that uses it for those at the same time"""
 
+MAX_ENDED = 8
+"""holders of one layout that have ended, whose memory waits for new ones"""
+
+MAX_ENDED_BYTES = 1 << 13
+"""bytes of the memory of each of them"""
+
 MAX_CLASSES = 64
 """classes of objects of which it is remembered how they are read: a program that makes classes all the time does not keep them alive"""
 

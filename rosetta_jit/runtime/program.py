@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rosetta_jit.kernel.state import NOW, NUMBER
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.attributes.code import functions
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.attributes.makers import maker
 from rosetta_jit.runtime.callable import MADE, Context, bind_call, builtin_of
 from rosetta_jit.runtime.holder.message import Message
 from rosetta_jit.runtime.holder.objects.shapes import is_message_like
@@ -58,6 +59,10 @@ class Loaded:
         How many bytes of a lane a message may ask for, whatever its own size.
     state
         What it keeps from one message to the next.
+    wires
+        The names of the mapping's wires, where it has several.
+    wire
+        Of a decoder, the number of the one among them whose messages it reads; None where messages fill the whole holder.
     """
 
     holder_type: type[Holder]
@@ -70,6 +75,8 @@ class Loaded:
     told: bool = False
     limit: int = 0
     state: Kept = NOTHING_KEPT
+    wires: tuple[str, ...] = ()
+    wire: int | None = None
 
 
 def entry_of(library: Library | None, state: Kept) -> int | None:
@@ -176,17 +183,33 @@ class Program(Told):
 
     _loaded: Loaded
     _holder: Holder
+    _owners: dict[str, Any]
     _plan: Plan
 
-    def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
+    def _bind(self, loaded: Loaded, slow: Callable[..., object], beside: Program | None = None) -> None:
+        """Become a loaded program; ``beside`` is one for another wire, with which it shares its own holder, and its state."""
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded, self._asks, self._registers = loaded, loaded.told, loaded.state.registers()
-        self._holder = loaded.holder_type()
+        self._loaded, self._asks = loaded, loaded.told
+        if beside is None:
+            self._registers, self._holder, self._owners = loaded.state.registers(), loaded.holder_type(), {}
+        else:
+            self._registers, self._holder, self._owners = beside.shared_()
         self._plan = loaded.holder_type.family_.plan
+        if library() is not None:
+            vars(self)["new"] = maker(loaded.holder_type, self._plan)
         lanes = self._holder.lanes_
         context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers))
         bind_call(self, entry_of(loaded.library, loaded.state), context)
+
+    @property
+    def wires_(self) -> tuple[str, ...]:
+        """The names of the mapping's wires, where it has several."""
+        return self._loaded.wires
+
+    def shared_(self) -> tuple[Registers | None, Holder, dict[str, Any]]:
+        """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
+        return self._registers, self._holder, self._owners
 
     @property
     def state(self) -> Mapping[str, bool | int | float]:
@@ -197,32 +220,26 @@ class Program(Told):
         InUse
             Another thread's call of the program has not returned.
         """
-        return {} if self._registers is None else self._registers.shown()
+        if self._registers is None:
+            return {}
+        return {name: value for name, value in self._registers.shown().items() if name.isidentifier()}
 
     @property
     def holder_type(self) -> type[Holder]:
         """The class of the holders that this program fills or reads."""
         return self._loaded.holder_type
 
-    def new(self) -> Any:
+    def new(self) -> Any:  # where there is compiled code, that does it, as an attribute of each program
         """A holder of one's own, with room for what has been decoded until now, unless that is much."""
-        own, family, roomy, spawn, holder_type, recipe = self._latest
-        if own is self._plan and roomy is family.roomy:
-            return spawn(holder_type, recipe)
-        return self._new()
+        own, family = self._plan, self._loaded.holder_type.family_
+        return family.new(own if own.size_bytes > family.roomy.size_bytes else family.roomy)
 
-    _latest: tuple[Any, ...] = (None,) * 6
-
-    def _new(self) -> Any:
-        """A new holder, when there was another plan for the last one."""
-        own, holder_type = self._plan, self._loaded.holder_type
-        family = holder_type.family_
-        plan = own if own.size_bytes > family.roomy.size_bytes else family.roomy
-        recipe = family.recipe(plan)
-        if recipe is None:
-            return family.new(plan)
-        self._latest = own, family, family.roomy, functions()["spawn"], holder_type, recipe
-        return functions()["spawn"](holder_type, recipe)
+    def _need(self, plan: Plan) -> None:
+        """From now on, give new holders the room of a plan."""
+        if plan is not self._plan:
+            self._plan = plan
+            if library() is not None:
+                vars(self)["new"].room(plan)
 
     def _borrow(self) -> Any:
         """An empty holder that nobody else has, until it comes back by `_give_back`."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import operator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.state import ADDRESS, lane_word
+import numpy as np
+
+from rosetta_jit.kernel.state import ADDRESS, CLEAN, EPOCH, VALID, lane_word
 from rosetta_jit.runtime.lanes import MOST_AT_ONCE, Lanes
 from rosetta_jit.runtime.plan import begun, plan
 
@@ -19,9 +21,21 @@ def born(first: Plan) -> Plan:
         return first
     prototype = Lanes(first)
     prototype.bear(first.births, 0, 1)
-    for lane in range(len(first.strides)):
-        prototype.words[lane_word(lane, ADDRESS)] = 0
-    return begun(first, bytes(prototype.memory.first).rstrip(b"\0"))
+    made = begun_as(prototype)
+    assert made is not None, "there is room for what a message is born with"
+    return made
+
+
+def begun_as(lanes: Lanes) -> Plan | None:
+    """The plan of lanes of one message, where it begins as they are; None if they have been given more memory, or are not in order."""
+    plan, state = lanes.plan, lanes.words.tolist()
+    for lane, offset in enumerate(plan.offsets):
+        if state[lane_word(lane, ADDRESS)] != lanes.address + offset or state[VALID] != CLEAN:
+            return None
+        state[lane_word(lane, ADDRESS)] = 0
+    state[EPOCH] = 0
+    content = bytes(lanes.memory.first)[plan.state_bytes :].rstrip(b"\0")
+    return begun(plan, np.array(state, np.int64).tobytes() + content)
 
 
 def roomier(plan_: Plan, lanes: Lanes, most: int = MOST_AT_ONCE) -> Plan:

@@ -57,6 +57,9 @@ MAX_OUTPUTS = 256
 MAX_CONNECTING = 100
 """connections that one YARP port is asked to make and that are not made yet"""
 
+MAX_DATAGRAM_INPUTS = 64
+"""writers by udp and mcast of one YARP port: where one more comes, the one is closed that has been silent for the longest time"""
+
 MAX_SKIPPED_BYTES = 1 << 16
 """bytes of the acknowledgement of a message of YARP, which are skipped"""
 

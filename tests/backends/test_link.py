@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from dataclasses import replace
 
 import pytest
@@ -12,6 +13,8 @@ from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.ir import Binary, Const, Convert, Let, Load, Local, Place, SetField
 from rosetta_jit.kernel.shape import are_straight_and_compute, has_loops_for_vectors
 from rosetta_jit.kernel.terms import BEGIN, ROW, add
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.request import Request
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.code.allowed import ALLOWED
 from rosetta_jit.runtime.code.object_file import undefined_symbols
@@ -86,3 +89,19 @@ def test_a_later_form_of_a_message_is_another_function():
     """Three forms: each but the first is reached from the one before."""
     text = llvm_text([kernels.attempts()], "decode", with_numba=False)
     assert re.findall(r"define internal preserve_mostcc [^@]*@(kernel[.next]*)\(", text) == ["kernel.next", "kernel.next.next"]
+
+
+def test_code_of_many_arrays_takes_time_in_proportion():
+    few, many = (_took(count) for count in (8, 32))
+    assert many < 12 * few  # 64 times as long where LLVM sees a place as the sum of all sizes before it
+
+
+def _took(count):
+    """The CPU time to compile a decoder of arrays whose numbers have their high byte first, each array behind the one before."""
+    text = "\n".join(f"float64[] numbers{number}" for number in range(count))
+    request = Request("decode", type="a/msg/Arrays", files=(("a/msg/Arrays.msg", text),), encoding="cdr", byte_order="big")
+    build = Build(request)
+    kernels = build.kernels
+    started = time.process_time()
+    object_file(kernels, build.entry, with_numba=False)
+    return time.process_time() - started

@@ -45,15 +45,6 @@ def test_check_as_json(capsys):
     assert captured.err == ""
 
 
-def test_compile_reports_both_directions(capsys):
-    assert main(["compile", "a.mapping"]) == 0
-    assert [line.split(" ready")[0] for line in capsys.readouterr().out.splitlines()] == ["a.mapping: decode", "a.mapping: encode"]
-    assert main(["compile", "--direction", "decode", "a.mapping"]) == 0
-    assert len(capsys.readouterr().out.splitlines()) == 1
-    assert main(["compile", "wrong.mapping"]) == 1
-    assert "unknown-field" in capsys.readouterr().err
-
-
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is always full")
 @pytest.mark.parametrize(
     "command", [["explain", "yarp/icub/torso_state.mapping", "--html"], ["decode", "a.mapping", "{recording}", "--npz"]]

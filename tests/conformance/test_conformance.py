@@ -77,7 +77,7 @@ def test_the_runner_itself(tmp_path, backend):
     assert summaries[0] == (str(CASES), "0")
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 @pytest.mark.parametrize(
     ("given", "written"),
     [

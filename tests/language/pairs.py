@@ -9,7 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 
 
 @dataclass

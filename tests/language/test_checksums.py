@@ -11,7 +11,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.functions.checksums import CODES
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 OF_DIGITS = {
     "CRC-8": 0xF4,
     "CRC-8/AUTOSAR": 0xDF,

@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "lab/msg/Goal.msg": """uint8 IDLE=0
 uint8 ACTIVE=1

@@ -78,7 +78,7 @@ def test_elements_come_out_as_said(first):
     assert accepted >= 5
 
 
-@pytest.mark.parametrize("backend", ["numba", "python"])
+@pytest.mark.parametrize("backend", ["llvm", "python"])
 @pytest.mark.parametrize("block", ["unpack", "pack"])
 @pytest.mark.parametrize("seed", [0, 1])
 def test_elements_come_out_as_said_in_each_backend(seed, block, backend):

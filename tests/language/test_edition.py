@@ -11,7 +11,7 @@ import rosetta_jit as rj
 from tests.language.test_parse import LISTING
 from tests.language.test_rounding import PUBLISHED
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "old/msg/Pose.msg": "float32 x\nfloat32 y\nfloat32 z\n",
     "old/msg/State.msg": "string name\nint32 mode\nPose pose\nfloat32[] values\nint32 count\nbool fresh\n",

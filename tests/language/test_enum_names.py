@@ -8,7 +8,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "lab/msg/State.msg": "string mode\nstring[] modes\nstring label\n",
     "lab.proto": """syntax = "proto3"; package lab;

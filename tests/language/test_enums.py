@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 FILES = {
     "rtc.idl": "module RTC { enum Power { OFF, ON, AUTO }; struct Command { Power state; double level; }; };",
     "lab.proto": """syntax = "proto3"; package lab;

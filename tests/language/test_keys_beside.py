@@ -8,7 +8,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 SCHEMAS = {
     "lab/msg/Label.msg": "string text\nint32 id\n",
     "lab/msg/Group.msg": "string[] name\nfloat64[] position\nfloat32[] velocity\n",

@@ -9,7 +9,7 @@ import rosetta_jit as rj
 from tests.language.test_laws import files
 from tests.language.test_parse import LISTING
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 WIRE = '("x" :double) ("a" (:list :double)) ("b" (:list :double)) ("n" :int)'
 HOLDER = "required float x = 1; repeated float a = 2; repeated float b = 3; required float y = 4;"
 RULES = "rules:\n  .x <-> .x * 0.1\n  .a <-> .a\n  .b[] <-> radians(.b[])\n  .y <-> .n\nunpack-rules:\n"

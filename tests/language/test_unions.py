@@ -8,7 +8,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 IDL = """module m {
   struct Point { long x; long y; };
   struct Vec { double a[2]; };
@@ -226,7 +226,7 @@ def test_elements_of_which_each_has_its_own_case(backend):
     assert made(rules, "unpack", backend, "m::Many", x=7, y=5) == {"us": [{"_d": 1, "a": 3}, {"_d": 5, "n": 7.0}]}
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_no_case_in_some_elements(backend):
     idl = """module {0} {{
   @final union Told switch (long) {{ case 1: long long a; case 2: string b; }};

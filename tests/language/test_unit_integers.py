@@ -9,7 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ["llvm", "numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 
 
 class Both:

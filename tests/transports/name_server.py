@@ -9,6 +9,7 @@ import threading
 class NameServer:
     def __init__(self, port=0):
         self.ports = {}
+        self.groups = 0
         names = self
 
         class Request(socketserver.StreamRequestHandler):
@@ -29,6 +30,13 @@ class NameServer:
         match words:
             case ["announce", _]:
                 return "[ok]\r\n"
+            case ["register", "...", "mcast", "...", "..."]:
+                self.groups += 1
+                name = f"/tmp/port/{self.groups}"  # noqa: S108 - no file: so the name server calls them
+                self.ports[name] = f"224.1.1.{self.groups % 250}", 10000 + self.port % 1000
+                return self.line(name) + end
+            case ["bot", "set", _, "owns", name]:
+                return f'"{name}"\r\n'
             case ["register", name, "tcp", host, port]:
                 self.ports[name] = host, port
             case ["unregister", name]:
@@ -42,7 +50,8 @@ class NameServer:
 
     def line(self, name):
         host, port = self.ports[name]
-        return f"registration name {name} ip {host} port {port} type tcp\r\n"
+        kind = "mcast" if host.startswith("224.") else "tcp"
+        return f"registration name {name} ip {host} port {port} type {kind}\r\n"
 
     def close(self):
         self.server.shutdown()

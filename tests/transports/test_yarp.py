@@ -159,7 +159,7 @@ def test_a_port_obeys_its_administration(at, names):
         assert ask_port(out, '[del] "/in"', 2) == '0 "Removed connection from /out to /in"'
         until(lambda: not source.connections and not sink.connections)
         assert ask_port(out, '[del] "/in"', 2).startswith("-1 ")
-        for wrong in ('[add] "/nope"', '[add] "mcast://in"', '[add] "tcp:/no such\tport"', "[add] tcp://in\x07"):
+        for wrong in ('[add] "/nope"', '[add] "shmem://in"', '[add] "tcp:/no such\tport"', "[add] tcp://in\x07"):
             assert ask_port(out, wrong, 2).startswith("-1 ")
         assert ask_port(into, '[add] "/out"', 2).startswith("-1 ")
         assert ask_port(out, "[fly]", 2).startswith("[fail]")

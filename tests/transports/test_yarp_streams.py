@@ -65,10 +65,14 @@ class Port:
 
     def __init__(self, dialect, number=1, replies=None):
         self.name, self.number, self.dialect, self.answers = "/r", number, dialect, replies is not None
-        self.got, self.senders, self.replies = [], [], replies
+        self.got, self.senders, self.groups, self.replies = [], [], [], replies
 
     def came(self, _, sender, carrier):
         self.senders.append((sender, carrier))
+
+    def receive(self, _, sender, group):
+        self.groups.append((sender, group))
+        return self.number
 
     def take(self, message):
         self.got.append((bytes(message.data), message.sent, dict(message.attributes)))

@@ -25,6 +25,7 @@ from rosetta_jit.backends.llvm.expr import (
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
+from rosetta_jit.backends.llvm.swap import swapped
 from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
@@ -52,6 +53,7 @@ from rosetta_jit.kernel.ir import (
     Var,
     While,
 )
+from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 from rosetta_jit.kernel.terms import BEGIN, END, type_of
 
@@ -78,7 +80,7 @@ def _statement(frame: Frame, statement: Stmt) -> None:
         case Expect(condition, failure):
             _check(frame, expression(frame, condition), failure)
         case Let(name, value):
-            frame.locals[name] = expression(frame, value)
+            frame.locals[name] = _value(frame, value)
         case Var(name, value):
             start = expression(frame, value)
             frame.builder.store(start, frame.variable(name, LLVM_TYPES[type_of(value)]).slot)
@@ -113,6 +115,21 @@ def _statement(frame: Frame, statement: Stmt) -> None:
             assert_never(statement)
 
 
+def _value(frame: Frame, value: Expr) -> ir.Value:
+    """The value of a local: of a place in the message LLVM does not know how it was found.
+
+    A place is a sum of the sizes of all that stands before it. What LLVM tries with the summands, for the addresses in each loop, takes
+    time that grows with their third power. An index is no such sum: what depends on it must be seen to grow by the same in each round.
+    """
+    number = expression(frame, value)
+    match value:
+        case Binary("add", left, right) if not isinstance(left, Const) and not isinstance(right, Const):
+            is_index = any(isinstance(frame.locals[name], ir.PhiInstr) for name in locals_in(value))
+            return number if is_index or type_of(left) != "i64" else forgotten(frame.builder, number)
+        case _:
+            return number
+
+
 def _keep(frame: Frame, registers: tuple[tuple[int, Expr], ...]) -> None:
     """Let registers hold other values from now on, all of which are computed from the old ones."""
     values = [expression(frame, value) for _, value in registers]
@@ -122,6 +139,8 @@ def _keep(frame: Frame, registers: tuple[tuple[int, Expr], ...]) -> None:
 
 def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
     match statement:
+        case For() if frame.is_rare and swapped(frame, statement):
+            pass
         case For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
         case While():

@@ -30,6 +30,8 @@ class Structure(Holder):
 
     __slots__ = ()
 
+    begins_alike_ = True
+
     members_: ClassVar[tuple[str, ...]] = ()
     union_: ClassVar[Union | None] = None
 

@@ -19,7 +19,6 @@ from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int,
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.wire.align import ANYWHERE, ORIGIN, Phase, leading, settle
 from rosetta_jit.wire.codec import (
-    MAX_OPEN_SIZES,
     Align,
     Blob,
     Cases,
@@ -42,9 +41,8 @@ from rosetta_jit.wire.codec import (
     Seq,
     Table,
     Utf16,
-    open_sizes,
-    recurses,
 )
+from rosetta_jit.wire.recursion import MAX_OPEN_SIZES, open_sizes, recurses
 from rosetta_jit.wire.size import WIDTH
 
 if TYPE_CHECKING:
@@ -94,6 +92,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
         ending=_ending(name, choices),
         spare=spare,
         forgivable=PADDING_OF_PAYLOADS,
+        rare=len(attempts) - 1,  # no machine that is still built writes big-endian CDR unless told to
     )
 
 

@@ -43,6 +43,8 @@ class ProtobufMessage(Holder):
 
     __slots__ = ()
 
+    begins_alike_ = True
+
     DESCRIPTOR: ClassVar[MessageDescriptor]
     requires_: ClassVar[bool]
     programs_: ClassVar[Programs | None] = None

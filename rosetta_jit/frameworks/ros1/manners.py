@@ -55,6 +55,8 @@ class RosMessage(Holder):
 
     __slots__ = ()
 
+    begins_alike_ = True
+
     programs_: ClassVar[Programs | None] = None
 
     def __init_subclass__(cls, **options: Any) -> None:

@@ -38,6 +38,8 @@ class Ros2Message(Holder):
 
     __slots__ = ()
 
+    begins_alike_ = True
+
     programs_: ClassVar[Programs | None] = None
     defaults_: ClassVar[dict[str, Any]] = {}
     fields_: ClassVar[dict[str, str]] = {}

@@ -18,7 +18,8 @@ from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.proof.symbolic import linear
-from rosetta_jit.kernel.shape import bound_names, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.kernel.shape import bound_names, expressions_of, statements
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -139,26 +140,25 @@ def changed_names(body: Block) -> set[str]:
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
 
 
-def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str]) -> set[Guess]:
+def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], reads: dict[int, set[str]]) -> set[Guess]:
     """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps.
 
-    What grows in each round is tried all the same: a loop around this one may grow by it.
+    What grows in each round is tried all the same: a loop around this one may grow by it. ``reads`` keeps the names that statements read,
+    by their ids: those of a loop are asked for again by each loop around it.
     """
     users: dict[str, set[str]] = {}
     assigned: dict[str, list[set[str]]] = {}
     for stmt, _ in statements(body):
-        read = {name for expr in expressions_of(stmt) for name in _names(expr)}
+        read = reads.get(id(stmt))
+        if read is None:
+            read = reads[id(stmt)] = set[str]().union(*map(locals_in, expressions_of(stmt)))
         if isinstance(stmt, Assign):
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
             users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
-    told = {name for expr in said for name in _names(expr)} - set(() if measure is None else _names(measure))
+    told = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
     variables = [name for name in assigned if name in known]
     return {Guess(name, 2, 1) for name in variables if name in told or not all(map(_made_of(name, users).intersection, assigned[name]))}
-
-
-def _names(expr: Expr) -> Iterator[str]:
-    return (part.name for part in subexpressions(expr) if isinstance(part, Local))
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:

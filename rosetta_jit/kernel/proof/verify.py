@@ -70,6 +70,7 @@ class _Walk:
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, Stmt] = field(default_factory=dict[int, "Stmt"])
     needed: set[int] = field(default_factory=set[int])
+    reads: dict[int, set[str]] = field(default_factory=dict[int, "set[str]"])
 
 
 def verify(kernel: Kernel, record: Record | None = None) -> None:
@@ -344,6 +345,6 @@ def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
         said, measure = (loop.invariant, loop.measure) if isinstance(loop, While) else ((), None)
-        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals)
+        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.reads)
     variable = loop.variable if isinstance(loop, For) else ""
     walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)

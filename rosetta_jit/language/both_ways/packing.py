@@ -98,6 +98,7 @@ class Packing:
         found = self.rules(rules, loops)
         if self.known.budget.parts < 0:
             self.problems.append(words.too_complex(rules[0].span))
+            return ()  # what was found is too large to be looked at, too
         return found
 
     # --- rules ---------------------------------------------------------------------------------------------------------

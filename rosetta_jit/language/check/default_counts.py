@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import rest as words
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import Assign, Const, Default, FieldStep, For, SetLength, When
 from rosetta_jit.model.types import Array, Bytes, Int, Struct

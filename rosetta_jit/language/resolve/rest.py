@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import rest as words
 from rosetta_jit.language.limits import MAX_DEFAULTS
 from rosetta_jit.language.places import field_names, places_in, shown_names, shown_place, value_inside
 from rosetta_jit.language.typed import INT64, Assign, Const, FieldStep, Ignore, IndexStep, Place, SetLength

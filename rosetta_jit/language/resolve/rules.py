@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.catalogue import layouts
 from rosetta_jit.catalogue import resolve as words
+from rosetta_jit.catalogue import rest as about_rest
 from rosetta_jit.catalogue import state as states
 from rosetta_jit.language.arrays.elementwise import elementwise
 from rosetta_jit.language.conversions import FLOAT64, describe, is_single, same
@@ -103,6 +104,9 @@ def resolve(
     """
     problems: list[Diagnostic] = []
     holder_type = checked_message(holder, mapping.holder_type, mapping.holder_span, problems)
+    unknown = [each for each in mapping.wires if checked_message(wire, each.type, each.span, problems) is None]
+    if unknown:
+        return tuple(problems)
     wire_type = checked_message(wire, mapping.wire_type, mapping.wire_span, problems)
     if holder_type is None or wire_type is None:
         return tuple(problems)
@@ -144,7 +148,7 @@ class _Block:
         typed = [made for rule in rules for made in self.made(rule, scope)]
         found = tuple(rule for rule in typed if rule is not None)
         same = [rule for rule in rules if isinstance(rule, model.SameNames)]
-        scope.problems.extend(words.repeated_same_names(rule.span) for rule in same[1:])
+        scope.problems.extend(about_rest.repeated_same_names(rule.span) for rule in same[1:])
         return lengths_first(found if not same else (*found, *self.same_names(same[0], found, scope)))
 
     def same_names(self, rule: model.SameNames, others: tuple[Rule, ...], scope: Scope) -> list[Rule]:
@@ -158,7 +162,7 @@ class _Block:
         taken |= {step.name for each in rule.renames for step in each.place.steps[:1] if isinstance(step, expr.Member)}
         wanted = [field.name for field in aim.fields if field.name in names - taken and field.constant is None]
         if not wanted and not rule.renames:
-            scope.problems.append(words.no_same_names(rule.span, aim.name, origin.name))
+            scope.problems.append(about_rest.no_same_names(rule.span, aim.name, origin.name))
         return [each for made in rules_of(rule, wanted, scope) for each in self.same_name(made, rule, scope)]
 
     def same_name(self, rule: model.Assignment, names: model.SameNames, scope: Scope) -> list[Rule]:
@@ -214,7 +218,7 @@ class _Block:
             case model.SameNames():
                 return None  # when all other rules of the block are known
             case model.Rest():
-                scope.problems.append(words.rest_in_block(rule.span, rule.word))
+                scope.problems.append(about_rest.rest_in_block(rule.span, rule.word))
                 return None
             case model.Relation() | model.Arranged() | model.Several():
                 raise AssertionError(rule)
@@ -229,7 +233,7 @@ class _Block:
         if isinstance(rule, model.Ignore):
             return Ignore(place, rule.span)
         if has_array(place.type, scope.messages[scope.target].schema, told=True):
-            scope.problems.append(words.no_default(rule.span, describe(place.type)))
+            scope.problems.append(about_rest.no_default(rule.span, describe(place.type)))
             self.broken.append(field_names(place))
             return None
         return Default(place, rule.span)

@@ -21,7 +21,8 @@ from rosetta_jit.lowering.limits import MAX_RECURSION, MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, block, integer
 from rosetta_jit.model.layout import LINK_WORDS
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.wire.codec import MAX_OPEN_SIZES, Cases, Delimited, Maybe, Recursion, Repeat, Seq, open_sizes, recurses
+from rosetta_jit.wire.codec import Cases, Delimited, Maybe, Recursion, Repeat, Seq
+from rosetta_jit.wire.recursion import MAX_OPEN_SIZES, open_sizes, recurses
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,6 +1,6 @@
 """The leaves of a codec: the only place that asks for the direction.
 
-A number is loaded, stored, or counted; a constant is expected, stored, or counted; a count is read and checked, or written.
+A number is loaded, stored, or counted; a constant is expected, stored, or counted.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from rosetta_jit.kernel.ir import (
 )
 from rosetta_jit.kernel.terms import add, index, mul, type_of
 from rosetta_jit.lowering.codec.computed import evaluate
+from rosetta_jit.lowering.codec.counts import LIMITS, agrees, as_scalar, read_count, write_count
 from rosetta_jit.lowering.codec.fields import scalar_name
-from rosetta_jit.lowering.limits import MAX_SIZE
 from rosetta_jit.lowering.writer import Where, Writer, integer
 from rosetta_jit.wire.codec import Align, Blob, Computed, Constant, Number, Padding, Table, Utf16
 
@@ -38,12 +38,8 @@ if TYPE_CHECKING:
 
     from rosetta_jit.lowering.codec.fields import Fields
     from rosetta_jit.model import expr
-    from rosetta_jit.wire.codec import Count
 
 Leaf = Number | Table | Constant | Computed | Padding | Align | Blob | Utf16
-
-LIMITS = {"i8": 1 << 7, "u8": 1 << 8, "i16": 1 << 15, "u16": 1 << 16, "i32": 1 << 31, "u32": 1 << 32}
-"""The first count that a number on the wire cannot carry."""
 
 SHOWN_NUMBERS = 12
 """How many numbers of a table an error lists."""
@@ -86,7 +82,7 @@ def _number(writer: Writer, fields: Fields, number: Number) -> None:
         writer.advance(WIDTH[scalar])
     else:
         fitting = value if number.held is None else _fitting(writer, where, value, scalar, writer.position)
-        writer.store(_as(scalar, fitting), where, number.order)
+        writer.store(as_scalar(scalar, fitting), where, number.order)
 
 
 def _fitting(writer: Writer, where: Where, value: Expr, target: str, at: Expr) -> Expr:
@@ -123,7 +119,7 @@ def _table(writer: Writer, fields: Fields, table: Table) -> None:
         return
     known, wire = _translated(writer.let("code", integer(value)), [(value, number) for number, value in table.pairs])
     writer.expect(known, "range", where, "the wire has no word for this value")
-    writer.store(_as(scalar, wire), where, table.order)
+    writer.store(as_scalar(scalar, wire), where, table.order)
 
 
 def _implied(writer: Writer, fields: Fields, table: Table) -> None:
@@ -183,19 +179,11 @@ def _computed(writer: Writer, fields: Fields, path: tuple[str, ...], scalar: Sca
         return
     if writer.direction == "decode":
         fields.put(path, writer.load(scalar, where, order))
-        writer.deferred.append(lambda: _agrees(writer, fields, fields.get(path), value, where, "constant"))
+        writer.deferred.append(lambda: agrees(writer, fields, fields.get(path), value, where, "constant"))
     else:
         expected = evaluate(value, fields, writer, where)
         _in_range(writer, where, expected, scalar)
-        writer.store(_as(scalar, expected), where, order)
-
-
-def _agrees(writer: Writer, fields: Fields, found: Expr | None, value: expr.Expr, where: Where, kind: str) -> None:
-    """Checked when the message has been read, since any of its fields may determine the value."""
-    assert found is not None
-    known = writer.let("found", integer(found))
-    expected = evaluate(value, fields, writer, where)
-    writer.expect(Compare("eq", known, expected), kind, where, "must agree with the fields that determine it")
+        writer.store(as_scalar(scalar, expected), where, order)
 
 
 def _padding(writer: Writer, where: Where, scalar: Scalar, value: int, order: str) -> None:
@@ -308,74 +296,7 @@ def _without_terminator(writer: Writer, total: Expr, where: Where) -> Expr:
     return writer.let("length", Binary("sub", total, index(1)))
 
 
-def read_count(writer: Writer, fields: Fields, path: tuple[str, ...], count: Count, kind: str, *, least: int = 0) -> Expr:
-    """A count that has come: not negative, and what the schema says it must be. ``least`` are counted, but are not of the value."""
-    where, at = fields.shown(path), writer.position
-    found = _told(writer, fields, count, where) if count.scalar is None else _counted(writer, count, where, least)
-    if count.maximum is not None:
-        writer.expect(Compare("le", found, index(count.maximum + least)), kind, where, f"at most {count.maximum}", at=at)
-    if isinstance(count.value, int):
-        if count.scalar is None:
-            return found
-        writer.expect(Compare("eq", found, index(count.value)), kind, where, f"must be {count.value}", at=at)
-        return index(count.value)
-    rule = f"must be at least {least}" if least else "must not be negative"
-    writer.expect(Compare("ge", found, index(least)), kind, where, rule, at=at)
-    value = count.value
-    if value is not None and count.scalar is not None:
-        writer.deferred.append(lambda: _agrees(writer, fields, fields.stored(path).size, value, where, kind))
-    return found
-
-
-def _counted(writer: Writer, count: Count, where: Where, least: int) -> Expr:
-    """A count on the wire, of elements and of the ``least`` that are counted with them."""
-    at = writer.position
-    found = writer.let("count", integer(writer.load(scalar_name(count.scalar or ""), where, count.order)))
-    if count.unit == 1:
-        return found
-    units = add(found, -least)
-    whole = Compare("eq", Binary("rem", units, index(count.unit)), index(0))
-    writer.expect(
-        whole,
-        "length",
-        where,
-        f"must be {least} more than a multiple of {count.unit}" if least else f"must be a multiple of {count.unit}",
-        at=at,
-    )
-    return writer.let("elements", add(Binary("div", units, index(count.unit)), least))
-
-
-def _told(writer: Writer, fields: Fields, count: Count, where: Where) -> Expr:
-    """A count that the type or another field tells."""
-    assert count.value is not None
-    return index(count.value) if isinstance(count.value, int) else writer.let("count", evaluate(count.value, fields.scope, writer, where))
-
-
-def write_count(writer: Writer, fields: Fields, count: Count, value: Expr, where: Where, kind: str = "count", *, extra: int = 0) -> None:
-    """A count to be written, ``extra`` more than the value has; one that the schema fixes, or other fields tell, must be that one."""
-    if count.maximum is not None:
-        writer.expect(Compare("le", value, index(count.maximum)), kind, where, f"at most {count.maximum}")
-    if count.value is not None and not isinstance(count.value, int):
-        agrees = Compare("eq", value, _told(writer, fields, count, where))
-        writer.expect(agrees, kind, where, "must agree with the fields that determine it")
-    value = add(value, extra)
-    if isinstance(count.value, int):
-        writer.expect(Compare("eq", value, index(count.value)), kind, where, f"must be {count.value}")
-    if count.scalar is None:
-        return
-    scalar = scalar_name(count.scalar)
-    if scalar in LIMITS:
-        writer.expect(Compare("lt", value, index(-(-LIMITS[scalar] // count.unit))), "range", where, "too many for the wire")
-    if count.unit != 1:
-        writer.expect(Compare("le", value, index(MAX_SIZE // count.unit)), "range", where, "too many for the wire")
-    writer.store(_as(scalar, add(mul(add(value, -extra), count.unit), extra)), where, count.order)
-
-
 # --- small things -----------------------------------------------------------------------------------------------------------
-
-
-def _as(scalar: Scalar, value: Expr) -> Expr:
-    return value if type_of(value) == scalar else Convert(scalar, value)
 
 
 def _in_range(writer: Writer, where: Where, value: Expr, scalar: Scalar) -> None:

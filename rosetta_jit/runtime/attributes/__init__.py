@@ -6,6 +6,7 @@
     descriptors  attributes of a class that run them
     sequences    arrays that are shown by them
     methods      methods that serialise, as calls of programs
+    makers       what makes holders
     sameness     what is compared of two messages
 
 They do what is common and ask Python for everything else, so that what a field means is said once: in `rosetta_jit.runtime.holder.access`.

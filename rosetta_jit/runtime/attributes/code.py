@@ -20,13 +20,25 @@ if TYPE_CHECKING:
 
     from rosetta_jit.runtime.code.native import Library
 
-FILES = ("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll", "making.ll", "methods.ll", "sameness.ll")
+FILES = (
+    *("message.ll", "boxes.ll", "content.ll", "nested.ll", "sequence.ll", "writing.ll"),
+    *("making.ll", "ending.ll", "methods.ll", "sameness.ll", "taking.ll"),
+)
 READERS = ("get_python", "get_utf8", "get_octets", "get_bytes", "get_numbers", "get_kept")
 WRITERS = ("set_python", "set_utf8", "set_bytes", "set_numbers", "set_texts", "set_attribute")
-FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "same", "extend_texts")
+FUNCTIONS = ("begin", "bind", "restart", "spawn", "equip", "same", "extend_texts", "take", "take_anew")
 SEQUENCES = ("length", "subscript", "iterate", "itself", "next", "end_iterator")
-METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make")
-SYMBOLS = (*(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")), *READERS, *WRITERS, *FUNCTIONS, *SEQUENCES, *METHODS)
+METHODS = ("method_encode", "method_write", "method_decode", "method_parse", "method_make", "method_build")
+HOLDERS = ("end_holder", "call_class", "call_maker")
+SYMBOLS = (
+    *(f"{verb}_{scalar}" for scalar in SCALARS for verb in ("get", "set")),
+    *READERS,
+    *WRITERS,
+    *FUNCTIONS,
+    *SEQUENCES,
+    *METHODS,
+    *HOLDERS,
+)
 """What the library defines."""
 
 CELLS = {"bool": "i8", "f32": "float", "f64": "double"}
@@ -66,7 +78,8 @@ def _assembled(whole: str) -> bytes:
 
 def text() -> str:
     """The module."""
-    return "\n".join([*(_read(file) for file in FILES), *_scalars()])
+    calling = Template(_read("calling.ll")).substitute(HEAP_TYPE_BYTES=type.__basicsize__)
+    return "\n".join([*(_read(file) for file in FILES), calling, *_scalars()])
 
 
 def _scalars() -> Iterator[str]:

@@ -101,6 +101,12 @@ define ptr @restart(ptr %module, ptr %arguments, i64 %given) {
   %fresh = call ptr @pointer(ptr %arguments, i64 8)
   %converted = call { i64, i1 } @unbox_signed(ptr %address.object)
   %address = extractvalue { i64, i1 } %converted, 0
+  call void @restarted(i64 %address, ptr %fresh)
+  call void @Py_IncRef(ptr @_Py_NoneStruct)
+  ret ptr @_Py_NoneStruct
+}
+
+define internal void @restarted(i64 %address, ptr %fresh) {
   %state = inttoptr i64 %address to ptr
   %size = call i64 @word(ptr %fresh, i64 16)
   %data = getelementptr i8, ptr %fresh, i64 32
@@ -123,19 +129,24 @@ each:
   %next = add i64 %behind, %bytes
   br label %head
 done:
-  call void @Py_IncRef(ptr @_Py_NoneStruct)
-  ret ptr @_Py_NoneStruct
+  ret void
 }
 
 ; A recipe is a tuple of what a new holder has: the class of lanes, their plan, the class of arrays, how its root is read, how the memory begins, its
-; addresses, and words: 0 bytes of the arena, 8 how many messages, 16 the first lane's words, 24 the root's table, and where in lanes lie 32 the arena,
-; 40 the plan, 48 the class of arrays, 56 the address, 64 whether they are filled, 72 the number of messages.
+; addresses, words, how its rows begin (`restart`), and a list of lanes that others have left (`ending.ll`), or None. The words are 0 bytes of the
+; arena, 8 how many messages, 16 the first lane's words, 24 the root's table, and where in lanes lie 32 the arena, 40 the plan, 48 the class of arrays,
+; 56 the address, 64 whether they are filled, 72 the number of messages, 80 that list.
 declare ptr @PyByteArray_FromStringAndSize(ptr, i64)
 
 ; spawn(class, recipe) -> a new holder
 define ptr @spawn(ptr %module, ptr %arguments, i64 %given) {
   %class = load ptr, ptr %arguments
   %recipe = call ptr @pointer(ptr %arguments, i64 8)
+  %holder = call ptr @spawned(ptr %class, ptr %recipe)
+  ret ptr %holder
+}
+
+define internal ptr @spawned(ptr %class, ptr %recipe) {
   %holder = call ptr @PyType_GenericAlloc(ptr %class, i64 0)
   %made = icmp ne ptr %holder, null
   br i1 %made, label %fill, label %none
@@ -182,6 +193,20 @@ define internal i1 @equipped(ptr %holder, ptr %recipe) {
   %words.object = call ptr @pointer(ptr %recipe, i64 72)
   %words = getelementptr i8, ptr %words.object, i64 32
   %size = load i64, ptr %words
+  %first = call i64 @word(ptr %words, i64 16)
+  %table = call i64 @word(ptr %words, i64 24)
+  %spares = call ptr @pointer(ptr %recipe, i64 88)
+  %spare = call ptr @unstash(ptr %spares)
+  %is.spare = icmp ne ptr %spare, null
+  br i1 %is.spare, label %again, label %anew
+again:
+  %arena.at = call i64 @word(ptr %words, i64 32)
+  %its.arena = call ptr @pointer(ptr %spare, i64 %arena.at)
+  %same.state = call i64 @begun(ptr %its.arena, ptr %begin, ptr %addresses)
+  %fresh = call ptr @pointer(ptr %recipe, i64 80)
+  call void @restarted(i64 %same.state, ptr %fresh)
+  br label %bind
+anew:
   %lanes = call ptr @PyType_GenericAlloc(ptr %class, i64 0)
   %has.lanes = icmp ne ptr %lanes, null
   br i1 %has.lanes, label %take, label %failed
@@ -192,16 +217,14 @@ take:
 start:
   %memory = call ptr @pointer(ptr %arena, i64 40)
   call void @llvm.memset.p0.i64(ptr %memory, i8 0, i64 %size, i1 false)
-  %state = call i64 @begun(ptr %arena, ptr %begin, ptr %addresses)
+  %new.state = call i64 @begun(ptr %arena, ptr %begin, ptr %addresses)
   %rows = call i64 @word(ptr %words, i64 8)
-  %first = call i64 @word(ptr %words, i64 16)
-  %table = call i64 @word(ptr %words, i64 24)
   call void @fill_slot(ptr %lanes, ptr %words, i64 32, ptr %arena)
   call void @Py_IncRef(ptr %plan)
   call void @fill_slot(ptr %lanes, ptr %words, i64 40, ptr %plan)
   call void @Py_IncRef(ptr %array)
   call void @fill_slot(ptr %lanes, ptr %words, i64 48, ptr %array)
-  %address.object = call ptr @PyLong_FromUnsignedLongLong(i64 %state)
+  %address.object = call ptr @PyLong_FromUnsignedLongLong(i64 %new.state)
   call void @fill_slot(ptr %lanes, ptr %words, i64 56, ptr %address.object)
   %filled = call ptr @box_bool(i8 1)
   call void @fill_slot(ptr %lanes, ptr %words, i64 64, ptr %filled)
@@ -210,11 +233,20 @@ start:
   %one = icmp ne ptr %address.object, null
   %two = icmp ne ptr %rows.object, null
   %whole = and i1 %one, %two
-  br i1 %whole, label %bind, label %drop
+  br i1 %whole, label %offer, label %drop
+offer:
+  %are.kept = icmp ne ptr %spares, @_Py_NoneStruct
+  br i1 %are.kept, label %note, label %bind
+note:
+  call void @keep(ptr %spares)
+  call void @fill_slot(ptr %lanes, ptr %words, i64 80, ptr %spares)
+  br label %bind
 bind:
+  %its = phi ptr [ %spare, %again ], [ %lanes, %offer ], [ %lanes, %note ]
+  %state = phi i64 [ %same.state, %again ], [ %new.state, %offer ], [ %new.state, %note ]
   call void @set_slot(ptr %holder, i64 72, ptr %access)
   call void @set_slot(ptr %holder, i64 80, ptr @_Py_NoneStruct)
-  call void @set_slot(ptr %holder, i64 88, ptr %lanes)
+  call void @set_slot(ptr %holder, i64 88, ptr %its)
   call void @set_slot(ptr %holder, i64 96, ptr @_Py_NoneStruct)
   call void @put(ptr %holder, i64 24, i64 0)
   call void @put(ptr %holder, i64 32, i64 -9223372036854775808)
@@ -223,7 +255,7 @@ bind:
   call void @put(ptr %holder, i64 56, i64 0)
   call void @put(ptr %holder, i64 64, i64 0)
   call void @put(ptr %holder, i64 16, i64 %state)
-  call void @Py_DecRef(ptr %lanes)
+  call void @Py_DecRef(ptr %its)
   %full = call i32 @populate(ptr %holder)
   %good = icmp eq i32 %full, 0
   ret i1 %good

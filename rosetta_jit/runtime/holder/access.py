@@ -7,150 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache as cached
-from typing import TYPE_CHECKING, Any, Protocol, assert_never, cast
+from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import numpy as np
 
 from rosetta_jit.errors import EncodeError
 from rosetta_jit.model.limits import MAX_BORN_BYTES
-from rosetta_jit.runtime.attributes.code import functions, library
-from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
 from rosetta_jit.runtime.holder import arena, coerce, grid, undo, values
-from rosetta_jit.runtime.holder.message import Message, View, beside, element, place, writable
+from rosetta_jit.runtime.holder.message import Family, Getter, Message, Setter, View, beside, element, place, writable
 from rosetta_jit.runtime.holder.record import Bit, Blob, Child, Items, Numbers, Pairs, Record, Scalar, Text
 from rosetta_jit.runtime.limits import MAX_DEPTH
 
 if TYPE_CHECKING:
-    from rosetta_jit.model.types import Schema
-    from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
-    from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.lanes import Lanes
 
-Getter = Callable[[Any], Any]
 Read = Callable[[Message, "Lanes", int], Any]
 """What reads a field of a message that has been found in a row of lanes."""
-Setter = Callable[[Any, Any], None]
-
-
-class Family(Protocol):
-    """What the accessors of one holder class share; `rosetta_jit.runtime.holder.Family` is it."""
-
-    @property
-    def schema(self) -> Schema: ...
-    @property
-    def array_type(self) -> type[np.ndarray[Any, Any]]: ...
-    @property
-    def sequence(self) -> Callable[[View, Entry], Any]: ...
-    @property
-    def mapping(self) -> Callable[[View, Entry], Any]: ...
-    @property
-    def assigns_whole(self) -> bool: ...
-    def access(self, record: Record) -> Access: ...
-    @property
-    def sameness(self) -> Sameness: ...
-    def view_class(self, struct: str) -> type[View]: ...
-    def of_struct(self, struct: str) -> Any: ...
-    def empty_lanes(self) -> Lanes: ...
-    @property
-    def sequences(self) -> OfSequences: ...
-    def kept_of(self, struct: str) -> KeptFields | None:
-        """Where messages of a struct keep what shows their fields; None where no compiled code reads them."""
-        ...
-
-
-class Access:
-    """How the fields of one record are read and written; each accessor is made when first used."""
-
-    __slots__ = ("_kin", "_numbers", "_places", "_sameness", "bind", "family", "getters", "record", "setters", "table")
-
-    def __init__(self, record: Record, family: Family) -> None:
-        self.record = record
-        self.family = family
-        self.getters = _Made(lambda name: getter(record.entries[name], family))
-        self.setters = _Made(lambda name: setter(record.entries[name], family))
-        kept = family.kept_of(record.struct)
-        self._places = None if kept is None else Places(record, self._read, write_field, kept, family.sequences)
-        self._numbers = {name: number for number, name in enumerate(record.entries)}
-        for name in kept.members if kept is not None else ():
-            self._show(name)
-        self.table = 0 if self._places is None else self._places.address
-        """Address of what compiled accessors know of the record's fields; 0 where there are none."""
-        self.bind = None if library() is None else functions()["bind"]
-        """What tells them where a message lies."""
-        self._sameness = 0
-        self._kin: Any = None
-
-    @property
-    def sameness(self) -> int:
-        """Address of the program that compares messages of the record."""
-        if not self._sameness:
-            self._sameness = self.family.sameness.program(self.record)
-        return self._sameness
-
-    @property
-    def kin(self) -> Any:
-        """The family of the record's own holders: messages of one type have the same, whatever they are parts of."""
-        if self._kin is None:
-            self._kin = self.family.of_struct(self.record.struct).family_
-        return self._kin
-
-    def place_of(self, name: str) -> int:
-        """Address of what they know of one field."""
-        return self.table and self.table + PLACE_BYTES * self._numbers[name]
-
-    def _read(self, name: str) -> Getter:
-        """What compiled accessors ask for a field. From then on they know what its value is shown as."""
-        return read_field(name) if _shown(self.record.entries[name]) is None else lambda message: message.access_.read_first(message, name)
-
-    def read_first(self, message: Message, name: str) -> Any:
-        """Read a field whose value, or elements, are shown by views; compiled accessors make them from now on."""
-        self._show(name)
-        return self.getters[name](message)
-
-    def _show(self, name: str) -> None:
-        shown = _shown(self.record.entries[name])
-        if shown is not None and self._places is not None:
-            inner = self.family.access(shown)
-            self._places.show(self._numbers[name], self.family.view_class(shown.struct), inner, inner.table)
-
-    def empty_lanes(self) -> Lanes:
-        """Lanes of the same layout in which everything is absent."""
-        return self.family.empty_lanes()
-
-
-def _shown(entry: Entry) -> Record | None:
-    """The record that the views show which a field, or its elements, are read as."""
-    match entry.node:
-        case Record() as record:
-            return record
-        case Items(element=Record() as record):
-            return record
-        case _:
-            return None
-
-
-class _Made(dict[str, Any]):
-    """A dict that makes what it lacks."""
-
-    __slots__ = ("make",)
-
-    def __init__(self, make: Callable[[str], Any]) -> None:
-        self.make = make
-
-    def __missing__(self, name: str) -> Any:
-        self[name] = made = self.make(name)
-        return made
-
-
-def read_field(name: str) -> Getter:
-    """What a property runs: the getter of the message's own record."""
-    return lambda message: message.access_.getters[name](message)
-
-
-def write_field(name: str) -> Setter:
-    """The same of the setter."""
-    return lambda message, value: message.access_.setters[name](message, value)
 
 
 def getter(entry: Entry, family: Family) -> Getter:

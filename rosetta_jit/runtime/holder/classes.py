@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, cast
 
 import numpy as np
 
 from rosetta_jit.errors import InUse
 from rosetta_jit.kernel.state import CLEAN, VALID, WASTED
 from rosetta_jit.runtime.attributes.code import functions
+from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.holder import arena, grid, values
 from rosetta_jit.runtime.holder.access import raw
 from rosetta_jit.runtime.holder.message import Message, View, in_row, place
@@ -24,16 +25,31 @@ if TYPE_CHECKING:
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.plan import Plan
 
+if TYPE_CHECKING:
+
+    class _HolderClassBase: ...
+
+else:
+    _HolderClassBase = class_of_holder_classes()
+
 _Holder = TypeVar("_Holder", bound="Holder")
 
 
-class HolderClass(type):  # noqa: D101 - its __doc__ is that of its objects
+class HolderClass(_HolderClassBase, type):  # noqa: D101 - its __doc__ is that of its objects
     # The class of holder classes: they list their fields and what is meant to be used, and not what they need for themselves.
 
     __doc__ = cast("str | None", type.__dict__["__doc__"])  # else `pydoc` takes a docstring of this class for that of a holder class
 
     def __dir__(cls) -> list[str]:
         return _listed(cast("type[Holder]", cls), super().__dir__())
+
+    def __setattr__(cls, name: str, value: Any) -> None:
+        if name in ("__init__", "__new__"):
+            call_as_any(cls)
+        super().__setattr__(name, value)
+
+
+let_call(HolderClass)
 
 
 class Holder(Message, metaclass=HolderClass):
@@ -42,6 +58,8 @@ class Holder(Message, metaclass=HolderClass):
     __slots__ = ()
 
     family_: Family
+    begins_alike_: ClassVar[bool] = False
+    """Whether a subclass with a constructor of its own makes the same message each time that it is called without arguments."""
 
     def __init__(self) -> None:
         """An empty message. A holder that is made again is emptied."""  # and not replaced: compiled entries know where its lanes are
@@ -60,6 +78,8 @@ class Holder(Message, metaclass=HolderClass):
         if recipe is not None:
             equip = functions()["equip"]
             family.latest = plan, recipe, equip
+            if plan is family.plan:
+                family.offer()
             return equip(self, recipe)
         return in_row(self, Lanes(plan, family.array_type), family.root, 0)
 
@@ -234,8 +254,10 @@ def settle_lanes(holder: Holder) -> None:
 
 def _contents(holder: Holder) -> tuple[int, int, list[bytes]]:
     """Two words of the state, and the bytes of each lane."""
+    from rosetta_jit.runtime.contents import contents_of  # only pickles need it
+
     lanes, _ = place(holder)
-    return lanes.words[VALID], lanes.words[WASTED], lanes.contents()
+    return lanes.words[VALID], lanes.words[WASTED], contents_of(lanes)
 
 
 def _copied(holder: Holder) -> Lanes:

@@ -14,23 +14,24 @@ import numpy as np
 from rosetta_jit.kernel.state import VALID, WASTED
 from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import from_plain, to_plain
-from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Union
+from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.runtime.attributes import descriptors
 from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.sameness import Sameness
-from rosetta_jit.runtime.holder.access import Access, read_field, write_field
+from rosetta_jit.runtime.holder.access import getter, setter
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass
-from rosetta_jit.runtime.holder.message import OWN_NAMES, View, in_row, recipe
+from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
-from rosetta_jit.runtime.holder.serialising import serialising_methods
-from rosetta_jit.runtime.holder.tree import Tree
+from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
+from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
 from rosetta_jit.runtime.limits import MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.plan import plan
-from rosetta_jit.runtime.room import born, roomier
+from rosetta_jit.runtime.room import begun_as, born, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 from rosetta_jit.startup.sha import sha256
@@ -125,7 +126,7 @@ class Family:
         self.layout = layout(self.type, self.schema)
         self.tree = Tree(self.type, self.schema, self.layout)
         self.plan = born(plan(self.layout, births=self.tree.births))
-        self.roomy = self.plan
+        self.cell = [self.plan]
         self.array_type, self.sequence, self.mapping = manners.array_type, manners.sequence, manners.mapping
         self.assigns_whole = manners.assigns_whole
         self._accesses: dict[int, Access] = {}
@@ -134,6 +135,7 @@ class Family:
         self._recipes: dict[int, tuple[Any, ...]] = {}
         self._sameness = Sameness()
         self.latest: tuple[Any, Any, Any] = None, None, None
+        self._begins_alike, self._offered = False, None
         self._fresh: tuple[Plan | None, Callable[[], Any]] = None, object
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
@@ -156,12 +158,16 @@ class Family:
         members = {"family_": self, "__slots__": (self._mark, *slots), **self.described}
         base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
         methods = {} if code is None else serialising_methods(self)
+        if code is not None and self.manners.base.from_dict.__func__ is Holder.from_dict.__func__:
+            methods["from_dict"] = building_method(self)
         made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
         for each in methods.values():
             each.holder_type = made
         if code is not None:
             self._kept = descriptors.take_slots(made, list(entries.values()))
             descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray)
+            make_quickly(made)
+            self._begins_alike = made.__init__ is Holder.__init__ or made.begins_alike_ is True
         return made
 
     @property
@@ -190,7 +196,7 @@ class Family:
         """The holder class of another struct of the schema, with the same manners."""
         if struct == self.struct.name:
             return self.holder
-        type_ = Ref(struct) if struct in self.schema.types else _written_within(self.struct, self.schema, struct)
+        type_ = Ref(struct) if struct in self.schema.types else written_within(self.struct, self.schema, struct)
         return holder_class(type_, self.schema, self.manners)
 
     def view_class(self, struct: str) -> type[View]:
@@ -206,12 +212,30 @@ class Family:
         """How the fields of a record are read and written."""
         access = self._accesses.get(id(record))
         if access is None:
-            access = self._accesses[id(record)] = Access(record, self)
+            access = self._accesses[id(record)] = Access(record, self, getter, setter)
         return access
 
     def learn_room(self, lanes: Lanes) -> None:
         """Give new holders the room that assignments have taken, unless that is much; more to those that programs make."""
-        self.plan, self.roomy = roomier(self.plan, lanes, MOST_UNASKED), roomier(self.roomy, lanes)
+        plan, self.cell[0] = roomier(self.plan, lanes, MOST_UNASKED), roomier(self.roomy, lanes)
+        if plan is not self.plan:
+            self.plan = plan
+            set_recipe(self.holder, None)
+
+    @property
+    def roomy(self) -> Plan:
+        """The plan of holders that programs make, as far as others have needed room."""
+        return self.cell[0]
+
+    def offer(self) -> None:
+        """Let compiled code make the holders that the class makes without arguments, if they are all alike: as this first one."""
+        if not self._begins_alike:
+            return
+        prototype = self.holder()
+        first = begun_as(prototype.lanes_)
+        if first is not None and prototype.lanes_.plan is self.plan:
+            self._offered = recipe(self.plan, self.array_type, self.root, first)
+            set_recipe(self.holder, self._offered)
 
     @property
     def sameness(self) -> Sameness:
@@ -309,22 +333,6 @@ class Family:
         return view
 
 
-def _written_within(struct: Struct, schema: Schema, name: str) -> Struct:
-    """The struct of that name that is written within the fields of another, without a declaration of its own."""
-    pending: list[Type] = [struct, *schema.types.values()]
-    while pending:
-        match pending.pop():
-            case Struct() as found if found.name == name:
-                return found
-            case Struct(_, fields) | Union(_, fields):
-                pending += [each.type for each in fields]
-            case Array(inner) | Optional(inner) | Map(_, inner):
-                pending.append(inner)
-            case _:
-                pass
-    raise KeyError(name)
-
-
 def _shown(record: Record, base: type) -> list[str]:
     """Fields that become properties: all but those whose names Python or the holder need for themselves."""
     own = {*OWN_NAMES, "family_", "programs_", "_is_native"}
@@ -375,6 +383,8 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     ValueError
         If another version of rosetta_jit has written this, whose lanes are others.
     """
+    from rosetta_jit.runtime.contents import fill  # only pickles need it
+
     family = _MARKED.get(mark)
     if family is None:
         family = family_of(text, manners_at(manners) if isinstance(manners, str) else manners)
@@ -383,5 +393,5 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     holder = family.new(family.plan)
     with holder.lanes_ as lanes:
         lanes.words[VALID], lanes.words[WASTED], content = contents
-        lanes.take_contents(content)
+        fill(lanes, content)
     return holder

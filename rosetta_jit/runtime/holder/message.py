@@ -10,20 +10,27 @@ The attributes that a class needs for itself end with an underscore, so that the
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rosetta_jit.errors import EncodeError, InvalidHolder
 from rosetta_jit.kernel.state import ADDRESS, VALID, lane_word
+from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.attributes.places import PLACE_BYTES, Places
 from rosetta_jit.runtime.callable import ALWAYS, NEVER, bind_state, message_base
 from rosetta_jit.runtime.holder import arena
-from rosetta_jit.runtime.holder.record import Child, Items, Pairs
+from rosetta_jit.runtime.holder.record import Child, Items, Pairs, Record
 from rosetta_jit.runtime.lanes import Lanes
-from rosetta_jit.runtime.limits import MAX_DEPTH
+from rosetta_jit.runtime.limits import MAX_DEPTH, MAX_ENDED, MAX_ENDED_BYTES
 from rosetta_jit.runtime.memory import ALIGNMENT
 from rosetta_jit.runtime.specs import slot_offset
 
 if TYPE_CHECKING:
-    from rosetta_jit.runtime.holder.access import Access
+    import numpy as np
+
+    from rosetta_jit.model.types import Schema
+    from rosetta_jit.runtime.attributes.places import KeptFields, OfSequences
+    from rosetta_jit.runtime.attributes.sameness import Sameness
     from rosetta_jit.runtime.holder.record import Entry
     from rosetta_jit.runtime.plan import Plan
 
@@ -33,6 +40,10 @@ else:
 
 _Message = TypeVar("_Message", bound="Message")
 _FIRST_LANE = 8 * lane_word(0, ADDRESS)
+
+
+Getter = Callable[[Any], Any]
+Setter = Callable[[Any, Any], None]
 
 
 class Message(Base):
@@ -71,6 +82,128 @@ class View(Message):
     __slots__ = ()
 
 
+class Family(Protocol):
+    """What the accessors of one holder class share; `rosetta_jit.runtime.holder.Family` is it."""
+
+    @property
+    def schema(self) -> Schema: ...
+    @property
+    def array_type(self) -> type[np.ndarray[Any, Any]]: ...
+    @property
+    def sequence(self) -> Callable[[View, Entry], Any]: ...
+    @property
+    def mapping(self) -> Callable[[View, Entry], Any]: ...
+    @property
+    def assigns_whole(self) -> bool: ...
+    def access(self, record: Record) -> Access: ...
+    @property
+    def sameness(self) -> Sameness: ...
+    def view_class(self, struct: str) -> type[View]: ...
+    def of_struct(self, struct: str) -> Any: ...
+    def empty_lanes(self) -> Lanes: ...
+    @property
+    def sequences(self) -> OfSequences: ...
+    def kept_of(self, struct: str) -> KeptFields | None:
+        """Where messages of a struct keep what shows their fields; None where no compiled code reads them."""
+        ...
+
+
+class Access:
+    """How the fields of one record are read and written; each accessor is made when first used."""
+
+    __slots__ = ("_kin", "_numbers", "_places", "_sameness", "bind", "family", "getters", "record", "setters", "table")
+
+    def __init__(
+        self, record: Record, family: Family, getter: Callable[[Entry, Family], Getter], setter: Callable[[Entry, Family], Setter]
+    ) -> None:
+        self.record = record
+        self.family = family
+        self.getters = _Made(lambda name: getter(record.entries[name], family))
+        self.setters = _Made(lambda name: setter(record.entries[name], family))
+        kept = family.kept_of(record.struct)
+        self._places = None if kept is None else Places(record, self._read, write_field, kept, family.sequences)
+        self._numbers = {name: number for number, name in enumerate(record.entries)}
+        for name in kept.members if kept is not None else ():
+            self._show(name)
+        self.table = 0 if self._places is None else self._places.address
+        """Address of what compiled accessors know of the record's fields; 0 where there are none."""
+        self.bind = None if library() is None else functions()["bind"]
+        """What tells them where a message lies."""
+        self._sameness = 0
+        self._kin: Any = None
+
+    @property
+    def sameness(self) -> int:
+        """Address of the program that compares messages of the record."""
+        if not self._sameness:
+            self._sameness = self.family.sameness.program(self.record)
+        return self._sameness
+
+    @property
+    def kin(self) -> Any:
+        """The family of the record's own holders: messages of one type have the same, whatever they are parts of."""
+        if self._kin is None:
+            self._kin = self.family.of_struct(self.record.struct).family_
+        return self._kin
+
+    def place_of(self, name: str) -> int:
+        """Address of what they know of one field."""
+        return self.table and self.table + PLACE_BYTES * self._numbers[name]
+
+    def _read(self, name: str) -> Getter:
+        """What compiled accessors ask for a field. From then on they know what its value is shown as."""
+        return read_field(name) if _shown(self.record.entries[name]) is None else lambda message: message.access_.read_first(message, name)
+
+    def read_first(self, message: Message, name: str) -> Any:
+        """Read a field whose value, or elements, are shown by views; compiled accessors make them from now on."""
+        self._show(name)
+        return self.getters[name](message)
+
+    def _show(self, name: str) -> None:
+        shown = _shown(self.record.entries[name])
+        if shown is not None and self._places is not None:
+            inner = self.family.access(shown)
+            self._places.show(self._numbers[name], self.family.view_class(shown.struct), inner, inner.table)
+
+    def empty_lanes(self) -> Lanes:
+        """Lanes of the same layout in which everything is absent."""
+        return self.family.empty_lanes()
+
+
+def _shown(entry: Entry) -> Record | None:
+    """The record that the views show which a field, or its elements, are read as."""
+    match entry.node:
+        case Record() as record:
+            return record
+        case Items(element=Record() as record):
+            return record
+        case _:
+            return None
+
+
+class _Made(dict[str, Any]):
+    """A dict that makes what it lacks."""
+
+    __slots__ = ("make",)
+
+    def __init__(self, make: Callable[[str], Any]) -> None:
+        self.make = make
+
+    def __missing__(self, name: str) -> Any:
+        self[name] = made = self.make(name)
+        return made
+
+
+def read_field(name: str) -> Getter:
+    """What a property runs: the getter of the message's own record."""
+    return lambda message: message.access_.getters[name](message)
+
+
+def write_field(name: str) -> Setter:
+    """The same of the setter."""
+    return lambda message, value: message.access_.setters[name](message, value)
+
+
 def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     """Make a new message show a row of lane 0; False if it shows something already."""
     if access.bind is not None:
@@ -82,11 +215,16 @@ def in_row(message: Message, lanes: Lanes, access: Access, row: int) -> bool:
     return True
 
 
-def recipe(plan: Plan, array_type: type, access: Access) -> tuple[Any, ...]:
-    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do."""
-    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows"))
-    words = struct.pack("=10q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
-    return Lanes, plan, array_type, access, plan.begin, plan.places, words
+def recipe(plan: Plan, array_type: type, access: Access, first: Plan | None = None) -> tuple[Any, ...]:
+    """What a holder of a plan is made of in compiled code (`attributes/making.ll`), which does what `Lanes` and `in_row` do.
+
+    Its memory begins as another plan says, if there is one.
+    """
+    begins = first or plan
+    slots = (slot_offset(vars(Lanes)[name]) for name in ("arena", "plan", "array_type", "address", "is_filled", "rows", "spares"))
+    words = struct.pack("=11q", plan.size_bytes + ALIGNMENT, plan.rows, _FIRST_LANE, access.table, *slots)
+    spares = [None] * MAX_ENDED if plan.fresh and plan.size_bytes <= MAX_ENDED_BYTES else None
+    return Lanes, plan, array_type, access, begins.begin, plan.places, words, begins.fresh, spares
 
 
 def beside(view: _Message, message: Message, access: Access) -> _Message:

@@ -167,6 +167,22 @@ class Tree:
         return node
 
 
+def written_within(struct: Struct, schema: Schema, name: str) -> Struct:
+    """The struct of that name that is written within the fields of another, without a declaration of its own."""
+    pending: list[Type] = [struct, *schema.types.values()]
+    while pending:
+        match pending.pop():
+            case Struct() as found if found.name == name:
+                return found
+            case Struct(_, fields) | Union(_, fields):
+                pending += [each.type for each in fields]
+            case Array(inner) | Optional(inner) | Map(_, inner):
+                pending.append(inner)
+            case _:
+                pass
+    raise KeyError(name)
+
+
 def _shape(length: int | None, element: Node) -> tuple[int, ...]:
     """The shape of an array of arrays of numbers, if every length is fixed."""
     match element:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import socket
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from rosetta_jit.errors import TransportError
@@ -25,6 +26,16 @@ def words_of(command: str) -> list[str]:
     """The words of a command, without quotes."""
     found = [re.sub(r"\\(.)", r"\1", match[1]) if match[1] is not None else match[2] for match in WORD.finditer(command[:2000])]
     return found[:MAX_ADMIN_WORDS]
+
+
+def leave(contact: Contact, name: str, timeout: float) -> None:
+    """Tell a reader that a port sends it no more datagrams; there is nobody to be told that it does not answer."""
+    with suppress(OSError), socket.create_connection((contact.host, contact.port), timeout) as sock:
+        sock.sendall(f"CONNECT admin\r\n~{name}\r\nq\r\n".encode())
+        sock.settimeout(timeout)
+        for _ in range(100):
+            if not sock.recv(4096):
+                return
 
 
 def ask_port(contact: Contact, command: str, timeout: float) -> str:

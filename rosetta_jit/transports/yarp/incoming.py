@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from contextlib import suppress
 from time import time_ns
 from typing import TYPE_CHECKING, Any, Protocol
@@ -12,7 +13,7 @@ from rosetta_jit.transports.feeding import ProtocolError, Until
 from rosetta_jit.transports.limits import MAX_LINE_BYTES
 from rosetta_jit.transports.yarp.bottles import from_text, is_open, to_text
 from rosetta_jit.transports.yarp.stamps import attributes_of
-from rosetta_jit.transports.yarp.wire import ACK, FIRST_CARRIER, TCP, WITH_ACKS, frames, hello_rest, int_of, name_in, yarp_int
+from rosetta_jit.transports.yarp.wire import ACK, FIRST_CARRIER, MCAST, TCP, UDP, WITH_ACKS, frames, hello_rest, int_of, name_in, yarp_int
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -21,10 +22,12 @@ if TYPE_CHECKING:
 
     Reply = Callable[[bytes | None, str | None], object]
 
+_GROUP = struct.Struct(">4BH")
+
 HELLO_S = 10.0
 """How long a connection may say nothing."""
 
-UNKNOWN = b"* Error. Protocol not found.\r\n* This port understands tcp, fast_tcp, text and text_ack.\r\n"
+UNKNOWN = b"* Error. Protocol not found.\r\n* This port understands tcp, fast_tcp, udp, mcast, text and text_ack.\r\n"
 HELP = b"Port command not understood.\r\nType d to send data to the port's owner.\r\nType ? for help.\r\n"
 
 
@@ -40,8 +43,9 @@ class Line(Protocol):
 class Owner(Protocol):
     """The port, as its connections see it.
 
-    `came` and `left` say who sends; `take` gets a message; `asked` gets a question, where the port answers; `administer` answers a command
-    by calling back, perhaps later and from another thread.
+    `came` says who sends; `receive` opens a socket for datagrams, those of a group where there is one, and gives its number; `take` gets a
+    message; `asked` gets a question, where the port answers; `administer` answers a command by calling back, perhaps later and from another
+    thread.
     """
 
     name: str
@@ -51,6 +55,7 @@ class Owner(Protocol):
     answers: bool
 
     def came(self, line: Line, sender: str, carrier: str) -> None: ...
+    def receive(self, line: Line, sender: str, group: tuple[str, int] | None) -> int: ...
     def take(self, message: Message) -> None: ...
     def asked(self, message: Message, reply: Reply) -> None: ...
     def administer(self, command: str, answer: Callable[[str], object]) -> None: ...
@@ -65,21 +70,37 @@ def incoming(port: Owner, line: Line) -> Machine:
     if word in (b"CONNECT ", b"CONNACK "):
         yield from _text(port, line, has_acks=word == b"CONNACK ")
         return
-    if word[:2] != b"YA" or word[6:] != b"RP" or (int_of(first) - FIRST_CARRIER) % 16 != TCP:
+    code = int_of(first) - FIRST_CARRIER if word[:2] == b"YA" and word[6:] == b"RP" else -1
+    if code % 16 not in (TCP, UDP, MCAST):
         line.send(UNKNOWN)
         line.in_time()
         return
-    has_acks = bool(int_of(first) - FIRST_CARRIER & WITH_ACKS)
     sender = yield from hello_rest()
+    if code % 16 == MCAST:
+        *address, number = _GROUP.unpack((yield _GROUP.size))
+        line.in_time()
+        port.receive(line, sender, (".".join(map(str, address)), number))
+        return
     line.in_time()
+    if code % 16 == UDP:
+        line.send(yarp_int(port.receive(line, sender, None)))
+        return
+    carrier = "tcp" if code & WITH_ACKS else "fast_tcp"
     line.send(yarp_int(port.number))
-    port.came(line, sender, "tcp" if has_acks else "fast_tcp")
-    yield from _messages(port, line, sender, has_acks=has_acks)
+    port.came(line, sender, carrier)
+    yield from messages(port, line, sender, carrier)
 
 
-def _messages(port: Owner, line: Line, sender: str, *, has_acks: bool) -> Machine:
+def messages(port: Owner, line: Line | None, sender: str, carrier: str) -> Machine:
+    """Read frames from a stream, or from the pieces of datagrams, which have no line for answers.
+
+    Raises
+    ------
+    ProtocolError
+        What comes is no frame; or a question, by datagrams.
+    """
     channel, most, take = port.name, port.most, port.take
-    carrier = "tcp" if has_acks else "fast_tcp"
+    has_acks = carrier == "tcp"
     _, plain = attributes_of("", sender, carrier)
     while True:
         frame = yield from frames(most)
@@ -88,10 +109,12 @@ def _messages(port: Owner, line: Line, sender: str, *, has_acks: bool) -> Machin
             sent, told = attributes_of(frame.envelope, sender, carrier) if frame.envelope else (None, plain)
             message = Message(frame.payload, channel, None, time_ns(), sent, told)
             if command == "d" and port.answers:
+                if line is None:
+                    raise ProtocolError(f"a question by {carrier}, which has no way back for the answer")
                 port.asked(message, _reply_to(line, ACK if has_acks else b""))
                 continue
             take(message)
-        if has_acks:
+        if has_acks and line is not None:
             line.send(ACK)
         if command == "q":
             return

@@ -79,10 +79,18 @@ class NameServer:
         """Register a port that listens already, and say what it understands."""
         lines = self.ask(f"register {name} tcp {host} {port}")
         for kind in ("offers", "accepts"):
-            self.ask(f"set {name} {kind} tcp fast_tcp text text_ack")
+            self.ask(f"set {name} {kind} tcp fast_tcp udp mcast text text_ack")
         with suppress(TransportError):
             self.ask(f"announce {name}", end=b"\n")  # the only command whose answer has no end line
         return next(filter(None, map(contact_in, lines)), None)
+
+    def register_group(self, owner: str) -> Contact | None:
+        """A group for what a port sends by mcast, with a name of its own."""
+        found = next(filter(None, map(contact_in, self.ask("register ... mcast ... ..."))), None)
+        if found is not None:
+            with suppress(TransportError):  # as a bottle, whose answer has no end line
+                self.ask(f"bot set {owner} owns {found.name}", end=b"\n")
+        return found
 
     def query(self, name: str) -> Contact | None:
         """Where a port of that name listens."""

@@ -12,13 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.errors import TransportError
 from rosetta_jit.transports.connecting import Listener, resolve
-from rosetta_jit.transports.limits import MAX_CONNECTING, MAX_CONNECTIONS, MAX_OUTPUTS
+from rosetta_jit.transports.feeding import ProtocolError
+from rosetta_jit.transports.limits import MAX_CONNECTING, MAX_CONNECTIONS, MAX_DATAGRAM_INPUTS, MAX_OUTPUTS
 from rosetta_jit.transports.loop import loop
 from rosetta_jit.transports.stream import Stream
-from rosetta_jit.transports.yarp.admin import ask_port, quoted, words_of
+from rosetta_jit.transports.yarp.admin import ask_port, leave, quoted, words_of
 from rosetta_jit.transports.yarp.incoming import incoming
+from rosetta_jit.transports.yarp.incoming_datagrams import DatagramInput, receiving
 from rosetta_jit.transports.yarp.names import NAME
 from rosetta_jit.transports.yarp.outgoing import Output
+from rosetta_jit.transports.yarp.outgoing_datagrams import DatagramOutput, Group, told_mcast, told_udp
+from rosetta_jit.transports.yarp.wire import CARRIERS, CONNECTIONLESS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -35,6 +39,7 @@ HEARTBEAT_S = 3.0
 """How often a port looks whether the name server still knows it."""
 
 CONNECT_S = 2.0
+LEAVE_S = 0.5
 
 _NUMBERS = count(1)
 
@@ -75,11 +80,12 @@ class Port:
         self.most: int = options["max_message"]
         self.dialect: str = options["dialect"]
         self.answers = asked is not None
-        self.outputs: dict[str, Output] = {}
+        self.outputs: dict[str, Output | DatagramOutput] = {}
         self._names, self._host, self._carrier, self._counts = names, options["host"], options["carrier"], counts
         self._take, self._asked = take, asked
         self._reads, self._writes = reads, writes
-        self._inputs: dict[Stream, tuple[str, str]] = {}
+        self._inputs: dict[Stream | DatagramInput, tuple[str, str]] = {}
+        self._groups: dict[str, Group] = {}
         self._streams: set[Stream] = set()
         self._seen: set[str] = set()
         self._tasks: deque[Callable[[], object]] = deque()
@@ -106,13 +112,19 @@ class Port:
             if not loop().is_current:
                 each.wait(linger, empty=True)
             self._counts.lose("closed before it was sent", left) if (left := each.close(linger)) else None
+            if isinstance(each, DatagramOutput):
+                leave(each.contact, self.name, LEAVE_S)
         for sender in {sender for sender, _ in tuple(self._inputs.values()) if NAME.fullmatch(sender)}:
             with suppress(TransportError):
                 if contact := self._names.query(sender):
                     ask_port(contact, f"[del] {quoted(self.name)}", 0.5)
         self._listener.close()
-        for stream in tuple(self._streams):
-            stream.finish(min(linger, 0.5))
+        for line in {*self._streams, *self._inputs}:
+            line.finish(min(linger, 0.5))
+        for group in self._groups.values():
+            group.sender.close()
+            with suppress(TransportError):
+                self._names.unregister(group.contact.name)
         with suppress(TransportError):
             found = self._names.query(self.name)
             if found is not None and found.port == self.number:
@@ -120,15 +132,35 @@ class Port:
 
     # what connections tell
 
-    def came(self, line: Line, sender: str, carrier: str) -> None:
+    def came(self, line: Line | DatagramInput, sender: str, carrier: str) -> None:
         """A writer said hello."""
-        assert isinstance(line, Stream)
+        assert isinstance(line, Stream | DatagramInput)
         self._inputs[line] = sender, carrier
         if sender in self._seen:
             self._counts.reconnects += 1
         elif len(self._seen) < MAX_CONNECTIONS:
             self._seen.add(sender)
         self._count()
+
+    def receive(self, line: Line, sender: str, group: tuple[str, int] | None) -> int:
+        """A writer said hello, and will send datagrams; gives the number of the port at which they are received.
+
+        Raises
+        ------
+        ProtocolError
+            It named a group that is none, or that cannot be joined.
+        """
+        assert isinstance(line, Stream)
+        carrier = "udp" if group is None else "mcast"
+        for each in [each for each, who in self._inputs.items() if isinstance(each, DatagramInput) and who == (sender, carrier)]:
+            each.end()  # it begins anew without a goodbye
+        known = [each for each in self._inputs if isinstance(each, DatagramInput)]
+        if len(known) >= MAX_DATAGRAM_INPUTS:
+            min(known, key=lambda each: each.heard).end("too many writers by udp, and this one was silent")
+        host = line.socket.getpeername()[0]
+        made = DatagramInput(self, self._counts, receiving(line.socket, group), (sender, carrier, host), self._input_gone)
+        self.came(made, sender, carrier)
+        return made.number
 
     def take(self, message: Message) -> None:
         """A message came."""
@@ -155,7 +187,8 @@ class Port:
                 answer(f"(from {quoted(other)}) (to {quoted(self.name)}) (carrier {found})" if found else "")
             case ["[list]", "[out]", other]:
                 output = self.outputs.get(other)
-                answer(f"(from {quoted(self.name)}) (to {quoted(other)}) (carrier {output.carrier})" if output else "")
+                told = " (connectionless 1)" if isinstance(output, DatagramOutput) else ""
+                answer(f"(from {quoted(self.name)}) (to {quoted(other)}) (carrier {output.carrier}){told}" if output else "")
             case ["[add]", other, *carrier]:
                 if len(self._tasks) < MAX_CONNECTING:
                     self._soon(lambda: answer(self._add(other, *carrier[:1])))
@@ -176,6 +209,9 @@ class Port:
             if self._writes == other:
                 self._writes = ""
             output.close(1.0)
+            if isinstance(output, DatagramOutput):
+                contact = output.contact
+                self._soon(lambda: leave(contact, self.name, LEAVE_S))
         if inputs:
             return f"Removing connection from {other} to {self.name}"
         return f"Removed connection from {self.name} to {other}" if output else f"Could not find a connection with {other}"
@@ -193,21 +229,48 @@ class Port:
             sock = socket.create_connection((contact.host, contact.port), CONNECT_S)
         except OSError as error:
             return f"Cannot connect to {target}: {error.strerror or error}"
+        if carrier in CONNECTIONLESS:
+            try:
+                self._connected(target, self._by_datagrams(sock, contact, carrier))
+            except (OSError, ProtocolError) as error:
+                return f"Cannot connect to {target} by {carrier}: {error}"
+            return ""
         output = Output(self.name, target, carrier)
 
         def gone(_: Stream, __: str) -> None:
             self._output_gone(output)
 
         output.stream = Stream(sock, output.machine, gone)
+        self._connected(target, output)
+        loop().run(output.stream.start)
+        return ""
+
+    # within
+
+    def _connected(self, target: str, output: Output | DatagramOutput) -> None:
         self.outputs[target] = output
         if target in self._seen:
             self._counts.reconnects += 1
         self._seen.add(target)
-        loop().run(output.stream.start)
         self._count()
-        return ""
 
-    # within
+    def _by_datagrams(self, sock: socket.socket, contact: Contact, carrier: str) -> DatagramOutput:
+        def gone() -> None:
+            output = self.outputs.get(contact.name)
+            if isinstance(output, DatagramOutput):
+                self._output_gone(output)
+
+        with sock:
+            if carrier == "udp":
+                return DatagramOutput(contact, told_udp(sock, self.name, gone))
+            here = sock.getsockname()[0]
+            if here not in self._groups:
+                found = self._names.register_group(self.name)
+                if found is None:
+                    raise ProtocolError("the name server gives no group")
+                self._groups[here] = Group(found, here)
+            told_mcast(sock, self.name, self._groups[here])
+            return DatagramOutput(contact, self._groups[here])
 
     def _knows(self, other: str) -> bool:
         return other in self.outputs or any(sender == other for sender, _ in self._inputs.values())
@@ -216,7 +279,7 @@ class Port:
         way, _, name = other.rpartition(":/") if ":/" in other else (carrier or "tcp", "", other)
         if self._take is not None or self._asked is not None:
             return f"-1 {quoted('This port only receives')}"
-        if way not in ("tcp", "fast_tcp"):
+        if way not in CARRIERS:
             return f"-1 {quoted(f'This port does not know the carrier {way[:20]}')}"
         if not NAME.fullmatch(name):
             return f"-1 {quoted('That is no name of a port')}"
@@ -234,15 +297,16 @@ class Port:
         self._streams.add(stream)
         stream.start()
 
-    def _input_gone(self, stream: Stream, why: str) -> None:
-        self._streams.discard(stream)
+    def _input_gone(self, stream: Stream | DatagramInput, why: str) -> None:
+        if isinstance(stream, Stream):
+            self._streams.discard(stream)
         known = self._inputs.pop(stream, None)
         if why or (known is not None and stream.cut):
             self._counts.lose(why or "the connection ended in the middle of a message")
         self._count()
         self._nudge.set()
 
-    def _output_gone(self, output: Output) -> None:
+    def _output_gone(self, output: Output | DatagramOutput) -> None:
         if self.outputs.get(output.target) is output:
             del self.outputs[output.target]
         left = output.gone()
@@ -282,14 +346,29 @@ class Port:
 
     def _make_connections(self) -> bool:
         """Make what is missing; whether nothing is."""
+        for output in tuple(self.outputs.values()):
+            if isinstance(output, DatagramOutput) and self._names.query(output.target) != output.contact:
+                loop().run(self._output_gone, output)  # the reader was started anew, elsewhere
         if self._writes and self._writes not in self.outputs and self.connect(self._writes, self._carrier):
             return False
-        if not self._reads or any(sender == self._reads for sender, _ in tuple(self._inputs.values())):
+        reading = [line for line, (sender, _) in tuple(self._inputs.items()) if sender == self._reads]
+        if not self._reads or any(isinstance(line, Stream) for line in reading):
             return True
         contact = self._names.query(self._reads)
+        if reading and contact is not None and self._is_written_by(contact):
+            return True
+        for line in reading:  # the writer has died without a goodbye
+            loop().run(line.end)
         if contact is not None:
             ask_port(contact, f"[add] {quoted(f'{self._carrier}:/{self.name}')}", CONNECT_S)
         return False
+
+    def _is_written_by(self, contact: Contact) -> bool:
+        """Whether a writer by datagrams is still there, and knows of it."""
+        try:
+            return bool(ask_port(contact, f"[list] [out] {quoted(self.name)}", CONNECT_S).strip())
+        except TransportError:
+            return False
 
 
 def _listens(contact: Contact) -> bool:

@@ -1,12 +1,13 @@
 """What YARP ports write on their connections: numbers, frames, commands, acknowledgements.
 
     int   = 'Y' 'A' i32 'R' 'P'
-    hello = int (7777 + carrier, + 128 where acknowledgements are wanted), i32 length, name NUL
+    hello = int (7777 + carrier, + 128 where acknowledgements are wanted), i32 length, name NUL, group where the carrier is mcast
+    group = u8 * 4 address, u16 port, big-endian
     frame = int (bytes of the index), index, command, payload
     index = u8 blocks, u8 replies, ff * 8, i32 * (blocks + replies)
     command = i32 length of the text, '~', key, 0, 1, text
 
-All little-endian. The command is the first block, the payload the others. Key `D` is data, `d` data whose sender wants a reply, `q`
+All else little-endian. The command is the first block, the payload the others. Key `D` is data, `d` data whose sender wants a reply, `q`
 the end, 0 says that the text begins with the key, and an envelope follows it.
 """
 
@@ -24,8 +25,12 @@ if TYPE_CHECKING:
     from typing import Any
 
 FIRST_CARRIER = 7777
-TCP = 3
+UDP, MCAST, TCP = 0, 1, 3
 WITH_ACKS = 128
+CARRIERS = {"tcp": TCP + WITH_ACKS, "fast_tcp": TCP, "udp": UDP, "mcast": MCAST}
+CONNECTIONLESS = ("udp", "mcast")
+"""Carriers of which TCP carries no more than the hello; messages come in datagrams (`rosetta_jit.transports.yarp.pieces`)."""
+
 _INT = struct.Struct("<2si2s")
 _LENGTH = struct.Struct("<i")
 _COMMAND = struct.Struct("<i4B")
@@ -61,7 +66,7 @@ _GOODBYE = yarp_int(10) + b"\1\1" + b"\xff" * 8 + _SIZES.pack(10, 0, 2)[:8] + _C
 def hello(carrier: str, name: str) -> bytes:
     """What a connection begins with."""
     text = name.encode() + b"\0"
-    return yarp_int(FIRST_CARRIER + TCP + (WITH_ACKS if carrier == "tcp" else 0)) + _LENGTH.pack(len(text)) + text
+    return yarp_int(FIRST_CARRIER + CARRIERS[carrier]) + _LENGTH.pack(len(text)) + text
 
 
 def goodbye() -> bytes:

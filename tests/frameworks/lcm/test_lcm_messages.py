@@ -17,7 +17,7 @@ from tests.frameworks.lcm.values import bits, of_generated, of_holder, of_record
 
 RECORDS = json.loads((VECTORS / "records.json").read_text())
 TYPES = sorted({record["type"] for record in RECORDS})
-BACKENDS = ("numba", "python", "interpreter")
+BACKENDS = ("llvm", "python", "interpreter")
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -48,7 +48,7 @@ def test_random_values_of_random_types_in_the_interpreter(found, seed, tmp_path_
 @settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=4)
 @given(found=declarations.files(2), seed=st.integers(0, 1 << 32))
 def test_random_values_of_random_types_compiled(found, seed, tmp_path_factory):
-    agree(found, seed, tmp_path_factory.mktemp("random"), "numba")
+    agree(found, seed, tmp_path_factory.mktemp("random"), "llvm")
 
 
 def agree(found, seed, folder, backend):

@@ -58,7 +58,7 @@ def test_random_types(seed, encoding, order):
 
 
 @pytest.mark.parametrize("encoding", ["cdr", "cdr2"])
-@pytest.mark.parametrize("backend", ["numba", "python"])
+@pytest.mark.parametrize("backend", ["llvm", "python"])
 @pytest.mark.parametrize("seed", [101, 102])
 def test_random_types_compiled(seed, encoding, backend):
     agrees(seed, encoding, "little", backend)

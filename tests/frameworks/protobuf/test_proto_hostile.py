@@ -17,7 +17,7 @@ from rosetta_jit.source import Source
 from tests.frameworks.protobuf.proto_files import SHIPPED, VECTORS, load_from, protoc, source
 
 SOUP = (VECTORS / "token_soup.txt").read_text("utf-8").split()
-BIG = 100_000
+BIG, MANY = 10_000, 100_000
 
 
 def outcome(text: str) -> str:
@@ -76,47 +76,59 @@ def shapes(tmp_path_factory):
     return b"".join(sets)
 
 
-HOSTILE = {
-    "braces": "message M {" * BIG,
-    "brackets": "option a = " + "{a: [" * BIG,
-    "parentheses": "option " + "(" * BIG,
-    "maps": "message M { map<" + "map<" * BIG,
-    "comment opened again and again": "/*" * BIG,
-    "stars": "/" + "*" * BIG,
-    "quotes": "'\\" * BIG,
-    "long number": "enum E { A = " + "9" * BIG + "; }",
-    "long hexadecimal": "enum E { A = 0x" + "9" * BIG + "; }",
-    "long octal": "enum E { A = 0" + "7" * BIG + "; }",
-    "long name": "message " + "a" * BIG + " { optional int32 a = 1; }",
-    "long package": "package a" + ".a" * BIG + "; message M {}",
-    "long type": "message M { optional a" + ".a" * BIG + " b = 1; }",
-    "long default": "message M { optional string a = 1 [default = " + '"a" ' * BIG + "]; }",
-    "unknown types": "message M { " + "optional A a = 1; " * (BIG // 10) + "}",
-    "wrong statements": "a " * BIG,
-    "wrong statements that end": "a; " * BIG,
-    "closing braces": "}" * BIG,
-    "one reserved number again and again": "message M { reserved " + "1, " * (BIG // 10) + "1; }",
-    "one name again and again": "message M { " + "message A {} " * (BIG // 10) + "}",
-    "many defaults of a great enum": "enum E { "
-    + " ".join(f"V{i} = {i};" for i in range(BIG // 20))
-    + "} message M {"
-    + " ".join(f"optional E f{i} = {i + 1} [default = V{i}];" for i in range(BIG // 20))
-    + "}",
-    "long name of a feature": 'edition = "2023"; option features' + ".a" * BIG + " = A;",
-    "one feature again and again": 'edition = "2023"; ' + "option features.enum_type = OPEN; " * (BIG // 10),
-    "many features at once": 'edition = "2023"; option features = { ' + "a: b " * (BIG // 10) + "};",
-    "many names out of style": 'edition = "2024"; ' + "".join(f"message m{i} {{ int32 _F{i} = 1; }} " for i in range(BIG // 20)),
-    "underscores": 'edition = "2024"; message M { ' + "".join(f"int32 {'a_' * 200}{i} = {i + 1}; " for i in range(BIG // 100)) + "}",
-    "visibility again and again": 'edition = "2024"; ' + "export local " * BIG,
-    "lone surrogates": 'message M { optional string a = 1 [default = "\ud800"]; }',
-}
+def hostile(big):
+    """Texts whose parts are repeated up to so many times."""
+    return {
+        "braces": "message M {" * big,
+        "brackets": "option a = " + "{a: [" * big,
+        "parentheses": "option " + "(" * big,
+        "maps": "message M { map<" + "map<" * big,
+        "comment opened again and again": "/*" * big,
+        "stars": "/" + "*" * big,
+        "quotes": "'\\" * big,
+        "long number": "enum E { A = " + "9" * big + "; }",
+        "long hexadecimal": "enum E { A = 0x" + "9" * big + "; }",
+        "long octal": "enum E { A = 0" + "7" * big + "; }",
+        "long name": "message " + "a" * big + " { optional int32 a = 1; }",
+        "long package": "package a" + ".a" * big + "; message M {}",
+        "long type": "message M { optional a" + ".a" * big + " b = 1; }",
+        "long default": "message M { optional string a = 1 [default = " + '"a" ' * big + "]; }",
+        "unknown types": "message M { " + "optional A a = 1; " * (big // 10) + "}",
+        "wrong statements": "a " * big,
+        "wrong statements that end": "a; " * big,
+        "closing braces": "}" * big,
+        "one reserved number again and again": "message M { reserved " + "1, " * (big // 10) + "1; }",
+        "one name again and again": "message M { " + "message A {} " * (big // 10) + "}",
+        "many defaults of a great enum": "enum E { "
+        + " ".join(f"V{i} = {i};" for i in range(big // 20))
+        + "} message M {"
+        + " ".join(f"optional E f{i} = {i + 1} [default = V{i}];" for i in range(big // 20))
+        + "}",
+        "long name of a feature": 'edition = "2023"; option features' + ".a" * big + " = A;",
+        "one feature again and again": 'edition = "2023"; ' + "option features.enum_type = OPEN; " * (big // 10),
+        "many features at once": 'edition = "2023"; option features = { ' + "a: b " * (big // 10) + "};",
+        "many names out of style": 'edition = "2024"; ' + "".join(f"message m{i} {{ int32 _F{i} = 1; }} " for i in range(big // 20)),
+        "underscores": 'edition = "2024"; message M { ' + "".join(f"int32 {'a_' * 200}{i} = {i + 1}; " for i in range(big // 100)) + "}",
+        "visibility again and again": 'edition = "2024"; ' + "export local " * big,
+        "lone surrogates": 'message M { optional string a = 1 [default = "\ud800"]; }',
+    }
 
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE.keys())
-def test_hostile_texts_end_in_time(text):
+@pytest.mark.parametrize("name", hostile(1))
+def test_hostile_texts_end_in_time(name):
+    ends_in_time(hostile(BIG)[name], 8)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", hostile(1))
+def test_larger_hostile_texts_end_in_time(name):
+    ends_in_time(hostile(MANY)[name], 30)
+
+
+def ends_in_time(text, seconds):
     start = time.process_time()
     report = outcome(text)
-    assert time.process_time() - start < 30
+    assert time.process_time() - start < seconds
     assert len(report) < 100_000
 
 

@@ -63,7 +63,7 @@ def test_whatever_follows(backend):
                 assert decode(b"\x08" + padded + behind).field1 == first
 
 
-@pytest.mark.parametrize("backend", ["numba", "python"])
+@pytest.mark.parametrize("backend", ["llvm", "python"])
 def test_values_of_many_messages(backend):
     decode, encode = programs(20, backend)
     messages = [message_of(values(20, seed)) for seed in range(23)]

@@ -17,7 +17,7 @@ from rosetta_jit.wire.codec import Blob, Number, Seq, Table
 from tests.frameworks.ros.random_messages import Definitions
 from tests.frameworks.ros.ros_files import alone, ros1_vectors
 
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 TYPES = sorted({record["type"] for record in ros1_vectors()["records"]})
 LENIENT = next(each for each in shipped() if each.name == "ros1").leniencies.get("ros1", {})
 
@@ -110,7 +110,7 @@ def test_random_types(seed):
     store = typesys.get_typestore(typesys.Stores.EMPTY)
     store.register(BUILTIN | typesys.get_types_from_msg(made.text, made.name))
     peer = made.name.replace("/", "/msg/")
-    decode, encode = programs(made.name, ("python", "numba", "interpreter")[seed % 3], made.text)
+    decode, encode = programs(made.name, ("python", "llvm", "interpreter")[seed % 3], made.text)
     for _ in range(10):
         data = made.message()
         message = store.deserialize_ros1(data, peer)

@@ -12,7 +12,7 @@ pytest.importorskip("rosbags")
 from rosbags.typesys import Stores, get_typestore
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
-BACKENDS = ["numba", "python", "interpreter"]
+BACKENDS = ["llvm", "python", "interpreter"]
 XYZ = {"x": 1.5, "y": -2.25, "z": 1e-3}
 NARROW = {name: float(np.float32(value)) for name, value in XYZ.items()}
 TORQUES = {name: float(np.float32(100.0 * value)) for name, value in zip("abc", XYZ.values(), strict=True)}

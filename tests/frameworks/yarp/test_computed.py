@@ -6,7 +6,7 @@ import pytest
 
 import rosetta_jit as rj
 
-BACKENDS = ("numba", "python", "interpreter")
+BACKENDS = ("llvm", "python", "interpreter")
 TOLD = """
 "t.T"
 ( ("n" :int) ("xs" (:list :double) (:length n)) ("text" :string (:length later)) ("data" :blob (:length (* 2 n))) ("later" :int) )

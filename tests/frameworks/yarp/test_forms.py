@@ -84,7 +84,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 def test_the_code_of_an_element_tells_the_case(backend):
     for case, data in CASES:
         check(f'("n" :int) {UNION}', {"n": 7, "v": case}, data, backend)

@@ -14,7 +14,7 @@ from rosetta_jit.frameworks.yarp.tags import DIALECTS, vocab
 from rosetta_jit.frameworks.yarp.text import parse_text
 
 VECTORS = Path(__file__).resolve().parents[2] / "vectors" / "yarp"
-BACKENDS = ("numba", "python", "interpreter")
+BACKENDS = ("llvm", "python", "interpreter")
 DOUBLE = {"yarp3": 10, "yarp4": 20}
 FLOAT = {"yarp3": 128, "yarp4": 10}
 PIXELS = {

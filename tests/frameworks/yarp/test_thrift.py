@@ -41,7 +41,7 @@ def messages(dialect):
     return {name: found[name] for name in TYPES if name in found}
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 @pytest.mark.parametrize("dialect", ["yarp3", "yarp4"])
 def test_what_the_real_yarp_writes(dialect, backend):
     for name, data in messages(dialect).items():
@@ -61,7 +61,7 @@ def test_values(dialect):
 TREE = "struct S { 1: i32 a; 2: list<S> kids; 3: string name }"
 
 
-@pytest.mark.parametrize("backend", ["numba", "python", "interpreter"])
+@pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
 @pytest.mark.parametrize("dialect", ["yarp3", "yarp4"])
 def test_lists_of_the_struct_itself(dialect, backend):
     options = {"schema": {"a.thrift": TREE}, "encoding": dialect, "backend": backend}

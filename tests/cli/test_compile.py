@@ -1,4 +1,4 @@
-"""`rosetta-jit cache warm`: programs compiled ahead are in the cache for the processes that come after."""
+"""`rosetta-jit compile`: programs compiled ahead are in the cache for the processes that come after."""
 
 from __future__ import annotations
 
@@ -33,13 +33,17 @@ def test_later_processes_find_them(tmp_path, monkeypatch, capsys):
     kept = {path.name for path in tmp_path.rglob("*") if path.is_file()}
     Decoder(KEY_VALUE), Encoder(KEY_VALUE), Decoder.of(BOOL), Encoder.of(BOOL)
     assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == kept
+    assert main(["compile", BOOL, "--direction", "decode"]) == 0
+    program, whole = capsys.readouterr().out.splitlines()
+    assert program.startswith(f"[1/1] {BOOL}: decode, ")
+    assert whole.startswith("1 ready, 0 wrong, in ")
 
 
 def test_what_is_wrong_is_told_and_the_others_are_made(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
-    assert main(["cache", "warm", "std_msgs/msg/Bol", BOOL]) == 1
+    assert main(["compile", "std_msgs/msg/Bol", BOOL]) == 1
     out, err = capsys.readouterr()
-    assert "2 programs ready, 2 wrong" in out
+    assert "2 ready, 2 wrong" in out
     assert "no file declares" in err
 
 
@@ -49,13 +53,13 @@ def test_it_fails_where_nothing_can_be_kept(tmp_path, monkeypatch, capsys):
     folder.chmod(0o777)
     monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(folder))
     with pytest.warns(CacheWarning, match="can be written by others"):
-        assert main(["cache", "warm", BOOL]) == 1
+        assert main(["compile", BOOL]) == 1
     assert "error: the cache cannot keep what was compiled" in capsys.readouterr().err
 
 
 def test_it_fails_where_the_cache_is_off(monkeypatch):
     monkeypatch.setenv("ROSETTA_JIT_CACHE", "off")
-    assert main(["cache", "warm", BOOL]) == 1
+    assert main(["compile", BOOL]) == 1
 
 
 def test_a_writer_of_several_dialects_is_made_for_each():

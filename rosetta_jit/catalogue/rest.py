@@ -1,0 +1,55 @@
+"""The words about rules that stand for the fields which no other rule names: `same names`, `default`, `ignore rest`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error, note, shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+
+MAX_REST = 200
+
+
+def no_same_names(span: Span | None, target: str, origin: str) -> Diagnostic:
+    """`same names` where there are none left."""
+    return error("no-same-names", f"`{shorten(target)}` and `{shorten(origin)}` have no other names in common", span, help_="remove it")
+
+
+def repeated_same_names(span: Span | None) -> Diagnostic:
+    """A second `same names` in a block."""
+    return error("set-twice", "`same names` stands in this block already", span, "again here", help_="name all exceptions in one")
+
+
+def rest(span: Span | None, word: str, direction: str, fields: Sequence[str]) -> Diagnostic:
+    """Which fields `ignore rest` and `default rest` stand for."""
+    what = "read" if word == "ignore" else "set"
+    message = f"{direction} {what}s every field: nothing is left for `{word} rest`"
+    if not fields:
+        return note("rest", message, span, help_="leave it in for fields that the schema may get")
+    shown = ", ".join(f"`{shorten(each)}`" for each in fields[:MAX_REST])
+    more = f" and {len(fields) - MAX_REST} more" if len(fields) > MAX_REST else ""
+    count = "1 field" if len(fields) == 1 else f"{len(fields)} fields"
+    return note("rest", f"{direction} does not {what} {count}", span, f"`{word}` of each", notes=(f"they are: {shown}{more}",))
+
+
+def rest_in_block(span: Span | None, word: str) -> Diagnostic:
+    """`ignore rest` in a block that does not always run."""
+    help_ = "write it beside the `when` or the loop: it is about all rules of the mapping"
+    return error("rest", f"`{word} rest` stands within no other block", span, "in a block", help_=help_)
+
+
+def no_default(span: Span | None, found: str) -> Diagnostic:
+    """Elements that a message always has, left without a value."""
+    why = "other fields tell how many elements it has"
+    return error("no-default", f"there is no default for {found}", span, why, help_="set each of them")
+
+
+def default_count(span: Span | None, array: str) -> Diagnostic:
+    """The number of elements of an array, left at 0 where there are some."""
+    message = f"this tells how many elements `{shorten(array)}` has, and its default is 0"
+    return error("no-default", message, span, "here", help_="set it to the number of elements: `... = len(...)`")

@@ -1,0 +1,129 @@
+"""The type that a request names, where no mapping does: from the files that declare it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.catalogue.wires import unknown as unknown_wire
+from rosetta_jit.errors import MappingError, SchemaError
+from rosetta_jit.frameworks.installed import Readers, installed
+from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
+from rosetta_jit.language.parse.unit_file import SUFFIX
+from rosetta_jit.model.expansion import excess
+from rosetta_jit.model.relax import without_text
+from rosetta_jit.model.serial import from_plain
+from rosetta_jit.model.types import Schema, Struct, same_name
+from rosetta_jit.pipeline.similar_types import similar_types
+from rosetta_jit.pipeline.types import Types
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.pipeline.request import Request
+    from rosetta_jit.source import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Files:
+    """Where a request's files are: those ``given`` as texts, those that are searched for, and what was found of both."""
+
+    given: dict[str, str]
+    search: SearchPath
+    reading: Reading
+
+
+def files_of(request: Request) -> Files:
+    """The files of a request, of which none has been read."""
+    given = _given(request)
+    return Files(given, SearchPath.of(request.folders, files=given), Reading())
+
+
+def declared_types(request: Request, files: Files) -> Types:
+    """The type that a request names, as it is declared."""
+    if request.wire is not None:
+        raise report(request, unknown_wire(None, request.wire, ()))
+    for name in json.loads(request.parameters):
+        raise report(request, needless(name))
+    if request.plain is not None:
+        type_, schema = from_plain(json.loads(request.plain))
+        struct = schema.resolve(type_)
+        assert isinstance(struct, Struct)
+        return Types(struct, struct, schema, None)
+    schema = _imported(request, files)
+    if "text" in request.lenient:
+        schema = without_text(schema)
+    found = [each for name, each in schema.types.items() if isinstance(each, Struct) and same_name(name, request.type or "")]
+    if not found:
+        why = [each for name, each in schema.left_out.items() if same_name(name, request.type or "")]
+        near = () if request.imports or files.given else similar_types(request.type or "", readers_of(request), files.search)
+        raise SchemaError(tuple(why) or (words.unknown_type(request.type or "", (*schema.types, *near)),))
+    return Types(found[0], found[0], schema, None)
+
+
+def _imported(request: Request, files: Files) -> Schema:
+    """All that the named files declare; without names, the files given as text, or the file where such a type should be."""
+    readers = readers_of(request)
+    asked = request.type or ""
+    given = tuple(name for name in files.given if not name.endswith(SUFFIX))
+    names = request.imports or given or tuple(readers.guesses(asked))
+    types: dict[str, Any] = {}
+    constants: dict[str, Any] = {}
+    left_out: dict[str, Any] = {}
+    for name in names:
+        source = _named(name, readers, files.search) if request.imports else files.search.find(name)
+        if source is not None:
+            files.reading.record(name, None, source)
+            end = readers.find(source.name)
+            if end is None:
+                raise SchemaError((words.unknown_suffix(name, readers.suffixes),))
+            found = end(source, files.search.loader(files.reading, source))
+            types |= found.types
+            constants |= found.constants
+            left_out |= found.left_out
+            if not request.imports and not request.files and any(same_name(each, asked) for each in types):
+                break
+        elif request.imports:
+            raise SchemaError((words.no_such_file(name, tuple(map(str, files.search.folders))),))
+    return Schema(types, constants=constants, left_out=left_out)
+
+
+def _named(name: str, readers: Readers, search: SearchPath) -> Source | None:
+    """The file that the user names: by its path, or by a type that it declares."""
+    found = search.named(name)
+    homes = () if found is not None or readers.find(name) is not None else readers.homes(name)
+    return found or next((source for home in homes if not refusal(home) and (source := search.find(home)) is not None), None)
+
+
+def of_a_size(request: Request, types: Types) -> Types:
+    """Types that can be laid out and compiled; those of a mapping are checked with it."""
+    why = excess(types.holder, types.schema)
+    if why:
+        raise report(request, words.too_large(types.holder.name, types.holder.span, why))
+    return types
+
+
+def _given(request: Request) -> dict[str, str]:
+    """The files that came as texts. One without a name declares the type, in the language of the framework that is asked for."""
+    files = dict(request.files)
+    if "" in files:
+        if request.encoding is None and request.framework is None:
+            raise report(request, words.nameless_schema())
+        text = files.pop("")
+        files[readers_of(request).likely[0].file_of(request.type or "schema", text)] = text
+    return files
+
+
+def readers_of(request: Request) -> Readers:
+    """The front ends that the request leaves to choose from."""
+    readers = Readers(installed(), request.framework, request.encoding)
+    if request.framework is not None and request.framework not in readers.frameworks:
+        raise report(request, words.unknown_framework(request.framework, tuple(readers.frameworks)))
+    return readers
+
+
+def report(request: Request, diagnostic: Diagnostic) -> SchemaError | MappingError:
+    """What is wrong with a request, as the error that its user expects."""
+    return (MappingError if request.mapping is not None else SchemaError)((diagnostic,))

@@ -1,0 +1,117 @@
+"""What makes holders in compiled code: a decoder's `new`, and a call of a holder class without arguments."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from typing import TYPE_CHECKING, Any, cast
+
+from rosetta_jit.runtime.attributes.code import functions, library
+from rosetta_jit.runtime.callable import is_native
+from rosetta_jit.runtime.specs import (
+    BASETYPE,
+    DEFAULT,
+    READONLY,
+    SSIZE_T,
+    TP_CALL,
+    TP_MEMBERS,
+    VECTORCALL,
+    Member,
+    address_of,
+    from_spec,
+    read_word,
+    with_attributes,
+    write_word,
+)
+
+if TYPE_CHECKING:
+    from rosetta_jit.runtime.plan import Plan
+
+ENTRY, MAKER_BYTES = 64, 72
+HEAP_TYPE_BYTES: int = cast("Any", type).__basicsize__
+"""The size of a class that a class statement makes, in bytes. Behind it lies what a class of its own class has besides."""
+DEALLOC, FLAGS, CLASS_CALL = 48, 168, 400
+"""Where in a class (PyTypeObject of Include/cpython/object.h) stand what ends its objects, its flags, and what calls it."""
+
+
+class _Maker:
+    """Makes holders. Compiled code reads all but `plan`, in this order in memory (`calling.ll`)."""
+
+    __slots__ = ("cell", "holder_type", "plan", "recipe", "seen", "slow")
+    cell: list[Plan]
+    holder_type: type
+    plan: Plan
+    recipe: Any
+    seen: Plan | None
+    slow: Any
+
+    def __repr__(self) -> str:
+        return f"<makes {self.holder_type.__qualname__!r} objects>"
+
+    def room(self, plan: Plan) -> None:
+        """From now on make holders with the room of a plan, or of their family's if that is more."""
+        self.plan, self.recipe = plan, None
+
+
+@cache
+def _maker_class() -> type:
+    members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
+    slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
+    created = from_spec("Maker", _Maker, MAKER_BYTES, DEFAULT | VECTORCALL, slots)
+    return with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+
+
+def maker(holder_type: Any, plan: Plan) -> Any:
+    """What makes holders of a class, with the room of a plan, or of their family's if that is more."""
+    code = library()
+    assert code is not None, "there are makers"
+    maker_class: Any = _maker_class()
+    made = maker_class.__new__(maker_class)
+    made.holder_type, made.cell, made.plan, made.slow = holder_type, holder_type.family_.cell, plan, _made
+    made.recipe = made.seen = None
+    write_word(id(made) + ENTRY, code["call_maker"])
+    return made
+
+
+def _made(maker: _Maker) -> Any:
+    """A new holder, when there was another plan for the last one."""
+    family: Any = cast("Any", maker.holder_type).family_
+    own, roomy = maker.plan, maker.cell[0]
+    recipe: Any = family.recipe(own if own.size_bytes > roomy.size_bytes else roomy)
+    maker.recipe, maker.seen = recipe, roomy
+    return functions()["spawn"](maker.holder_type, recipe)
+
+
+def class_of_holder_classes() -> type:
+    """A class to derive the class of holder classes from, with room behind each for what compiled code makes its objects of."""
+    if not is_native():
+        return type("HolderClassBase", (type,), {"__module__": __name__})
+    return from_spec("HolderClassBase", type, HEAP_TYPE_BYTES + 8, DEFAULT | BASETYPE, ())
+
+
+def let_call(metaclass: type) -> None:
+    """Let CPython call the classes of a metaclass through what each of them has for that, as it calls all whose class is `type`."""
+    if is_native():
+        write_word(id(metaclass) + FLAGS, read_word(id(metaclass) + FLAGS) | VECTORCALL)
+
+
+def make_quickly(holder_type: type) -> None:
+    """Let compiled code end the objects of a holder class, and make them once it has a recipe (`set_recipe`)."""
+    code = library()
+    assert code is not None, "there is code for it"
+    write_word(id(holder_type) + DEALLOC, code["end_holder"])
+    write_word(id(holder_type) + CLASS_CALL, code["call_class"])
+
+
+def set_recipe(holder_type: type, recipe: tuple[Any, ...] | None) -> None:
+    """Make a class's objects of this from now on when it is called without arguments; it must live until another one is set. Without one,
+    call the class as any other.
+    """
+    if is_native():
+        write_word(id(holder_type) + HEAP_TYPE_BYTES, 0 if recipe is None else id(recipe))
+
+
+def call_as_any(holder_type: type) -> None:
+    """Let a class make its objects as Python says from now on: somebody gives it another constructor."""
+    if is_native():
+        write_word(id(holder_type) + CLASS_CALL, 0)

@@ -1,0 +1,193 @@
+"""Holders that compiled code makes and ends: as the class's own constructor makes them, and never with what another one left."""
+
+from __future__ import annotations
+
+import gc
+import sys
+import threading
+import weakref
+
+import numpy as np
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.lanes import Lanes
+from rosetta_jit.runtime.limits import MAX_ENDED
+from rosetta_jit.runtime.specs import slot_offset
+
+pytestmark = pytest.mark.skipif(library() is None, reason="this Python is none that compiled code knows")
+
+OFFSETS = {"arena": 24, "arrays": 40, "buffers": 48, "cells": 56, "hidden": 64, "lock": 80, "memory": 88, "registers": 104, "source": 120}
+
+
+@pytest.fixture(scope="module")
+def decoder():
+    return rj.Decoder.of("sensor_msgs/msg/JointState", encoding="cdr")
+
+
+@pytest.fixture(scope="module")
+def joint_state(decoder):
+    return decoder.holder_type
+
+
+@pytest.fixture(scope="module")
+def quaternion():
+    return rj.Decoder.of("geometry_msgs/msg/Quaternion", encoding="cdr").holder_type
+
+
+@pytest.fixture
+def derived(quaternion):
+    class Derived(quaternion):
+        ended = ()
+
+        def __init__(self, x=1.0):
+            super().__init__()
+            self.x = x
+
+        def __del__(self):
+            type(self).ended = (*type(self).ended, self.x)
+
+    return Derived
+
+
+def filled(made):
+    made.header.frame_id, made.name, made.position = "base", ["a", "bc"], [1.0, 2.0, 3.0]
+    return made
+
+
+def test_slots_lie_where_compiled_code_seeks_them():
+    expected = OFFSETS | {"spares": 128, "state": 136, "words": 144}
+    assert {name: slot_offset(vars(Lanes)[name]) for name in expected} == expected
+    assert Lanes.__weakrefoffset__ == 152
+
+
+def test_a_class_makes_what_its_constructor_makes(quaternion):
+    for each in [quaternion() for _ in range(3 * MAX_ENDED)]:
+        assert (each.x, each.y, each.z, each.w) == (0.0, 0.0, 0.0, 1.0)
+    changed = quaternion(x=2.0)
+    assert (changed.x, changed.w) == (2.0, 1.0)
+    changed.clear()
+    assert changed.w == 0.0
+    with pytest.raises(TypeError):
+        quaternion(1.0)
+    with pytest.raises(TypeError):
+        quaternion(a=1.0)
+
+
+def test_nothing_is_left_of_one_that_has_ended(decoder, joint_state):
+    for new in (decoder.new, joint_state, joint_state().new):
+        for _ in range(3):
+            several = [filled(new()) for _ in range(2 * MAX_ENDED)]
+            assert all(each.name[1] == "bc" for each in several)
+            del several
+        for each in [new() for _ in range(2 * MAX_ENDED)]:
+            assert each.to_dict() == joint_state.from_dict({}).to_dict()
+            assert each == joint_state.from_dict({})
+
+
+def test_who_shows_a_holder_that_has_ended_keeps_it(decoder):
+    made = filled(decoder.new())
+    array, header, names, stamp = made.position, made.header, made.name, made.header.stamp
+    del made
+    others = [filled(decoder.new()) for _ in range(2 * MAX_ENDED)]
+    for each in others:
+        each.position, each.header.frame_id, each.header.stamp.sec, each.name = [9.0, 9.0, 9.0], "else", 9, ["x", "y"]
+    assert np.array_equal(array, [1.0, 2.0, 3.0])
+    assert (header.frame_id, list(names), stamp.sec) == ("base", ["a", "bc"], 0)
+
+
+def test_a_constructor_of_ones_own_runs(derived):
+    assert (derived().x, derived(3.0).x, derived(x=4.0).w) == (1.0, 3.0, 1.0)
+    assert derived.ended == (1.0, 3.0, 4.0)
+
+
+def test_one_that_is_revived_lives(quaternion):
+    revived = []
+
+    class Revived(quaternion):
+        def __del__(self):
+            revived.append(self)
+
+    made = Revived()
+    made.x = 5.0
+    del made
+    assert [each.x for each in revived] == [5.0]
+    del Revived.__del__
+    revived.clear()
+    assert quaternion().x == 0.0
+
+
+def test_a_class_that_is_given_another_constructor_calls_it():
+    made = rj.Decoder.of("geometry_msgs/msg/Vector3Stamped", encoding="cdr").holder_type
+    assert made().header.frame_id == made().header.frame_id == ""
+    before = made.__init__
+
+    def begin(self):
+        before(self)
+        self.header.frame_id = "here"
+
+    made.__init__ = begin
+    assert [made().header.frame_id for _ in range(3)] == ["here"] * 3
+    del made.__init__
+    assert made().header.frame_id == ""
+
+
+def test_weak_references_end_with_a_holder(quaternion):
+    told = []
+    made = quaternion()
+    reference = weakref.ref(made, told.append)
+    del made
+    assert reference() is None
+    assert told == [reference]
+
+
+def test_classes_and_memory_are_let_go_of(decoder, quaternion):
+    filled(decoder.new())
+    gc.collect()
+    before = sys.getrefcount(quaternion), sys.getrefcount(decoder.holder_type), sys.getrefcount(None)
+    for _ in range(500):
+        quaternion()
+        decoder.new()
+    after = sys.getrefcount(quaternion), sys.getrefcount(decoder.holder_type), sys.getrefcount(None)
+    assert all(abs(one - other) < 40 for one, other in zip(before, after, strict=True))
+    made = quaternion()
+    lanes = weakref.ref(made.lanes_)
+    del made
+    assert lanes() is None, "what somebody has a weak reference to is no other holder's"
+
+
+def test_new_takes_nothing(decoder):
+    with pytest.raises(TypeError, match="no arguments"):
+        decoder.new(1)
+    with pytest.raises(TypeError, match="no arguments"):
+        decoder.new(room=1)
+
+
+def test_what_makes_holders_does_not_keep_its_decoder():
+    decoder = rj.Decoder.of("geometry_msgs/msg/Quaternion", encoding="cdr")
+    new, gone = decoder.new, weakref.ref(decoder)
+    del decoder
+    gc.collect()
+    assert gone() is None
+    assert new().w == 0.0
+
+
+def test_threads_make_and_end_holders(decoder):
+    wrong = []
+
+    def run(number):
+        for each in range(400):
+            made = decoder.new()
+            if len(made.name) or len(made.position):
+                wrong.append(made)
+            made.name, made.position = [str(number)], [float(each)]
+            if list(made.name) != [str(number)] or made.position[0] != each:
+                wrong.append(made)
+
+    threads = [threading.Thread(target=run, args=(number,)) for number in range(4)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert not wrong
