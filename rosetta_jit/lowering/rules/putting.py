@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from rosetta_jit.lowering.rules.holder_side import HolderSide
     from rosetta_jit.lowering.rules.values import Values
 
-MOST = (1 << 63) - 1
-NONE = index(MOST)
+NONE = index((1 << 63) - 1)
 """The number of no element."""
 
 
@@ -48,10 +47,9 @@ class Putting:
         inner = replace(self.values, variables=variables, where=where)
         if type_of(value) == "i64" and self.scalar in RANGES and self.scalar != "i64":
             wide = writer.let("wide", value)
-            low, high = RANGES[self.scalar]
-            fits = Binary("and", Compare("ge", wide, index(low)), Compare("le", wide, index(min(high - 1, MOST))))
-            writer.assign(self.wrong, Binary("min", self.wrong, Select(fits, NONE, number)))
             found = writer.let("number", Convert(self.scalar, wide))
+            fits = Compare("ge", wide, index(0)) if self.scalar == "u64" else Compare("eq", Convert("i64", found), wide)
+            writer.assign(self.wrong, Binary("min", self.wrong, Select(fits, NONE, number)))
         else:
             found = writer.let("number", value if type_of(value) == self.scalar else inner.convert(value, self.scalar, "exact"))
         self.target.set_number(self.element, found, inner)
