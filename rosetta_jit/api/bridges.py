@@ -117,6 +117,29 @@ class Bridge(BridgeBase):
         """What the bridge became, as text: of both halves, or of the code, which is one."""
         return _build(self._request).stage(stage)
 
+    def announced(self, framework: str) -> dict[str, str]:
+        """What a publisher says of the type that this bridge writes, by the names of transports' options. It is made anew: keep it.
+
+        Parameters
+        ----------
+        framework
+            ``ros1``: ``type``, ``md5`` and ``definition``; ``ros2``: ``type`` and ``hash``; ``protobuf``, for events of RSB: ``type``.
+
+        Returns
+        -------
+        dict
+            Empty where what is written is a type of another framework, or of none.
+        """
+        build = _build(self._request)
+        from rosetta_jit.pipeline.bridge import BridgeBuild
+
+        if not isinstance(build, BridgeBuild):
+            return {}
+        _, written = build.halves
+        if written.wire_framework.name != framework:
+            return {}
+        return written.wire_framework.announced(written.types.wire, written.types.schema)
+
     def __repr__(self) -> str:
         return f"<Bridge from {ends(self._request.decode)} to {ends(self._request.encode)}>"
 

@@ -53,7 +53,7 @@ class LiveRoute:
         self.route = route
         self.counts = RouteCounts()
         self.problem = "not open yet"
-        self._translate = translate
+        self.translate = translate
         self._say = say
         self._sink: Sink | None = None
         self._caller: Caller | None = None
@@ -80,12 +80,12 @@ class LiveRoute:
     @property
     def state(self) -> Mapping[str, float | str]:
         """What its mappings keep from one message to the next."""
-        return state_of(self._translate)
+        return state_of(self.translate)
 
     def begin_anew(self) -> None:
         """Let the next message be the first one for its mappings."""
-        if isinstance(self._translate, Stateful):
-            self._translate.reset()
+        if isinstance(self.translate, Stateful):
+            self.translate.reset()
             self._say(f"{self.route.name}: its source came back, and the state of its mapping begins anew")
 
     @property
@@ -103,9 +103,9 @@ class LiveRoute:
                 self.lost("above its rate")
                 return
             self._due_ns = max(self._due_ns + self._interval_ns, begun)
-        if self._translate is not None:
+        if self.translate is not None:
             try:
-                data = self._translate(data)
+                data = self.translate(data)
             except MessageError as error:
                 self._failed(error)
                 return

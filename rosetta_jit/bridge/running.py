@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.configuration import Route
 from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
 from rosetta_jit.bridge.live import LINGER_S, LiveRoute
@@ -252,7 +253,7 @@ class Running:
             if route.calls:
                 each.open(None, call(route.target))
             else:
-                each.open(publish(route.target, lost=each.lost), None)
+                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translate)), None)
         self._listen(each)
         each.problem = ""
 

@@ -335,6 +335,8 @@ class Transport:
         ``(address, options) -> list of (channel, type or None)``: which channels there are, for patterns in configurations.
     options
         By name; `COMMON` are added.
+    types
+        For schemes whose options tell of a type, the framework of such types: ``{"ros1": "ros1"}``.
     extra
         The extra of rosetta_jit that it takes, and the module whose absence tells: ``("zenoh", "zenoh")``.
     """
@@ -348,6 +350,7 @@ class Transport:
     serve: str = ""
     names: str = ""
     options: Mapping[str, Option] = field(default_factory=dict[str, "Option"])
+    types: Mapping[str, str] = field(default_factory=dict[str, str])
     extra: tuple[str, str] = ("", "")
 
     def function(self, direction: str) -> Callable[..., Any]:

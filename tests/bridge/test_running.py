@@ -17,6 +17,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.bridge import metrics as asking
+from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.checking import checked
 from rosetta_jit.bridge.counting import Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
@@ -25,6 +26,7 @@ from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
 from tests.transports.free import answers, free_port, until
 from tests.transports.name_server import NameServer
+from tests.transports.ros_master import Master
 
 TORSO = "yarp/icub/torso_state.mapping"
 
@@ -136,6 +138,45 @@ def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, 
         bridge.reload(checked(str(tmp_path / "bridge.toml")))
         assert bridge.snapshot()[0]["state"]["decode.last"] == 0
         assert turned(9, 10) == [0, 1]
+
+
+TO_ROS1 = 'decode_type = "std_msgs/msg/Bool"\nencode_type = "std_msgs/Bool"\ndecode = { encoding = "cdr" }\nencode = { encoding = "ros1" }'
+BOOL = "8b94c1b53db61fb6aed406028ad6332a"
+"""The md5 sum of std_msgs/Bool, as `rosmsg md5` says it."""
+
+
+def test_the_target_gets_to_know_the_type(run):
+    """Its name, md5 sum and text come from what the route writes: a subscriber of ROS 1 that asks for them is served."""
+    master, source = Master(), free_port()
+    at = f"ros1:/{{}}?master={master.uri}"
+    try:
+        with rj.subscribe(at.format("on") + f"&type=std_msgs/Bool&md5={BOOL}&name=/reader") as there:
+            run(f'[[route]]\nsource = "tcp:{source}"\ntarget = "{at.format("on")}"\n{TO_ROS1}\n')
+            with rj.publish(f"tcp:{source}") as robot:
+                until(lambda: there.connections)
+                robot.send(b"\0\1\0\0\1")
+                message = there.take(5)
+            assert (message.data, message.type, message.attributes["md5"]) == (b"\1", "std_msgs/Bool", BOOL)
+            assert message.attributes["definition"] == "bool data\n"
+        assert not there.lost
+    finally:
+        master.close()
+
+
+@pytest.mark.parametrize(
+    ("target", "told"),
+    [
+        ("ros1:/on", {"type", "md5", "definition"}),
+        ("ros1:/on?type=std_msgs/Bool", {"md5", "definition"}),
+        ("ros1:/on?type=own/Bool", set()),  # of which nothing is known
+        ("ros2-dds:/on", set()),  # it is a type of ROS 1
+        ("tcp:9000", set()),
+    ],
+)
+def test_what_an_address_says_goes_first(target, told):
+    bridge = rj.Bridge.of("std_msgs/msg/Bool", "std_msgs/Bool", decode={"encoding": "cdr"}, encode={"encoding": "ros1"})
+    assert announced(target, bridge).keys() == told
+    assert announced(target, None) == {}
 
 
 def test_a_rate(run):
