@@ -1,8 +1,8 @@
-"""What the target of a route is told of the type that it gets, where its address does not say so."""
+"""What a route knows of the types of its messages, and the ends of channels want to know, where addresses do not say it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.api.bridges import Bridge
 from rosetta_jit.bridge.translating import Stateful
@@ -14,19 +14,26 @@ if TYPE_CHECKING:
 
 
 def announced(target: str, translate: Translate | None) -> dict[str, str]:
-    """Options for the publisher: a type's name, md5 sum, hash, text, whichever it takes.
+    """Options for a publisher: the name, md5 sum, hash and text of the type that is written, whichever it takes."""
+    return _known(target, translate, "encode")
 
-    Empty where messages are not translated, or become those of a type that is not the middleware's; and where the address says another
-    type, as nothing else is known of that.
-    """
+
+def wanted(source: str, translate: Translate | None) -> dict[str, str]:
+    """Options for a subscriber: what the type that is read must be, so that messages of another one are refused and not misread."""
+    return _known(source, translate, "decode")
+
+
+def _known(place: str, translate: Translate | None, half: Literal["decode", "encode"]) -> dict[str, str]:
+    """Nothing where messages are not translated, or where their type is none of the middleware's; nor of a type that the address says."""
     known = installed()
-    address = parse(target, known)
+    address = parse(place, known)
     transport = known[address.scheme]
     bridge = translate.bridge if isinstance(translate, Stateful) else translate
     framework = transport.types.get(address.scheme)
-    if framework is None or not isinstance(bridge, Bridge):
+    names = transport.asks if half == "decode" else tuple(transport.options)
+    if framework is None or not names or not isinstance(bridge, Bridge):
         return {}
-    found = bridge.announced(framework)
+    found = bridge.announced(framework, half)
     if "type" in address.options and address.options["type"][0] != found.get("type"):
         return {}
-    return {name: value for name, value in found.items() if name in transport.options and name not in address.options}
+    return {name: value for name, value in found.items() if name in names and name not in address.options}

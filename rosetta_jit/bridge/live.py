@@ -119,7 +119,10 @@ class LiveRoute:
         if self._sender == threading.get_ident():
             self._refusal = reason  # of the message that is being sent, which may be sent again
             return
-        if count and self.counts.drop(reason, count):
+        if not count:  # a peer was refused, and tries again and again
+            if reason not in self.counts.dropped and self.counts.drop(reason, 0):
+                self._say(f"{self.route.name}: {reason}")
+        elif self.counts.drop(reason, count):
             self._say(f"{self.route.name}: {self.counts.dropped[reason]} dropped: {reason}")
 
     def _failed(self, error: MessageError) -> None:

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.bridge.announcing import announced
+from rosetta_jit.bridge.announcing import announced, wanted
 from rosetta_jit.bridge.configuration import Route
 from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
 from rosetta_jit.bridge.live import LINGER_S, LiveRoute
@@ -76,7 +76,7 @@ class Running:
         self.configuration = configuration
         self.live: dict[str, Live] = {}
         self._say = say
-        self._sources: dict[str, _Shared] = {}
+        self._sources: dict[tuple[str, tuple[tuple[str, str], ...]], _Shared] = {}
         self._lock = threading.RLock()
         self._stopping = threading.Event()
         self._patterns: set[str] = set()
@@ -141,8 +141,8 @@ class Running:
     def _ends_of(self, each: Live) -> tuple[End | None, End | None]:
         if isinstance(each, LiveService):
             return each.server, each.caller
-        shared = self._sources.get(each.route.source)
-        return None if shared is None else shared.source, each.target
+        source = next((shared.source for shared in tuple(self._sources.values()) if each in shared.routes), None)
+        return source, each.target
 
     # --- which routes there are ----------------------------------------------------------------------------------------
 
@@ -173,12 +173,12 @@ class Running:
     def _forget(self, gone: Live) -> None:
         """Bring a route no more messages; where it was the last one of its source, close that."""
         with self._lock:
-            for address, shared in [*self._sources.items()]:
+            for key, shared in [*self._sources.items()]:
                 left = tuple(each for each in shared.routes if each is not gone)
                 shared.routes = left
                 if not left:
                     shared.close()
-                    del self._sources[address]
+                    del self._sources[key]
 
     # --- opening -------------------------------------------------------------------------------------------------------
 
@@ -260,15 +260,17 @@ class Running:
     def _listen(self, each: LiveRoute) -> None:
         """Let a source bring its messages to this route, too."""
         address = each.route.source
+        options = wanted(address, each.translate)
+        key = address, tuple(sorted(options.items()))
         with self._lock:
-            shared = self._sources.get(address)
+            shared = self._sources.get(key)
             if shared is not None:
                 shared.routes = (*shared.routes, each)
                 return
         shared = _Shared(each)
-        shared.source = subscribe(address, shared.deliver, lost=shared.lost)
+        shared.source = subscribe(address, shared.deliver, lost=shared.lost, **options)
         with self._lock:
-            self._sources[address] = shared
+            self._sources[key] = shared
 
 
 def _is_pattern(route: Route | Rpc) -> bool:

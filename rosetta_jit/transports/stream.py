@@ -61,7 +61,7 @@ class Stream:
         self._most = max_waiting
         self._waiting: deque[memoryview] = deque()
         self._waiting_bytes = 0
-        self._turn = threading.Lock()
+        self._turn = threading.RLock()  # a signal may interrupt a sender, and its handler send, too
         self._room = threading.Condition(self._turn)
         self._finishing = False
         self._paused = False

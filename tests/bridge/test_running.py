@@ -129,7 +129,7 @@ def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, 
         shown = text(bridge.snapshot())
         assert 'rosetta_jit_bridge_state{route="a",variable="decode.last"} 15.0\n' in shown
         assert 'rosetta_jit_bridge_state{route="a",variable="decode.seen"} 1.0\n' in shown
-        until(lambda: not next(iter(bridge._sources.values())).source.connections)
+        until(lambda: not bridge.snapshot()[0]["connections"]["source"])
         bridge.reload(bridge.configuration)
         assert bridge.snapshot()[0]["state"]["decode.last"] == 15  # a route that did not change goes on
         assert turned(3, 4) == [0, 1]
@@ -159,6 +159,29 @@ def test_the_target_gets_to_know_the_type(run):
             assert (message.data, message.type, message.attributes["md5"]) == (b"\1", "std_msgs/Bool", BOOL)
             assert message.attributes["definition"] == "bool data\n"
         assert not there.lost
+    finally:
+        master.close()
+
+
+def test_a_source_of_another_type_is_refused_and_said(run):
+    """Its messages could be read, as something that they are not."""
+    master, target = Master(), free_port()
+    at = f"ros1:/on?master={master.uri}"
+    mapping = (
+        'decode_type = "std_msgs/Bool"\nencode_type = "std_msgs/msg/Bool"\ndecode = { encoding = "ros1" }\nencode = { encoding = "cdr" }'
+    )
+    try:
+        with (
+            rj.publish(f"{at}&type=std_msgs/UInt8&md5=7c8164229e7d2c17eb95e9231617fdee&name=/other") as other,
+            rj.subscribe(f"tcp:{target}"),
+        ):
+            bridge, said = run(f'[[route]]\nname = "a"\nsource = "{at}"\ntarget = "tcp:{target}"\n{mapping}\n')
+            until(lambda: said)
+            other.send(b"\1")
+            (shown,) = bridge.snapshot()
+            assert "the publisher refuses: another" in said[0]
+            assert (shown["taken"], list(shown["dropped"].values())) == (0, [0])
+            bridge.stop(0.2)
     finally:
         master.close()
 

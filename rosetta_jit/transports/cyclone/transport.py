@@ -16,6 +16,7 @@ TRANSPORTS = (
         publish=f"{HERE}:publish",
         extra=("cyclonedds", "cyclonedds"),
         types={"ros2-dds": "ros2"},
+        asks=("type",),
         options={
             "type": Option("text", "", "the type's name: `std_msgs/msg/String` for ros2-dds, as DDS has it for dds"),
             "struct": Option(
