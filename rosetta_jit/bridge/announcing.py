@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rosetta_jit.api.bridges import Bridge
 from rosetta_jit.bridge.translating import Stateful
@@ -13,14 +13,19 @@ if TYPE_CHECKING:
     from rosetta_jit.bridge.translating import Translate
 
 
-def announced(target: str, translate: Translate | None) -> dict[str, str]:
+def announced(target: str, translate: Translate | None) -> dict[str, Any]:
     """Options for a publisher: the name, md5 sum, hash and text of the type that is written, whichever it takes."""
     return _known(target, translate, "encode")
 
 
-def wanted(source: str, translate: Translate | None) -> dict[str, str]:
+def wanted(source: str, translate: Translate | None) -> dict[str, Any]:
     """Options for a subscriber: what the type that is read must be, so that messages of another one are refused and not misread."""
     return _known(source, translate, "decode")
+
+
+def served(place: str, request: Translate | None, reply: Translate | None) -> dict[str, Any]:
+    """Options for a server: the service of ROS 1 whose requests are read, or the type of what RSB is answered."""
+    return wanted(place, request) or announced(place, reply)
 
 
 def _known(place: str, translate: Translate | None, half: Literal["decode", "encode"]) -> dict[str, str]:

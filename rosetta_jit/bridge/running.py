@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rosetta_jit.bridge.announcing import announced, wanted
+from rosetta_jit.bridge.announcing import announced, served, wanted
 from rosetta_jit.bridge.configuration import Route
 from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
 from rosetta_jit.bridge.live import LINGER_S, LiveRoute
@@ -235,8 +235,8 @@ class Running:
             if isinstance(each, LiveRoute):
                 self._open_route(each)
             else:
-                each.open(call(each.route.call))
-                each.server = serve(each.route.serve, each.answer)
+                each.open(call(each.route.call, **announced(each.route.call, each.request)))
+                each.server = serve(each.route.serve, each.answer, **served(each.route.serve, each.request, each.reply))
         except RosettaError as error:
             if each.problem != str(error):
                 self._say(f"{name}: {error}")
@@ -251,7 +251,7 @@ class Running:
         route = each.route
         if each.target is None:
             if route.calls:
-                each.open(None, call(route.target))
+                each.open(None, call(route.target, **announced(route.target, each.translate)))
             else:
                 each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translate)), None)
         self._listen(each)

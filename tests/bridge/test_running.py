@@ -186,6 +186,30 @@ def test_a_source_of_another_type_is_refused_and_said(run):
         master.close()
 
 
+SET = "bool data\n---\nbool success\nstring message\n"
+SUM = "09fb03525b03e7ea1fd3992bafd87e16"
+"""The md5 sum of such a service, as `rossrv md5 std_srvs/SetBool` says it."""
+
+
+def test_who_asks_a_service_gets_to_know_its_type(run, tmp_path):
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "Set.srv").write_text(SET)
+    master, inner = Master(), free_port()
+    half = '{ encoding = "ros1", imports = ["own/Set.srv"] }'
+    at = f"ros1:/set?master={master.uri}"
+    try:
+        with rj.serve(f"tcp:{inner}", lambda message: bytes(message.data) + bytes(4)):
+            request = f'{{ decode_type = "own/SetRequest", decode = {half}, encode = {half} }}'
+            bridge, _ = run(f'[[rpc]]\nserve = "{at}"\ncall = "tcp:{inner}"\nrequest = {request}\n')
+            with rj.call(f"{at}&md5={SUM}&name=/one") as ask:
+                assert ask(b"\1").data == b"\1" + bytes(4)
+            with rj.call(f"{at}&md5={'0' * 32}&name=/two") as ask, pytest.raises(rj.TransportError, match="another md5"):
+                ask(b"\1")
+            bridge.stop(0.2)
+    finally:
+        master.close()
+
+
 @pytest.mark.parametrize(
     ("target", "told"),
     [
