@@ -6,6 +6,7 @@ import json
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.configuration import read
 from rosetta_jit.bridge.patterns import is_pattern
 from rosetta_jit.bridge.translating import translation_of, translator
@@ -17,6 +18,7 @@ from rosetta_jit.transports.opening import COMMON
 
 if TYPE_CHECKING:
     from rosetta_jit.bridge.configuration import Configuration, Route, Rpc, Translation
+    from rosetta_jit.bridge.translating import Joining, Translate
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.source import Span
     from rosetta_jit.transports.base import Transport
@@ -52,9 +54,9 @@ def mistakes(configuration: Configuration) -> list[Diagnostic]:
                 found.append(words.cannot_wait(places.of(*here, "full"), transport.name))
         key = "call" if route.calls else "target"
         target = _checked(route.target, "call" if route.calls else "publish", places.of(*here, key), found)
-        if target is not None and not route.calls and _lacks_type(route.target, target):
+        translate = _compiled(route, route.translation, configuration, here, found)
+        if target is not None and not route.calls and _lacks_type(route.target, target) and not announced(route.target, translate):
             found.append(words.no_type(places.of(*here, key), target.name, target.options["type"].meaning))
-        _compiled(route, route.translation, configuration, here, found)
     for rpc in configuration.rpcs:
         here = ("rpc", rpc.number)
         _checked(rpc.serve, "serve", places.of(*here, "serve"), found)
@@ -95,18 +97,16 @@ def _example(direction: str) -> str:
 
 def _compiled(
     route: Route | None, translation: Translation, configuration: Configuration, here: tuple[str | int, ...], found: list[Diagnostic]
-) -> None:
+) -> Translate | Joining | None:
     """Compile what a route, or one direction of a service, has for messages."""
     try:
-        if route is None:
-            translator(translation, configuration.search_path)
-        else:
-            translation_of(route, configuration.search_path)
+        return translator(translation, configuration.search_path) if route is None else translation_of(route, configuration.search_path)
     except (RosettaError, TypeError, ValueError) as error:
         given: dict[str, Any] = json.loads(translation.text)
         keys = [key for key in ("decode_mapping", "encode_mapping", "decode_type", "encode_type", "between") if key in given]
         path = (*here, "mapping") if keys[:1] == ["decode_mapping"] else (*here, *keys[:1])
         found.append(words.bad_mapping(configuration.places.of(*path), str(error)))
+        return None
 
 
 def explained(configuration: Configuration) -> list[dict[str, Any]]:

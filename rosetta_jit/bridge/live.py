@@ -69,7 +69,7 @@ class LiveRoute:
         self.counts = RouteCounts()
         self.problem = "not open yet"
         self._joining = translate if isinstance(translate, Joining) else None
-        self._translate = None if isinstance(translate, Joining) else translate
+        self.translate = None if isinstance(translate, Joining) else translate
         self._say = say
         self._sink: Sink | None = None
         self._caller: Caller | None = None
@@ -101,11 +101,11 @@ class LiveRoute:
     @property
     def state(self) -> Mapping[str, float | str]:
         """What its mappings keep from one message to the next."""
-        return state_of(self._joining or self._translate)
+        return state_of(self._joining or self.translate)
 
     def begin_anew(self) -> None:
         """Let the next message be the first one for its mappings."""
-        kept = self._joining or self._translate
+        kept = self._joining or self.translate
         if isinstance(kept, Stateful | Joining):
             kept.reset()
             self._say(f"{self.route.name}: its source came back, and the state of its mapping begins anew")
@@ -125,9 +125,9 @@ class LiveRoute:
                 self.lost("above its rate")
                 return
             self._due_ns = max(self._due_ns + self._interval_ns, begun)
-        if self._translate is not None:
+        if self.translate is not None:
             try:
-                data = self._translate(data)
+                data = self.translate(data)
             except MessageError as error:
                 self._failed(error)
                 return
@@ -165,7 +165,10 @@ class LiveRoute:
         if self._sender == threading.get_ident():
             self._refusal = reason  # of the message that is being sent, which may be sent again
             return
-        if count and self.counts.drop(reason, count):
+        if not count:  # a peer was refused, and tries again and again
+            if reason not in self.counts.dropped and self.counts.drop(reason, 0):
+                self._say(f"{self.route.name}: {reason}")
+        elif self.counts.drop(reason, count):
             self._say(f"{self.route.name}: {self.counts.dropped[reason]} dropped: {reason}")
 
     def _failed(self, error: MessageError) -> None:

@@ -22,23 +22,23 @@ class Stateful:
     """A compiled bridge whose mappings keep state from one message to the next; threads take it in turn."""
 
     def __init__(self, bridge: Bridge) -> None:
-        self._bridge = bridge
+        self.bridge = bridge
         self._turn = threading.Lock()
 
     def __call__(self, message: Any) -> bytes:
         """What a message becomes."""
         with self._turn:
-            return self._bridge(message)
+            return self.bridge(message)
 
     def reset(self) -> None:
         """Let the next message be the first one."""
         with self._turn:
-            self._bridge.reset()
+            self.bridge.reset()
 
     def state(self) -> dict[str, float | str]:
         """Each state variable by its name, `decode.` or `encode.` in front; as JSON has numbers, so that infinity and NaN are texts."""
         with self._turn:
-            halves = self._bridge.state
+            halves = self.bridge.state
         return {f"{half}.{name}": _shown(value) for half, variables in halves.items() for name, value in variables.items()}
 
 
