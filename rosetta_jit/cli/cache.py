@@ -1,4 +1,4 @@
-"""`rosetta-jit cache`: look at the kernel cache, check it, or empty it."""
+"""`rosetta-jit cache`: look at the kernel cache, check it, empty it, or fill it."""
 
 from __future__ import annotations
 
@@ -7,23 +7,30 @@ import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from rosetta_jit.cli import compile as ahead
 from rosetta_jit.cli.arguments import Commands, add_command
 
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "Look at the cache of compiled kernels (info), check it (verify), or empty it (clear)."
+SUMMARY = "Look at the cache of compiled kernels (info), check it (verify), empty it (clear), or compile into it ahead (warm)."
 
 
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "cache", SUMMARY, run)
-    command.add_argument("action", choices=("info", "verify", "clear"))
-    command.add_argument("--json", action="store_true", help="one JSON object, on stdout")
+    command.add_argument("action", choices=("info", "verify", "clear", "warm"))
+    ahead.add_programs(command, nargs="*", of="warm: ")
+    command.add_argument("--json", action="store_true", help="one JSON object, on stdout; warm: one a program")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code 1 if `verify` finds something wrong, or if the folder cannot be used."""
+    """Exit code 1 if `verify` or `warm` finds something wrong, or if the folder cannot be used; 2 if names are missing or out of place."""
+    if bool(arguments.names) != (arguments.action == "warm"):
+        print("error: " + ("name what to compile" if not arguments.names else f"cache {arguments.action} takes no names"), file=sys.stderr)
+        return 2
+    if arguments.action == "warm":
+        return ahead.run(arguments)
     actions = {"info": _info, "verify": _verify, "clear": _clear}
     return actions[arguments.action](as_json=arguments.json)
 

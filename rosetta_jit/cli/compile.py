@@ -1,4 +1,4 @@
-"""`rosetta-jit compile`: compile programs now, several at a time, so that later processes load them from the cache."""
+"""`rosetta-jit compile`, also `cache warm`: compile programs now, several at a time, so that later processes load them from the cache."""
 
 from __future__ import annotations
 
@@ -22,12 +22,18 @@ SUMMARY = "Compile mappings and types in both directions and keep the kernels in
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "compile", SUMMARY, run)
-    command.add_argument("names", metavar="MAPPING|TYPE|FOLDER", nargs="+", help="mappings, types, and folders of mappings")
+    add_programs(command, nargs="+")
+    command.add_argument("--json", action="store_true", help="one JSON object a program, on stdout")
+
+
+def add_programs(command: argparse.ArgumentParser, *, nargs: str, of: str = "") -> None:
+    """Declare which programs to compile; ``of`` begins the help of an action among others."""
+    command.add_argument("names", metavar="MAPPING|TYPE|FOLDER", nargs=nargs, help=f"{of}mappings, types, and folders of mappings")
     add_encoding(command)
     add_parameters(command)
-    command.add_argument("--direction", choices=("decode", "encode"), action="append", help="only this direction")
-    command.add_argument("--jobs", type=int, metavar="N", help="compile so many at a time (default: as many as there are processors)")
-    command.add_argument("--json", action="store_true", help="one JSON object a program, on stdout")
+    command.add_argument("--direction", choices=("decode", "encode"), action="append", help=f"{of}only this direction")
+    jobs = f"{of}compile so many at a time (default: as many as there are processors)"
+    command.add_argument("--jobs", type=int, metavar="N", help=jobs)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -27,7 +27,7 @@ def test_names_become_programs(tmp_path):
 
 def test_later_processes_find_them(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
-    assert main(["compile", KEY_VALUE, BOOL, "--jobs", "2", "--json"]) == 0
+    assert main(["cache", "warm", KEY_VALUE, BOOL, "--jobs", "2", "--json"]) == 0
     made = {(each["name"], each["direction"]) for each in map(json.loads, capsys.readouterr().out.splitlines())}
     assert made == {(name, direction) for name in (KEY_VALUE, BOOL) for direction in ("decode", "encode")}
     kept = {path.name for path in tmp_path.rglob("*") if path.is_file()}
@@ -72,3 +72,9 @@ def test_a_direction_without_rules_is_left_out(tmp_path):
     (tmp_path / "one_way.mapping").write_text(text)
     made = [each for several in warm(programs_of([str(tmp_path)]), jobs=1) for each in several]
     assert [(each.request.direction, each.error) for each in made] == [("decode", None)]
+
+
+@pytest.mark.parametrize("arguments", [["cache", "warm"], ["cache", "info", BOOL]])
+def test_names_belong_to_warm(arguments, capsys):
+    assert main(arguments) == 2
+    assert "error: " in capsys.readouterr().err

@@ -105,6 +105,12 @@ def test_the_text_is_the_same_every_time():
     check_golden(GOLDEN / "generate" / "torso_state.py.txt", generated(TORSO, "python", BOTH, "torso_state")["torso_state.py"])
 
 
+def test_arrays_and_texts_are_read_and_written_without_rows():
+    """Lists are made and taken where the message has them: golden for a message with all kinds of them."""
+    request = type_request("decode", "sensor_msgs/JointState", {"encoding": "ros1"})
+    check_golden(GOLDEN / "generate" / "joint_state.py.txt", generated(request, "python", BOTH, "joint_state")["joint_state.py"])
+
+
 def test_a_module_needs_the_standard_library_alone(tmp_path):
     (tmp_path / "torso.py").write_text(generated(TORSO, "python", BOTH, "torso")["torso.py"])
     message = struct.pack("<ii3d", 266, 3, 90.0, 0.0, -90.0)

@@ -26,7 +26,7 @@ def some_floats(count):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_floats_are_written_as_python_does(backend):
     run = decoder({"s": "text(.x)"}, backend)
-    for x in [*EDGES, *some_floats(200)]:
+    for x in [*EDGES, *some_floats(200 if backend == "llvm" else 20)]:
         assert run(x=x)["s"] == repr(x)
 
 
@@ -43,7 +43,10 @@ def test_floats_of_32_bits(backend):
 def test_decimals(decimals, backend):
     run = decoder({"s": f"text(.x, {decimals})"}, backend)
     ties = [0.5, 1.5, 2.5, 0.125, 0.0005, 0.00049, 0.05, 9.9999, 99.95, -9.5, 1e-9]
-    for x in [*ties, *(x for x in [*EDGES, *some_floats(100)] if not abs(x) >= 10 ** (18 - decimals) or math.isinf(x))]:
+    for x in [
+        *ties,
+        *(x for x in [*EDGES, *some_floats(100 if backend == "llvm" else 10)] if not abs(x) >= 10 ** (18 - decimals) or math.isinf(x)),
+    ]:
         assert run(x=x)["s"] == f"{x:.{decimals}f}"
     with pytest.raises(rj.DecodeError, match="more than 18 digits") as error:
         run(x=10.0 ** (18 - decimals))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rosetta_jit as rj
-from tests.language.texts import BACKENDS, HEAD, decoder, encoder
+from tests.language.texts import BACKENDS, HEAD, SCHEMAS, WIRE, decoder, encoder
 
 WORDS = ["", "a", "Zoë €1 😀 end", "  \t padded\r\n", "a,b,,c", ",", "xyxyx", "ABCxyz[`{@", "long " * 50]
 
@@ -46,22 +46,24 @@ OF_TWO = {
 }
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.parametrize("expression", OF_TEXT)
-def test_texts(expression, backend):
-    run = decoder({"s": expression}, backend)
-    for s in WORDS:
-        for t in ("", "xy", " t "):
-            assert run(s=s, t=t)["s"] == OF_TEXT[expression](s, t), (s, t)
+MANY = 'syntax = "proto2"; message Many { repeated string texts = 1; repeated bool answers = 2; }'
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.parametrize("expression", OF_TWO)
-def test_questions(expression, backend):
-    run = decoder({"ok": expression}, backend)
+def test_texts_and_questions(backend):
+    """All in one program."""
+    rules = [f"len(.texts) = {len(OF_TEXT)}", *(f".texts[{number}] = {each}" for number, each in enumerate(OF_TEXT))]
+    rules += [f"len(.answers) = {len(OF_TWO)}", *(f".answers[{number}] = {each}" for number, each in enumerate(OF_TWO))]
+    head = 'import "w.bottle-schema"\nimport "many.proto"\ndata-holder: Many\nwire-schema: w\nunpack-rules:\n  '
+    schema = {**SCHEMAS, "many.proto": MANY, "m.mapping": head + "\n  ".join(rules) + "\n"}
+    decode = rj.Decoder("m.mapping", schema=schema, encoding="yarp3", backend=backend)
+    write = rj.Encoder.of("w", schema=SCHEMAS, imports=["w.bottle-schema"], encoding="yarp3", backend="interpreter")
+    others = ("", "xy", " t ", "xyxy", "A")
     for s in WORDS:
-        for t in (*WORDS, "xyxy", "A"):
-            assert run(s=s, t=t)["ok"] is OF_TWO[expression](s, t), (s, t)
+        for t in others if backend == "interpreter" else (*WORDS, *others):
+            found = decode(write(write.holder_type.from_dict({**WIRE, "s": s, "t": t})))
+            assert list(found.texts) == [expected(s, t) for expected in OF_TEXT.values()], (s, t)
+            assert list(found.answers) == [expected(s, t) for expected in OF_TWO.values()], (s, t)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

@@ -9,10 +9,12 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import field
+from itertools import groupby
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import (
     WIDTH,
@@ -90,6 +92,7 @@ class Scope:
     counted: set[int] = field(default_factory=set[int])
     rooms: set[int] = field(default_factory=set[int])
     told: set[str] = field(default_factory=set[str])
+    direct: Direct = field(default_factory=Direct)
 
     def view(self, lane: int, code: str) -> str:
         """The view of a lane's rows as numbers of one type."""
@@ -106,9 +109,30 @@ class Scope:
 
     def struct(self, order: str, code: str, verb: str) -> str:
         """A function of the struct module: ``load_I`` with the low byte first, ``load_I_be`` with the high one."""
+        code = "".join(f"{count}{each}" if (count := len([*same])) > 1 else each for each, same in groupby(code))
         name = f"_{verb}_{code}{'' if order == '<' else '_be'}"
         self.loads.add(name)
         return name
+
+    def place(self, place: Place, scalar: str) -> str:
+        """The same for a place of a kernel."""
+        if place.lane in self.direct.elements:
+            return self.element(place.lane, self.direct.elements[place.lane].index(place))
+        return self.field(place.lane, expression(self, place.row), place.offset, scalar)
+
+    def element(self, lane: int, number: int) -> str:
+        """The local for an element of an array that has few."""
+        return self.locals.identifier(f"{self.lanes.rows(lane)}\0{number}")
+
+    def own(self, lane: int, offset: int, scalar: str) -> str:
+        """The local for a field of the row that a loop fills."""
+        path = self.lanes.field(lane, "", offset, scalar)
+        return self.locals.identifier(f"{self.lanes.rows(lane)}\0{offset}" if path is None else re.sub(r"\W+", "_", path).strip("_"))
+
+    def text(self, lane: int, offset: int) -> str:
+        """The local for a text that is decoded where it is checked."""
+        start = flat_name(self.lanes, offset, "i64") if lane == 0 else self.own(lane, offset, "i64")
+        return self.locals.identifier(f"{start.removesuffix('_start')}\0text")
 
     def field(self, lane: int, row: str, offset: int, scalar: str) -> str:
         """A scalar of a row."""
@@ -118,6 +142,8 @@ class Scope:
             if scalar in FLOATS:
                 self.floats.add(name)
             return name
+        if lane in self.direct.appended or lane in self.direct.whole:
+            return self.own(lane, offset, scalar)
         width, stride = WIDTH[scalar], self.lanes.stride(lane)
         return f"{self.view(lane, CODES[scalar])}[{_scaled(row, stride // width, offset // width)}]"
 
@@ -151,7 +177,7 @@ def expression(scope: Scope, expr: Expr) -> str:
         case Load(type_, at, order):
             return _loaded(scope, type_, bare(expression(scope, at)), order)
         case Get(type_, place):
-            text = scope.field(place.lane, expression(scope, place.row), place.offset, type_)
+            text = scope.place(place, type_)
             return f"({text} != 0)" if type_ == "bool" else text
         case Used() | Capacity() | Told() | Register():
             return _known(scope, expr)

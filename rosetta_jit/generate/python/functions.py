@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.generate.c.statements import reached, read_names
-from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, view_name
+from rosetta_jit.generate.python.direct import direct, settled
+from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative, undamaged
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
 from rosetta_jit.kernel.ir import (
@@ -28,15 +29,31 @@ from rosetta_jit.kernel.shape import expressions_of, statements, subexpressions
 from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.origins import Origin
+    from rosetta_jit.generate.python.statements import Objects
     from rosetta_jit.generate.unit import Role
     from rosetta_jit.kernel.ir import Routine, Scalar
 
 WORDS = frozenset(
-    (*keyword.kwlist, *dir(builtins), "data", "end", "most", "sites", "indices", "math", "array", "self", "target", "functions", "now")
+    (
+        *keyword.kwlist,
+        *dir(builtins),
+        "data",
+        "end",
+        "most",
+        "sites",
+        "indices",
+        "math",
+        "array",
+        "self",
+        "target",
+        "parts",
+        "functions",
+        "now",
+    )
 ) | {f"told_{what}" for what in ("now", "number", "registers", "end")}
 
 
@@ -76,46 +93,54 @@ def _set(stmt: Stmt) -> list[Place]:
     return [stmt.place] if isinstance(stmt, SetField) else []
 
 
+def words_of(lanes: Lanes) -> frozenset[str]:
+    """What no local may be called."""
+    codes = ("", *sorted(set(CODES.values())))
+    words = WORDS | {view_name(lanes, lane, code) for lane in range(len(lanes.all)) for code in codes}
+    return words | {f"{lanes.rows(lane)}_{what}" for lane in range(len(lanes.all)) for what in ("used", "room")}
+
+
 def print_kernel(
     kernel: Kernel,
     lanes: Lanes,
     role: Role,
     loads: set[str],
     origins: Sequence[Origin],
-    result: Callable[[Scope, str], str],
-    inner: Callable[[Scope], list[str]],
+    objects: Objects,
     paths: tuple[str, ...],
     *,
     flat: bool,
 ) -> tuple[str, tuple[Attempt, ...]]:
     """The functions of a kernel as text, and how they are called."""
     writer, routines = Writer(), dict[str, Attempt]()
-    codes = ("", *sorted(set(CODES.values())))
-    words = WORDS | {view_name(lanes, lane, code) for lane in range(len(lanes.all)) for code in codes}
-    words |= {f"{lanes.rows(lane)}_{what}" for lane in range(len(lanes.all)) for what in ("used", "room")}
+    words = words_of(lanes)
 
     def scope() -> Scope:
         return Scope(Namespace(words), lanes, flat, loads, kernel.name, paths)
 
     for routine in kernel.routines:
-        function = Function(scope(), kernel, routine.sites, routines, (), result, is_routine=True)
+        function = Function(scope(), kernel, routine.sites, routines, (), objects, is_routine=True)
         routines[routine.name] = _routine(writer, role, routine, function)
     attempts = [
-        _attempt(writer, role, number, Function(scope(), kernel, kernel.sites, routines, origins, result), inner)
+        _attempt(writer, role, number, Function(scope(), kernel, kernel.sites, routines, origins, objects))
         for number in range(len(kernel.bodies))
     ]
     return writer.text(), tuple(attempts)
 
 
-def _attempt(writer: Writer, role: Role, number: int, function: Function, inner: Callable[[Scope], list[str]]) -> Attempt:
-    kernel, scope = function.kernel, function.scope
+def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Attempt:
+    kernel, scope, objects = function.kernel, function.scope, function.objects
     body = reached(kernel.bodies[number])
-    body = undamaged(body, kernel.sites) if kernel.direction != "decode" else body
+    if kernel.direction != "decode":
+        body = undamaged(body, kernel.sites)
+    elif scope.flat and objects.layout is not None:
+        body, scope.direct = direct(body, kernel, objects.layout, objects.arrays)
+    function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Reserve))
     function.outside = {stmt.lane for stmt in body if isinstance(stmt, Reserve)}
     print_block(function, body)
-    made = inner(scope)
+    made = objects.inner(scope)
     name = f"_{role}_{number + 1}"
     given = _given(function, own_only=kernel.direction != "decode", hidden=role == "encode")
     _blank(writer)
@@ -131,7 +156,8 @@ def _completed(line: str, function: Function) -> list[str]:
     scope, text = function.scope, line.strip()
     before = line[: len(line) - len(line.lstrip())]
     if text == "<row>":
-        groups = ((scope.rows - scope.floats, "0"), (scope.rows & scope.floats, "0.0"))
+        rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
+        groups = ((rows - scope.floats, "0"), (rows & scope.floats, "0.0"))
         return [f"{before}{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
     if text.startswith("<views "):
         lane = int(text[7:-1])

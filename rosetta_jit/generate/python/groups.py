@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import (
@@ -9,6 +10,7 @@ from rosetta_jit.kernel.ir import (
     Assign,
     Binary,
     Call,
+    Compare,
     Const,
     Convert,
     Expect,
@@ -56,10 +58,22 @@ def grouped(block: Block) -> Iterator[list[Stmt]]:
 def scalar_of(stmt: Stmt) -> tuple[str, Expr, str] | None:
     """Type, place and byte order of the one scalar that a statement takes from the message, or puts there."""
     match stmt:
-        case Let(_, Load(type_, at, order)) | SetField(_, Load(type_, at, order)):
-            return (type_, at, order) if type_ != "bool" else None
+        case Let(_, value) | SetField(_, value):
+            load = _as_loaded(value)
+            return (load.type, load.at, load.order) if load is not None and load.type != "bool" else None
         case Store(at, value, order):
             return (type_of(value), at, order) if type_of(value) != "bool" else None
+        case _:
+            return None
+
+
+def _as_loaded(value: Expr) -> Load | None:
+    """The scalar of the message that a value is; an integer of more bits is the same one."""
+    match value:
+        case Load():
+            return value
+        case Convert(type_, Load(inner) as load) if inner[0] in "iu" and type_[0] in ("i", inner[0]) and WIDTH[type_] > WIDTH[inner]:
+            return load
         case _:
             return None
 
@@ -107,12 +121,24 @@ def not_negative(block: Block) -> frozenset[str]:
                 unknown.update(bound_names(stmt))
             case _:
                 pass
+    for name in _checked(block):
+        values[name] = []
     known = {name for name in values if name not in unknown} | {END.name}
     while True:
         kept = {name for name in known if all(is_not_negative(value, known) for value in values.get(name, ()))}
         if kept == known:
             return frozenset(known)
         known = kept
+
+
+def _checked(block: Block) -> Iterator[str]:
+    """Names of constants of which the next statement says that they are 0 or more."""
+    for (stmt, _), (after, _) in pairwise(statements(block)):
+        match stmt, after:
+            case Let(name, _), Expect(Compare("ge" | "gt", Local(_, same), Const(_, least)), _) if name == same and least >= 0:
+                yield name
+            case _:
+                pass
 
 
 def is_not_negative(expr: Expr, known: frozenset[str] | set[str]) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,23 +10,23 @@ from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.language import named_parts
-from rosetta_jit.generate.c.statements import reached
 from rosetta_jit.generate.python.classes import classes, names_of
 from rosetta_jit.generate.python.expressions import CODES, Scope, view_name
-from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel
-from rosetta_jit.generate.python.groups import grouped, scalar_of, undamaged
-from rosetta_jit.generate.python.objects import Collect, Make
-from rosetta_jit.generate.python.statements import together
-from rosetta_jit.kernel.ir import WIDTH, Advance, Const, Require, Return, Store
+from rosetta_jit.generate.python.functions import WORDS, is_flat, print_kernel, words_of
+from rosetta_jit.generate.python.given import Given
+from rosetta_jit.generate.python.objects import Collect, Make, arrays_of
+from rosetta_jit.generate.python.parts import encoder_in_parts
+from rosetta_jit.generate.python.positions import NotInParts
+from rosetta_jit.generate.python.statements import Function, Objects
+from rosetta_jit.kernel.ir import Advance, Const, Return
 from rosetta_jit.kernel.shape import is_told, statements
-from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.model.types import Ref
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
     from rosetta_jit.generate.python.functions import Attempt
     from rosetta_jit.generate.unit import Role, Unit
-    from rosetta_jit.kernel.ir import Direction, Kernel, Stmt
+    from rosetta_jit.kernel.ir import Direction, Kernel
 
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
@@ -53,7 +52,7 @@ class _Module:
         self.lanes = named_parts(unit, WORDS)
         self.paths = tuple(f".{each.name}" if each.name else "" for each in unit.layout.lanes)
         self.loads, self.structs = set[str](), dict[str, str]()
-        self.root = self.names[unit.type]
+        self.root, self.guesses = self.names[unit.type], False
 
     def text(self) -> str:
         """All of it."""
@@ -78,14 +77,13 @@ class _Module:
         lines: list[str] = []
         for name in sorted(self.loads):
             _, verb, code, *order = name.split("_")
-            code = "".join(f"{len([*same])}{each}" if len(code) > 1 else each for each, same in groupby(code))
             if verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
             else:
                 method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
                 lines.append(f'{name} = Struct("{">" if order else "<"}{code}").{method}')
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
-        if "encode" in self.unit.kernels and self._whole() is None:
+        if self.guesses:
             lines += ["_room = [256]", '"""The room that messages took."""']
         if any(is_told([kernel]) for kernel in self.unit.kernels.values()):
             lines.append("_numbers = _count()")
@@ -130,10 +128,14 @@ class _Module:
                 lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
             return lines
 
-        origins = self.unit.origins.get("borrow", ())
-        text, attempts = print_kernel(
-            kernel, self._lanes(kernel), "borrow", self.loads, origins, made, inner, self.paths, flat=is_flat(kernel, self._lanes(kernel))
-        )
+        arrays = arrays_of(self.unit)
+
+        def row(scope: Scope, lane: int) -> str:
+            return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
+
+        origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
+        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays))
+        text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 
     def _decode(self, attempts: tuple[Attempt, ...]) -> str:
@@ -167,46 +169,35 @@ class _Module:
 
     # --- encoding --------------------------------------------------------------------------------------------------------------------
 
-    def _whole(self) -> list[Stmt] | None:
-        """The statements that write a message which is nothing but numbers one behind the other."""
-        kernel = self.unit.kernels["encode"]
-        *first, last = undamaged(reached(kernel.bodies[0]), kernel.sites)
-        stores = [stmt for stmt in first if isinstance(stmt, Store)]
-        if (
-            None in map(scalar_of, stores)
-            or not stores
-            or not isinstance(last, Return)
-            or not all(isinstance(stmt, Require | Store) for stmt in first)
-        ):
-            return None
-        size = sum(WIDTH[type_of(stmt.value)] for stmt in stores)
-        are_all = last == Return(Const("i64", size)) and stores[0].at == Const("i64", 0)
-        flat = is_flat(kernel, self._lanes(kernel))
-        return [*stores] if are_all and flat and len([*grouped(tuple(stores))]) == 1 else None
-
-    def _encode_whole(self, stores: list[Stmt]) -> str:
-        kernel = self.unit.kernels["encode"]
-        lanes = self._lanes(kernel)
-        scope = Scope(Namespace(WORDS), lanes, flat=True, loads=self.loads, name=kernel.name, paths=self.paths)
-        collect = Collect(self.unit, lanes, self.structs, Writer(depth=2))
-        packed = together(scope, stores)
-        collect.root(scope.rows, flat=True)
-        return "\n".join(
-            [
-                f"def encode(target: {self.root}) -> bytes:",
-                '    """The message; raises `EncodeError`."""',
-                "    try:",
-                *collect.writer.lines,
-                f"        return {packed}",
-                "    except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:",
-                '        raise EncodeError("range", "", str(error)) from error',
-            ]
-        )
+    def _encoder_in_parts(self) -> str:
+        kernel, lanes = self.unit.kernels["encode"], self._lanes(self.unit.kernels["encode"])
+        scope = Given(Namespace(words_of(lanes)), lanes, flat=True, loads=set(), name=kernel.name, paths=self.paths)
+        origins = self.unit.origins.get("encode", ())
+        objects = Objects(lambda _, __: "message")
+        function = Function(scope, kernel, kernel.sites, {}, origins, objects, writer=Writer(depth=2))
+        lines = encoder_in_parts(self.unit, kernel, function, scope)
+        self.loads |= scope.loads
+        writer = Writer()
+        writer.line(f"def encode(target: {self.root}) -> bytes:")
+        writer.line('    """The message; raises `EncodeError`."""')
+        writer.line("    try:")
+        writer.depth = 2
+        self._told(writer, {f"told_{what}" for what in scope.told}, "encode")
+        writer.lines += lines
+        writer.depth = 1
+        fails = any("raise _Failed(" in line for line in lines)
+        if fails:
+            writer.line("except _Failed as failed:")
+            writer.line("    raise _error(_ENCODE_SITES, failed, None) from None")
+        writer.line("except (AttributeError, TypeError, ValueError, OverflowError, _StructError) as error:")
+        writer.line('    raise EncodeError("range", "", str(error)) from error')
+        return "\n\n\n".join([*([self._sites("encode")] if fails else []), writer.text()])
 
     def _encoder(self) -> str:
-        whole = self._whole()
-        if whole is not None:
-            return self._encode_whole(whole)
+        try:
+            return self._encoder_in_parts()
+        except NotInParts:
+            self.guesses = True
         roles: tuple[Role, ...] = ("size", "encode")
         kernels: dict[Role, Kernel] = {role: self.unit.kernels[role] for role in roles}
         flat = all(is_flat(kernel, self._lanes(kernel)) for kernel in kernels.values())
@@ -222,7 +213,7 @@ class _Module:
                 return ", ".join([position, *given]) + ("," if not given else "")
 
             text, (attempts[role], *_) = print_kernel(
-                kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), result, lambda _: [], self.paths, flat=flat
+                kernel, lanes, role, self.loads, self.unit.origins.get(role, ()), Objects(result), self.paths, flat=flat
             )
             texts += [self._sites(role), f"\n{text.rstrip()}"]
         longest = max(kernels.values(), key=lambda each: len(each.strides))

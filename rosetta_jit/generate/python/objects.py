@@ -93,6 +93,9 @@ class Make:
         return f"{function}({self.scope.view(slot.lane, '')}, data, {self._start(slot, lane, row)}, {self._count(slot, lane, row)})"
 
     def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
+        known = self._direct(slot, lane)
+        if known is not None:
+            return known
         start, count = self._start(slot, lane, row), self._count(slot, lane, row)
         element = self.unit.layout.lanes[slot.lane].element
         match type_:
@@ -130,6 +133,15 @@ class Make:
                 self.depth -= 1
                 return f"{{{parts[0]}: {parts[1]} for {index} in range({start}, {start} + {count})}}"
 
+    def _direct(self, slot: Span, lane: int) -> str | None:
+        """What is a list or a string already."""
+        known = self.scope.direct
+        if slot.lane in known.whole or slot.lane in known.appended:
+            return self.scope.lanes.rows(slot.lane)
+        if slot.lane in known.elements:
+            return f"[{', '.join(self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))}]"
+        return self.scope.text(lane, slot.offset) if (lane, slot.offset) in known.texts else None
+
     def _is_borrowed(self, type_: Type, lane: int) -> bool:
         """Whether elements are texts that all lie in the message."""
         element = self.unit.layout.lanes[lane].element
@@ -147,6 +159,28 @@ class Make:
         if self.unit.layout.lanes[lane].links is not None:
             return f"made_{self.scope.lanes.rows(lane)}({index})"
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
+
+
+def arrays_of(unit: Unit) -> dict[int, Type]:
+    """The types of the elements of arrays by their lanes; not those of types that contain themselves."""
+    found: dict[int, Type] = {}
+    pending: list[tuple[Type, Slot]] = [(Ref(unit.type), unit.layout.root)]
+    while pending:
+        type_, slot = pending.pop()
+        match unit.schema.resolve(type_), slot:
+            case Struct(fields=fields), Row(members=members):
+                inner = [each.type.value if isinstance(each.type, Optional) else each.type for each in fields]
+                pending += zip(inner, (member.slot for member in members), strict=True)
+            case Union(cases=cases), Variant(members=members):
+                pending += zip((each.type for each in cases), (member.slot for member in members), strict=True)
+            case Array(element), Span(_, lane) if unit.layout.lanes[lane].links is None:
+                found[lane] = element
+                pending.append((element, unit.layout.lanes[lane].element))
+            case Map(key, value), Span(_, lane) if unit.layout.lanes[lane].links is None:
+                pending += [(map_entry(key, value), unit.layout.lanes[lane].element)]
+            case _:
+                pass
+    return found
 
 
 @dataclass(slots=True)

@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 from itertools import count as _count
 from struct import Struct
 from struct import error as _StructError
+from struct import iter_unpack as _unpack_each
 from struct import pack as _pack
+from struct import unpack_from as _unpack
 from time import time_ns as _time_ns
 from typing import Any
 
@@ -100,6 +102,19 @@ def _turned(part: Any, code: str) -> bytes:
     numbers.frombytes(part)
     numbers.byteswap()
     return numbers.tobytes()
+
+
+def _many(part: Any, code: str) -> list[Any]:
+    """The numbers that lie in a message."""
+    view: Any = memoryview(part)
+    return view.cast(code).tolist()
+
+
+def _many_turned(part: Any, code: str) -> list[Any]:
+    """The same where the high byte of each comes first."""
+    numbers = array(code, part)
+    numbers.byteswap()
+    return numbers.tolist()
 
 
 def _text(lane: Any, data: Any, start: int, count: int) -> str:

@@ -10,6 +10,7 @@ from rosetta_jit.backends.base import Writer
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, location, view_name
 from rosetta_jit.generate.python.groups import grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.generate.python.reading import numbers_read, takes_text
 from rosetta_jit.kernel.ir import (
     WIDTH,
     Advance,
@@ -38,9 +39,10 @@ from rosetta_jit.kernel.ir import (
     Unary,
     Var,
     While,
+    Wire,
 )
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.terms import type_of
+from rosetta_jit.kernel.terms import mul, type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.kernel.ir import Effect, Site
+    from rosetta_jit.model.layout import Layout
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +61,26 @@ class Attempt:
     needs: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Objects:
+    """How a function comes to objects: ``result`` is what a return of success gives at a position.
+
+    Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
+    and ``arrays`` are the lanes of arrays in the ``layout``.
+    """
+
+    result: Callable[[Scope, str], str]
+    row: Callable[[Scope, int], str] = lambda _, lane: f"<row {lane}>"
+    inner: Callable[[Scope], list[str]] = lambda _: []
+    layout: Layout | None = None
+    arrays: frozenset[int] = frozenset()
+
+
 @dataclass(slots=True)
 class Function:
-    """One function being printed. ``result`` gives what a return of success gives, ``routines`` are functions by name with what they need.
+    """One function being printed; ``routines`` are functions by name with what they need.
 
+    ``settled`` are the fields of the message's row, by offset and type, that are set whatever the message is before any is read.
     ``positive`` are the locals that are not negative; ``reserved`` says how often rows of a lane are reserved, ``outside`` of which lanes
     that is not within a loop or a case.
     """
@@ -71,7 +90,8 @@ class Function:
     sites: Sequence[Site]
     routines: Mapping[str, Attempt]
     origins: Sequence[Origin]
-    result: Callable[[Scope, str], str]
+    objects: Objects
+    settled: frozenset[tuple[int, str]] = frozenset()
     read: frozenset[str] = frozenset()
     is_routine: bool = False
     moved: set[int] = field(default_factory=set[int])
@@ -92,19 +112,11 @@ def print_block(function: Function, block: Block) -> None:
     before = len(function.writer.lines)
     for group in grouped(block):
         if len(group) == 1:
-            _statement(function, group[0])
+            print_statement(function, group[0])
         else:
             _together(function, group)
     if len(function.writer.lines) == before:
         function.line("pass")
-
-
-def together(scope: Scope, stores: Sequence[Stmt]) -> str:
-    """The bytes of scalars that lie one behind the other, by one call."""
-    found = [each for stmt in stores if (each := scalar_of(stmt)) is not None]
-    order = next((order for type_, _, order in found if WIDTH[type_] > 1), "<")
-    values = ", ".join(bare(expression(scope, stmt.value)) for stmt in stores if isinstance(stmt, Store))
-    return f"{scope.struct(order, ''.join(CODES[type_] for type_, _, _ in found), 'whole')}({values})"
 
 
 def _together(function: Function, group: list[Stmt]) -> None:
@@ -118,7 +130,7 @@ def _together(function: Function, group: list[Stmt]) -> None:
             case Let(name, _):
                 targets.append(scope.locals.identifier(name) if name in function.read else "_")
             case SetField(place, value):
-                targets.append(scope.field(place.lane, expression(scope, place.row), place.offset, type_of(value)))
+                targets.append(_target(function, place, value))
             case Store(_, value, _):
                 targets.append(function.text(value))
             case _:
@@ -129,13 +141,16 @@ def _together(function: Function, group: list[Stmt]) -> None:
         function.line(f"{', '.join(targets)} = {scope.struct(order, codes, 'load')}(data, {at})")
 
 
-def _statement(function: Function, stmt: Stmt) -> None:
+def print_statement(function: Function, stmt: Stmt) -> None:
+    """One statement."""
     match stmt:
         case Require(at, size, failure):
             _fail_if(function, _lacks(function, at, size), failure)
         case Expect(condition, failure):
             if condition == FALSE:
                 _fail(function, failure)
+            elif (taken := takes_text(function.scope, condition)) is not None:
+                _taken(function, taken, failure)
             else:
                 _fail_if(function, function.text(folded(Unary("not", condition))), failure)
         case Let(name, value) | Var(name, value) | Assign(name, value):
@@ -149,13 +164,13 @@ def _statement(function: Function, stmt: Stmt) -> None:
         case Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
         case Return(position, ()):
-            function.line(f"return {function.result(function.scope, function.text(position))}")
+            function.line(f"return {function.objects.result(function.scope, function.text(position))}")
         case Return(position, registers):
             function.scope.told.add("registers")
             words = "".join(f"told_registers[{number}], " for number, _ in registers)
             values = "".join(f"{function.text(value)}, " for _, value in registers)
             function.line(f"{words}told_end = {values}{function.text(position)}")
-            function.line(f"return {function.result(function.scope, 'told_end')}")
+            function.line(f"return {function.objects.result(function.scope, 'told_end')}")
         case For() | While() | If() | Switch():
             _nested(function, stmt)
         case Call():
@@ -218,11 +233,13 @@ def _effect(function: Function, stmt: Effect) -> None:
             else:
                 function.line(f"{scope.struct('<' if WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}")
         case SetField(place, value):
-            field = scope.field(place.lane, expression(scope, place.row), place.offset, type_of(value))
+            target = _target(function, place, value)
             text = function.text(value)
-            if type_of(value) == "f32" and text.startswith("_single(") and (place.lane or not scope.flat):
+            if type_of(value) == "f32" and text.startswith("_single(") and target.endswith("]"):
                 text = bare(text.removeprefix("_single"))  # a view rounds by itself
-            function.line(f"{field} = {text}{origin}")
+            function.line(f"{target} = {text}{origin}")
+        case Copy(Place(lane), Wire(at), size) if lane in scope.direct.whole:
+            function.line(f"{scope.lanes.rows(lane)} = {_list(function, lane, at, size, '<')}{origin}")
         case Copy(target, source, size):
             (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
             function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
@@ -237,15 +254,40 @@ def _effect(function: Function, stmt: Effect) -> None:
             assert_never(stmt)
 
 
+def _target(function: Function, place: Place, value: Expr) -> str:
+    """What a field is assigned to."""
+    return function.scope.place(place, type_of(value))
+
+
+def _taken(function: Function, taken: str, failure: Failure) -> None:
+    """A text, which is not valid where it cannot be decoded."""
+    with function.writer.indented("try:"):
+        function.line(taken)
+    with function.writer.indented("except UnicodeDecodeError:"):
+        _fail(function, failure)
+
+
+def _list(function: Function, lane: int, at: Expr, size: Expr, order: str) -> str:
+    """An array that lies in the message."""
+    scope, objects = function.scope, function.objects
+    assert objects.layout is not None
+    return numbers_read(scope, lane, objects.layout.lanes[lane].element, lambda: objects.row(scope, lane), at, size, order)
+
+
 def _reserve(function: Function, lane: int, count: str) -> None:
     scope, name = function.scope, function.scope.lanes.rows(lane)
+    if lane in scope.direct.appended:
+        with function.writer.indented(f"if {count} > most:"):
+            function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
+        function.line(f"{name} = []")
+        return
     if lane and function.reserved[lane] == 1 and lane in function.outside and lane not in scope.rooms and not function.is_routine:
         _reserve_once(function, lane, count)
         return
     used, room = scope.used(lane), scope.room(lane)
     function.moved.add(lane)
     free = room if lane == 0 else f"{room} - {used}"
-    path = ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
+    path = _path(scope, lane)
     with function.writer.indented(f"if {count} > {free}:"):
         function.line(
             f"{name}, {room} = _more({scope.view(lane, '')}, {room}, {count} - ({free}), {scope.lanes.stride(lane)}, most, {path})"
@@ -256,13 +298,16 @@ def _reserve(function: Function, lane: int, count: str) -> None:
 def _reserve_once(function: Function, lane: int, count: str) -> None:
     """Rows of a lane that has none yet, and gets no others."""
     scope, stride = function.scope, function.scope.lanes.stride(lane)
-    path = ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
     with function.writer.indented(f"if {count} > most:"):
-        function.line(f"raise _Failed(0, 0, ({path},))")
+        function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
     size = count if stride == 1 else f"{stride} * ({count})" if " " in count else f"{stride} * {count}"
     function.line(f"{scope.view(lane, '')} = bytearray({size})")
     function.line(f"<views {lane}>")
     function.moved.add(lane)
+
+
+def _path(scope: Scope, lane: int) -> str:
+    return ascii(scope.paths[lane]) if lane < len(scope.paths) else "''"
 
 
 def _nested(function: Function, stmt: For | While | If | Switch) -> None:
@@ -273,6 +318,9 @@ def _nested(function: Function, stmt: For | While | If | Switch) -> None:
         case For(variable, count, body):
             with function.writer.indented(f"for {scope.locals.identifier(variable)} in range({function.text(count)}):"):
                 print_block(function, body)
+                if variable in scope.direct.loops:
+                    lane = scope.direct.loops[variable]
+                    function.line(f"{scope.lanes.rows(lane)}.append({function.objects.row(scope, lane)})")
         case While(condition, body):
             with function.writer.indented(f"while {function.text(condition)}:"):
                 print_block(function, body)
@@ -299,6 +347,9 @@ def _turn(function: Function, count: Expr, found: tuple[Place, Expr, str], *, de
     """An array whose numbers have their high byte first, as a whole."""
     place, base, type_ = found
     scope, size = function.scope, f"{expression(function.scope, count)} * {WIDTH[type_]}"
+    if place.lane in scope.direct.whole:
+        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, WIDTH[type_]), '>')}")
+        return
     (lane, first), begin = location(scope, place), expression(scope, base)
     rows, part = f"{lane}[{first} : {first} + {size}]", f"data[{bare(begin)} : {begin} + {size}]"
     target, source = (rows, part) if decodes else (part, rows)

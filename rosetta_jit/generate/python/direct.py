@@ -1,0 +1,332 @@
+"""Which arrays and texts of a message become lists and strings where a decoder finds them, instead of rows of a lane first.
+
+    at once     the numbers of an array lie in the message as in its lane: one call of the struct module gives the list
+    by name     an array of few elements, each set once: the list of so many locals
+    one by one  a loop fills row after row: it appends to a list instead
+    texts       a text is decoded where it is checked: that is the check
+
+Everything else goes through lanes as kernels say, and becomes objects in the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING, cast
+
+from rosetta_jit.generate.python.counted import counted
+from rosetta_jit.generate.python.groups import turned
+from rosetta_jit.kernel.ir import (
+    WIDTH,
+    Advance,
+    Binary,
+    Compare,
+    Const,
+    Copy,
+    Expect,
+    Fill,
+    For,
+    Get,
+    HostCall,
+    If,
+    IsText,
+    Let,
+    Load,
+    Local,
+    Nearest,
+    Place,
+    Reserve,
+    Return,
+    SetField,
+    Used,
+    Wire,
+)
+from rosetta_jit.kernel.rewrite import locals_in, with_blocks
+from rosetta_jit.kernel.shape import expressions_of, extents_of, statements, subexpressions
+from rosetta_jit.kernel.terms import add, index, mul, type_of
+from rosetta_jit.model.layout import Number, Row, Span
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from rosetta_jit.kernel.ir import Block, Expr, Kernel, Scalar, Stmt
+    from rosetta_jit.model.layout import Layout, Slot
+
+FEW = 16
+"""Elements of an array of a fixed length that become locals: they are read together with the numbers around them."""
+
+
+@dataclass(slots=True)
+class Direct:
+    """What becomes objects at once in a body.
+
+    ``whole`` are lanes that are read by one call, ``appended`` those whose rows are appended to a list, ``loops`` the variables of the
+    loops that do so; ``elements`` are the places of rows that are locals, by lane; ``texts`` are the spans of texts that are decoded where
+    they are checked, by lane and offset, with the place and size of the check.
+    """
+
+    whole: set[int] = field(default_factory=set[int])
+    appended: set[int] = field(default_factory=set[int])
+    loops: dict[str, int] = field(default_factory=dict[str, int])
+    elements: dict[int, list[Place]] = field(default_factory=dict[int, "list[Place]"])
+    texts: dict[tuple[int, int], tuple[Expr, Expr]] = field(default_factory=dict[tuple[int, int], "tuple[Expr, Expr]"])
+
+    def text_at(self, at: Expr, size: Expr) -> tuple[int, int] | None:
+        """The span of the text that is checked there."""
+        return next((span for span, place in self.texts.items() if place == (at, size)), None)
+
+
+def direct(block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int]) -> tuple[Block, Direct]:
+    """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct."""
+    found = _Search(counted(block), kernel, layout, arrays)
+    found.arrays(found.block, Place(0, index(0)))
+    return found.rewritten(found.block), found.direct
+
+
+class _Search:
+    """Looks for arrays and texts in the block that fills a row, and in the loops that fill rows there."""
+
+    def __init__(self, block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int]) -> None:
+        self.block, self.layout, self.lists, self.direct = block, layout, arrays, Direct()
+        self.instead: dict[int, Block] = {}
+        self.mentions: dict[int, list[Stmt]] = {}
+        self.fields: dict[tuple[int, int], list[Stmt]] = {}
+        self.readers: dict[str, list[Stmt]] = {}
+        self.checks: dict[tuple[Expr, Expr], int] = {}
+        for part in (block, *(routine.body for routine in kernel.routines)):
+            for stmt, _ in statements(part):
+                self._note(stmt)
+
+    def _note(self, stmt: Stmt) -> None:
+        places = list(_places(stmt))
+        for lane in {each.lane for each in places} | _asked(stmt):
+            self.mentions.setdefault(lane, []).append(stmt)
+        for place in () if isinstance(stmt, Fill) and stmt.target == Place(0, index(0)) else places:
+            self.fields.setdefault((place.lane, place.offset), []).append(stmt)
+        for name in {name for expr in expressions_of(stmt) for name in locals_in(expr)}:
+            self.readers.setdefault(name, []).append(stmt)
+        match stmt:
+            case Expect(IsText(Wire(at), size), _):
+                self.checks[at, size] = self.checks.get((at, size), 0) + 1
+            case _:
+                pass
+
+    def rewritten(self, block: Block) -> Block:
+        kept: list[Stmt] = []
+        for stmt in block:
+            kept += self.instead.get(id(stmt), (stmt,))
+        return tuple(with_blocks(stmt, self.rewritten) for stmt in kept)
+
+    # --- a row -----------------------------------------------------------------------------------------------------------------------
+
+    def arrays(self, block: Block, row: Place) -> None:
+        """What is direct of a row that a block fills."""
+        for stmt in block:
+            match stmt:
+                case Reserve(lane, count) if lane in self.lists:
+                    self._array(block, row, stmt, count)
+                case Expect(IsText(Wire(at), size), _) if self.checks[at, size] == 1:
+                    self._text(block, row, at, size)
+                case _:
+                    pass
+
+    def _text(self, block: Block, row: Place, at: Expr, size: Expr) -> None:
+        spans = [
+            (begin, end)
+            for begin in self._sets(block, row, at)
+            for end in self._sets(block, row, Binary("sub", index(-1), size))
+            if end.place.offset == begin.place.offset + 8
+        ]
+        slots = _spans(self.layout, row.lane)
+        if len(spans) != 1 or self.mentions.get(slots.get(spans[0][0].place.offset, -1)):
+            return
+        (begin, end) = spans[0]
+        if begin.place.offset in slots:
+            self.direct.texts[row.lane, begin.place.offset] = at, size
+            self.instead[id(begin)] = self.instead[id(end)] = ()
+
+    def _sets(self, block: Block, row: Place, value: Expr) -> list[SetField]:
+        """The one statement, if it is one, that sets a field of the row to a value, and that has to do with the field."""
+        found = [
+            each
+            for each in block
+            if isinstance(each, SetField) and each.value == value and each.place.lane == row.lane and each.place.row == row.row
+        ]
+        return [each for each in found if len(self.fields[each.place.lane, each.place.offset]) == 1]
+
+    def _array(self, block: Block, row: Place, reserve: Reserve, count: Expr) -> None:
+        lane, found = reserve.lane, self.mentions[reserve.lane]
+        lets = [each for each in found if isinstance(each, Let) and each.value == Used(lane)]
+        advances = [each for each in found if each == Advance(lane, count)]
+        own = {id(each) for each in (reserve, *lets, *advances)}
+        here = {id(each) for each in block}
+        if len(lets) != 1 or len(advances) != 1 or not own <= here or sum(isinstance(each, Reserve) for each in found) > 1:
+            return
+        start = Local("i64", lets[0].name)
+        spans = [
+            (begin, end)
+            for begin in self._sets(block, row, start)
+            for end in self._sets(block, row, count)
+            if end.place.offset == begin.place.offset + 8
+        ]
+        if len(spans) != 1 or _spans(self.layout, row.lane).get(spans[0][0].place.offset) != lane:
+            return
+        fills = [each for each in found if id(each) not in own]
+        if {id(each) for each in self.readers[start.name]} != {id(spans[0][0]), *map(id, fills)}:
+            return
+        if self._at_once(block, lane, start, count, fills) or self._by_name(block, lane, start, count, fills):
+            self.instead[id(reserve)] = ()
+        elif not self._one_by_one(block, lane, start, count, fills):
+            return
+        for stmt in (*lets, *advances, *spans[0]):
+            self.instead[id(stmt)] = ()
+
+    # --- its arrays ------------------------------------------------------------------------------------------------------------------
+
+    def _at_once(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
+        if len(fills) != 1:
+            return False
+        stride, element = self.layout.lanes[lane].stride, self.layout.lanes[lane].element
+        code = numbers_of(element, stride)
+        match fills[0]:
+            case Copy(Place(_, row, 0), Wire(at), size) as copy if code and row == start and size == mul(count, stride):
+                outer = next((each for each in block if each is copy or _if_any(each, count, copy)), None)
+                if outer is None:
+                    return False
+                if isinstance(count, Const) and isinstance(element, Number) and 0 < count.value <= FEW and element.scalar != "bool":
+                    places = [Place(lane, add(start, number)) for number in range(int(count.value))]
+                    self.direct.elements[lane] = places
+                    self.instead[id(outer)] = tuple(
+                        SetField(place, Load(code[0], add(at, number * stride))) for number, place in enumerate(places)
+                    )
+                    return True
+                self.instead[id(outer)] = (copy,)
+            case SetField() as last if isinstance(element, Number):
+                loop = next((each for each in block if isinstance(each, For) and each.body and each.body[-1] is last), None)
+                found = None if loop is None else turned(loop)
+                if loop is None or found is None or loop.count != count or found[0] != Place(lane, start):
+                    return False
+            case _:
+                return False
+        self.direct.whole.add(lane)
+        return True
+
+    def _by_name(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
+        if not isinstance(count, Const) or not 0 < count.value <= FEW or len(fills) != count.value:
+            return False
+        places = [Place(lane, add(start, number)) for number in range(int(count.value))]
+        here = {id(each) for each in block}
+        if not all(isinstance(each, SetField) and id(each) in here for each in fills):
+            return False
+        if {each.place for each in fills if isinstance(each, SetField)} != set(places):
+            return False
+        if not isinstance(self.layout.lanes[lane].element, Number):
+            return False
+        self.direct.elements[lane] = places
+        return True
+
+    def _one_by_one(self, block: Block, lane: int, start: Local, count: Expr, fills: list[Stmt]) -> bool:
+        loops = [each for each in block if isinstance(each, For) and each.count == count and any(fill in each.body for fill in fills)]
+        element = self.layout.lanes[lane].element
+        needed = _offsets(element)
+        if len(loops) != 1 or needed is None:
+            return False
+        loop = loops[0]
+        row = Binary("add", start, Local("i64", loop.variable))
+        here = {id(each) for each in loop.body}
+        sets = [each for each in fills if isinstance(each, SetField) and id(each) in here and each.place.row == row]
+        if len(sets) != len(fills) or sorted(each.place.offset for each in sets) != sorted(needed):
+            return False
+        self.direct.appended.add(lane)
+        self.direct.loops[loop.variable] = lane
+        self.arrays(loop.body, Place(lane, row))
+        return True
+
+
+def _places(stmt: Stmt) -> Iterator[Place]:
+    """Places of lanes that a statement has to do with."""
+    match stmt:
+        case SetField(place):
+            yield place
+        case Copy(target, source, _):
+            yield from (each for each in (target, source) if isinstance(each, Place))
+        case Fill(Place() as target, _, _):
+            yield target
+        case HostCall():
+            yield from (each.address for each in extents_of(stmt) if isinstance(each.address, Place))
+        case _:
+            pass
+    for expr in expressions_of(stmt):
+        for part in subexpressions(expr):
+            match part:
+                case Get(_, place) | IsText(Place() as place, _) | Nearest(Place() as place, _, _):
+                    yield place
+                case _:
+                    pass
+
+
+def _asked(stmt: Stmt) -> set[int]:
+    """Lanes whose counts a statement changes or asks for."""
+    found = {stmt.lane} if isinstance(stmt, Reserve | Advance) else set[int]()
+    parts = (part for expr in expressions_of(stmt) for part in subexpressions(expr))
+    return found | {part.lane for part in parts if isinstance(part, Used)}
+
+
+def _if_any(stmt: Stmt, count: Expr, copy: Copy) -> bool:
+    return isinstance(stmt, If) and stmt.condition == Compare("gt", count, index(0)) and stmt.then == (copy,) and not stmt.otherwise
+
+
+def slots_of(slot: Slot) -> Iterator[Slot]:
+    """The numbers and spans of a row."""
+    yield slot
+    if isinstance(slot, Row):
+        for member in slot.members:
+            yield from slots_of(member.slot)
+        if slot.unknown is not None:
+            yield slot.unknown
+
+
+def settled(block: Block) -> frozenset[tuple[int, str]]:
+    """The fields of the message's row, by offset and type, that a body sets whatever the message is, before it reads them."""
+    found, read = set[tuple[int, str]](), set[int]()
+    for stmt in block:
+        for each, _ in statements((stmt,)):
+            parts = (part for expr in expressions_of(each) for part in subexpressions(expr))
+            read |= {part.place.offset for part in parts if isinstance(part, Get) and part.place.lane == 0}
+            if isinstance(each, Return) and each is not block[-1]:
+                return frozenset(found)
+        if isinstance(stmt, SetField) and stmt.place.lane == 0 and stmt.place.offset not in read:
+            found.add((stmt.place.offset, type_of(stmt.value)))
+    return frozenset(found)
+
+
+def _spans(layout: Layout, lane: int) -> dict[int, int]:
+    """The lanes of a row's spans by their offsets."""
+    return {each.offset: each.lane for each in slots_of(layout.lanes[lane].element if lane else layout.root) if isinstance(each, Span)}
+
+
+def _offsets(slot: Slot) -> list[int] | None:
+    """Where the scalars of a row lie; None where not all of them are there in each."""
+    found: list[int] = []
+    for each in slots_of(slot):
+        match each:
+            case Number(offset, _):
+                found.append(offset)
+            case Span(offset, _):
+                found += [offset, offset + 8]
+            case Row(_, _, 0, _):
+                pass
+            case _:
+                return None
+    return found
+
+
+def numbers_of(slot: Slot, stride: int) -> tuple[Scalar, ...]:
+    """The types of the numbers that a row is, one behind the other."""
+    slots = [each for each in slots_of(slot) if not isinstance(each, Row)]
+    numbers = sorted((each for each in slots if isinstance(each, Number)), key=lambda each: each.offset)
+    at = 0
+    for each in numbers:
+        at = at + WIDTH[each.scalar] if each.offset == at else -1
+    scalars: list[Scalar] = [cast("Scalar", each.scalar) for each in numbers]
+    return tuple(scalars) if len(numbers) == len(slots) and at == stride else ()

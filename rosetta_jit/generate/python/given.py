@@ -1,0 +1,147 @@
+"""What the rows of an encoder's kernel are in the object that is encoded: attributes, elements of lists, lengths."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.python.classes import member_names
+from rosetta_jit.generate.python.direct import slots_of
+from rosetta_jit.generate.python.expressions import Scope, bare, expression
+from rosetta_jit.generate.python.positions import NotInParts
+from rosetta_jit.kernel.ir import Binary, Expr, Local, Place
+from rosetta_jit.kernel.terms import index
+from rosetta_jit.model.layout import Number, Row, Slot, Span
+from rosetta_jit.model.types import Array, Bytes, String, Struct, Type
+from rosetta_jit.startup.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from rosetta_jit.generate.python.statements import Function
+    from rosetta_jit.generate.unit import Unit
+
+START = "<start> "
+"""Begins what stands for the start of a sequence, behind which its lane is named: objects have no such number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """An array, a text or bytes of an object: the local that holds it, the type of its elements, and what its rows are."""
+
+    local: str
+    lane: int
+    element: Type | None
+    slot: Slot
+
+
+@dataclass(slots=True)
+class Given(Scope):
+    """What the fields of rows are in objects.
+
+    ``objects`` has the expressions of fields by lane, row and offset; ``starts`` and ``counts`` are the locals of a kernel that say where
+    the rows of a sequence start and how many there are, with the lane of the sequence.
+    """
+
+    objects: dict[tuple[int, Expr], dict[int, str]] = field(default_factory=dict[tuple[int, "Expr"], dict[int, str]])
+    sequences: dict[int, Listed] = field(default_factory=dict[int, Listed])
+    starts: dict[str, int] = field(default_factory=dict[str, int])
+    counts: dict[str, int] = field(default_factory=dict[str, int])
+
+    def place(self, place: Place, scalar: str) -> str:
+        """A scalar of a row of an object."""
+        known = self.objects.get((place.lane, place.row))
+        if known is not None and place.offset in known:
+            return known[place.offset]
+        found = self.element_of(place, scalar)
+        return f"_single({found})" if scalar == "f32" else f"float({found})" if scalar == "f64" else found
+
+    def element_of(self, place: Place, scalar: str) -> str:
+        """An element of a list of numbers, or of bytes."""
+        number = self.behind(place)
+        sequence = self.sequences.get(place.lane)
+        if number is None or sequence is None or not isinstance(sequence.slot, Number) or place.offset or sequence.slot.scalar != scalar:
+            raise NotInParts
+        return f"{sequence.local}[{bare(expression(self, number))}]"
+
+    def behind(self, place: Place) -> Expr | None:
+        """The number of an element, of the row that a place is in."""
+        match place.row:
+            case Local(_, name) if self.starts.get(name) == place.lane:
+                return index(0)
+            case Binary("add", Local(_, name), number) if self.starts.get(name) == place.lane:
+                return number
+            case _:
+                return None
+
+    def field(self, lane: int, row: str, offset: int, scalar: str) -> str:  # noqa: ARG002 - of a scope
+        raise NotInParts
+
+    def view(self, lane: int, code: str) -> str:  # noqa: ARG002 - of a scope
+        raise NotInParts
+
+    def start(self, place: Place, behind: int = 0) -> int | None:
+        """The lane of the sequence whose start is the field ``behind`` bytes before a place."""
+        text = self.objects.get((place.lane, place.row), {}).get(place.offset - behind, "")
+        return int(text.removeprefix(START)) if text.startswith(START) else None
+
+    def has(self, place: Place) -> bool:
+        """Whether a field of an object is known."""
+        return place.offset in self.objects.get((place.lane, place.row), {})
+
+
+@dataclass(slots=True)
+class Binder:
+    """Prints the statements that take objects apart; ``needed`` are the fields, by lane and offset, that anything reads."""
+
+    unit: Unit
+    function: Function
+    scope: Given
+    needed: set[tuple[int, int]]
+
+    def local(self, what: str) -> str:
+        """A new local."""
+        return self.scope.locals.identifier(f"{what}\0{len(self.scope.locals.taken)}")
+
+    def bind(self, lane: int, row: Expr, at: str, type_: Type, slot: Slot) -> None:
+        """The fields of a row that anything reads, from an object."""
+        found: dict[int, str] = {}
+        self.value(lane, at, type_, slot, found)
+        self.scope.objects[lane, row] = found
+
+    def _is_needed(self, lane: int, slot: Slot) -> bool:
+        return any((lane, offset) in self.needed for each in slots_of(slot) for offset in (each.offset, each.offset + 8))
+
+    def value(self, lane: int, at: str, type_: Type, slot: Slot, found: dict[int, str]) -> None:
+        """A value of an object: ``found`` gets the expressions of its fields by offset."""
+        resolved = self.unit.schema.resolve(type_)
+        match resolved, slot:
+            case _, Number(offset, scalar):
+                found[offset] = f"(1 if {at} else 0)" if scalar == "bool" else at
+            case Struct(), Row():
+                self._struct(lane, at, resolved, slot, found)
+            case ((String() | Bytes() | Array()), Span()):
+                self._sequence(at, resolved, slot, found)
+            case _:
+                raise NotInParts
+
+    def _struct(self, lane: int, at: str, struct: Struct, slot: Row, found: dict[int, str]) -> None:
+        if slot.presence_words:
+            raise NotInParts
+        if not at.isidentifier():
+            own = self.local(at.rpartition(".")[2])
+            self.function.line(f"{own} = {at}")
+            at = own
+        for each, member, name in zip(struct.fields, slot.members, member_names(struct), strict=True):
+            if self._is_needed(lane, member.slot):
+                self.value(lane, f"{at}.{name}", each.type, member.slot, found)
+        if slot.unknown is not None and self._is_needed(lane, slot.unknown):
+            self._sequence(f"{at}.unknown_fields", Bytes(), slot.unknown, found)
+
+    def _sequence(self, at: str, type_: String | Bytes | Array, slot: Span, found: dict[int, str]) -> None:
+        lane = self.unit.layout.lanes[slot.lane]
+        if lane.links is not None or type_ == String("utf-16"):
+            raise NotInParts
+        own = self.local(at.rpartition(".")[2] if "." in at else lane.name.rpartition(".")[2] or "value")
+        self.function.line(f'{own} = {at}.encode("utf-8", "surrogateescape")' if isinstance(type_, String) else f"{own} = {at}")
+        element = type_.element if isinstance(type_, Array) else None
+        self.scope.sequences[slot.lane] = Listed(own, slot.lane, element, lane.element)
+        found[slot.offset], found[slot.offset + 8] = f"{START}{slot.lane}", f"len({own})"

@@ -1,0 +1,61 @@
+"""Arrays and texts that a decoder reads where they lie in the message (see `direct`), as Python expressions."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from rosetta_jit.generate.python.direct import slots_of
+from rosetta_jit.generate.python.expressions import CODES, bare, expression
+from rosetta_jit.kernel.ir import Binary, Const, IsText, Wire
+from rosetta_jit.model.layout import Number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosetta_jit.generate.python.expressions import Scope
+    from rosetta_jit.kernel.ir import Expr
+    from rosetta_jit.model.layout import Slot
+
+SOME = 100
+"""Numbers of an array from which on a view of them is quicker than the struct module."""
+
+
+def takes_text(scope: Scope, condition: Expr) -> str | None:
+    """The line that decodes a text, where a check is that of one which is taken where it is checked."""
+    match condition:
+        case IsText(Wire(at), size) if (span := scope.direct.text_at(at, size)) is not None:
+            begin = bare(expression(scope, at))
+            return f"{scope.text(*span)} = data[{begin} : {begin} + {expression(scope, size)}].decode()"
+        case _:
+            return None
+
+
+def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at: Expr, size: Expr, order: str) -> str:
+    """The list of numbers that lie in the message, or of rows that are numbers, of which ``row`` makes objects."""
+    begin, stride = bare(expression(scope, at)), scope.lanes.stride(lane)
+    part = f"data[{begin} : {begin} + {expression(scope, size)}]"
+    if isinstance(slot, Number):
+        if stride == 1 and slot.scalar != "i8":
+            return f"[*map(bool, {part})]" if slot.scalar == "bool" else f"[*{part}]"
+        count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
+        number = f"{count.value}" if isinstance(count, Const) else f"{{{bare(expression(scope, count))}}}"
+        code = CODES[slot.scalar]
+        few, many = f'"{order.replace("<", "")}{number}{code}"', f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
+        if isinstance(count, Const):
+            return many if count.value > SOME else f"[*_unpack({few}, data, {begin})]"
+        return f"[*_unpack(f{few}, data, {begin})] if {expression(scope, count)} < {SOME} else {many}"
+    numbers = sorted((each.offset, each.scalar) for each in slots_of(slot) if isinstance(each, Number))
+    code = "".join(f"{len([*same])}{each}" for each, same in groupby(CODES[scalar] for _, scalar in numbers))
+    names = "".join(f"{scope.own(lane, offset, scalar)}, " for offset, scalar in numbers)
+    names = names.strip() if len(numbers) == 1 else names[:-2]
+    return f'[{row()} for {names} in _unpack_each("{order}{code}", {part})]'
+
+
+def _divided(size: Expr, stride: int) -> Expr:
+    """What was multiplied by the size of a row."""
+    match size:
+        case Binary("mul", count, Const(_, value)) | Binary("mul", Const(_, value), count) if value == stride:
+            return count
+        case _:
+            return size
