@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue.limits import MAX_CANDIDATES, MAX_NAMES, MAX_QUOTED
 from rosetta_jit.catalogue.mapping import error, note, shorten, warning
 from rosetta_jit.catalogue.spelling import closest
 
@@ -13,10 +14,6 @@ if TYPE_CHECKING:
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.model.expr import Member
     from rosetta_jit.source import Span
-
-MAX_NAMES = 20
-MAX_CANDIDATES = 500
-MAX_QUOTED = 40
 
 
 def nearest(name: str, known: Collection[str]) -> str | None:
