@@ -104,24 +104,8 @@ class Lanes:
     """
 
     __slots__ = (
-        "__weakref__",
-        "address",
-        "arena",
-        "array_type",
-        "arrays",
-        "buffers",
-        "cells",
-        "hidden",
-        "is_filled",
-        "lock",
-        "memory",
-        "plan",
-        "registers",
-        "rows",
-        "source",
-        "spares",
-        "state",
-        "words",
+        *("__weakref__", "address", "arena", "array_type", "arrays", "buffers", "cells", "hidden", "is_filled", "lock"),
+        *("memory", "plan", "registers", "rows", "source", "spares", "state", "words"),
     )
     arena: bytearray
     arrays: Arrays
