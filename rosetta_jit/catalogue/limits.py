@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 MAX_CANDIDATES = 500
-"""names among which the one is looked for that was meant"""
+"""names among which the one is looked for that was meant: comparing is slow"""
+
+MAX_COMPARED = 100
+"""characters of such a name: longer ones are not meant, and of the one that was written no more are compared"""
 
 MAX_NAMES = 20
 """names that a report lists to choose from"""
