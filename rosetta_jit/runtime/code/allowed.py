@@ -48,6 +48,7 @@ ALLOWED = frozenset(
         "PyObject_ClearWeakRefs",
         "PyObject_Free",
         "PyObject_GC_UnTrack",
+        "PyObject_GenericGetAttr",
         "PyObject_GenericGetDict",
         "PyObject_GenericSetAttr",
         "PyObject_GetAttr",
