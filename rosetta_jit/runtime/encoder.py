@@ -54,8 +54,8 @@ class EncoderBase(Program):
             """
             ...
 
-    def _start(self, loaded: Loaded) -> None:
-        self._bind(loaded, self._call_slowly)
+    def _start(self, loaded: Loaded, beside: EncoderBase | None = None) -> None:
+        self._bind(loaded, self._call_slowly, beside)
 
     def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int:
         """Write a message into a buffer; returns the offset behind it.

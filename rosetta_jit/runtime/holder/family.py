@@ -384,6 +384,8 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     ValueError
         If another version of rosetta_jit has written this, whose lanes are others.
     """
+    from rosetta_jit.runtime.contents import fill  # only pickles need it
+
     family = _MARKED.get(mark)
     if family is None:
         family = family_of(text, manners_at(manners) if isinstance(manners, str) else manners)
@@ -392,5 +394,5 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     holder = family.new(family.plan)
     with holder.lanes_ as lanes:
         lanes.words[VALID], lanes.words[WASTED], content = contents
-        lanes.take_contents(content)
+        fill(lanes, content)
     return holder
