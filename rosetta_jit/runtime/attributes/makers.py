@@ -97,7 +97,8 @@ def make_quickly(holder_type: type) -> None:
     """Let compiled code end the objects of a holder class, and make them once it has a recipe (`set_recipe`)."""
     code = library()
     assert code is not None, "there is code for it"
-    write_word(id(holder_type) + DEALLOC, code["end_holder"])
+    if not holder_type.__dictoffset__:  # whose base, which is not ours, has forgotten its slots: CPython lets go of the dict
+        write_word(id(holder_type) + DEALLOC, code["end_holder"])
     write_word(id(holder_type) + CLASS_CALL, code["call_class"])
 
 

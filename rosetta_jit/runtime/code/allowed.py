@@ -47,6 +47,7 @@ ALLOWED = frozenset(
         "PyObject_CallFinalizerFromDealloc",
         "PyObject_ClearWeakRefs",
         "PyObject_Free",
+        "PyObject_GC_Track",
         "PyObject_GC_UnTrack",
         "PyObject_GenericGetAttr",
         "PyObject_GenericGetDict",
