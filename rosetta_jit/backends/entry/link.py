@@ -239,7 +239,8 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
-    texts = (*map(_template, ("objects.ll", told, hosted, _thread_template(), _large_template())), kept, *map(_template, templates))
+    joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
+    texts = (*map(_template, ("objects.ll", told, hosted, joined, _thread_template(), _large_template())), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends.base import counted_lanes, statements
+from rosetta_jit.backends.base import counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
@@ -140,8 +140,8 @@ def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, rou
     first = function.append_basic_block("body")
     parameters = Parameters(*function.args[:4], row=constant(0))
     done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
-    lanes, decodes = (kernel.strides, kernel.lanes), kernel.direction == "decode"
-    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    lanes, emptied = (kernel.strides, kernel.lanes), emptied_lanes(kernel)
+    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
     frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
     llvm_stmt.block(frame, routine.body)
@@ -176,8 +176,8 @@ def _attempt(
     """
     entry, first = ir.IRBuilder(function.append_basic_block("entry")), function.append_basic_block("body")
     done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
-    parameters, lanes, decodes = Parameters(*function.args), (kernel.strides, kernel.lanes), kernel.direction == "decode"
-    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
+    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.is_rare = len(bodies) <= kernel.rare
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     llvm_checks.body(frame, bodies[0])
