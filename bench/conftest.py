@@ -23,6 +23,7 @@ ORDER = (
     "mapped",
     "bridges",
     "peers",
+    "generated",
     "attributes",
     "reading",
     "building",
