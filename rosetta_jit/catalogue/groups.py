@@ -43,8 +43,9 @@ def arguments(span: Span | None, function: str, groups: Sequence[tuple[str, Sequ
 
 def list_size(span: Span | None, group: str, names: Sequence[str], found: int) -> Diagnostic:
     """A list or an array with another number of values than a group has."""
-    message = f"{group} has {len(names)} numbers, not {found}"
-    return error("group-size", message, span, notes=(f"they are {_listed(names)}",))
+    several = len(names) > 1
+    message = f"{group} has {len(names)} number{'s' if several else ''}, not {found}"
+    return error("group-size", message, span, notes=(f"{'they are' if several else 'it is'} {_listed(names)}",))
 
 
 def wrong_length(group: str, count: int) -> str:
