@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.bridge.configuration import Route
 from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
-from rosetta_jit.bridge.live import LINGER_S, LiveRoute
+from rosetta_jit.bridge.live import LINGER_S, Inlet, LiveRoute
 from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
-from rosetta_jit.bridge.translating import translator
+from rosetta_jit.bridge.translating import translation_of, translator
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.transports.opening import call, names, publish, serve, subscribe
 
@@ -41,8 +41,8 @@ class _Shared:
 
     source: Source | None = None
 
-    def __init__(self, first: LiveRoute) -> None:
-        self.routes: tuple[LiveRoute, ...] = (first,)
+    def __init__(self, first: LiveRoute | Inlet) -> None:
+        self.routes: tuple[LiveRoute | Inlet, ...] = (first,)
         self._sessions = 1
 
     def deliver(self, message: Message) -> None:
@@ -161,7 +161,7 @@ class Running:
 
     def _made(self, route: Route | Rpc, folders: tuple[str, ...]) -> Live:
         if isinstance(route, Route):
-            return LiveRoute(route, translator(route.translation, folders), self._say)
+            return LiveRoute(route, translation_of(route, folders), self._say)
         return LiveService(route, translator(route.request, folders), translator(route.reply, folders), self._say)
 
     def _drop(self, name: str) -> None:
@@ -173,7 +173,7 @@ class Running:
         """Bring a route no more messages; where it was the last one of its source, close that."""
         with self._lock:
             for address, shared in [*self._sources.items()]:
-                left = tuple(each for each in shared.routes if each is not gone)
+                left = tuple(each for each in shared.routes if each.live is not gone)
                 shared.routes = left
                 if not left:
                     shared.close()
@@ -257,17 +257,27 @@ class Running:
         each.problem = ""
 
     def _listen(self, each: LiveRoute) -> None:
-        """Let a source bring its messages to this route, too."""
-        address = each.route.source
+        """Let its source bring its messages to this route, too; or those of all wires."""
+        inlets = [(address, Inlet(each, wire)) for wire, address in each.route.sources]
+        for address, inlet in inlets or [(each.route.source, each)]:
+            if not self._joins(address, inlet):
+                shared = _Shared(inlet)
+                shared.source = subscribe(address, shared.deliver, lost=shared.lost)
+                with self._lock:
+                    first = self._sources.setdefault(address, shared)
+                if first is not shared:  # another route was quicker
+                    shared.close()
+                    self._joins(address, inlet)
+
+    def _joins(self, address: str, inlet: LiveRoute | Inlet) -> bool:
+        """Whether there is such a source already: it then brings its messages to this inlet, too."""
         with self._lock:
             shared = self._sources.get(address)
-            if shared is not None:
-                shared.routes = (*shared.routes, each)
-                return
-        shared = _Shared(each)
-        shared.source = subscribe(address, shared.deliver, lost=shared.lost)
-        with self._lock:
-            self._sources[address] = shared
+            if shared is None:
+                return False
+            if not any(known.live is inlet.live and known.wire == inlet.wire for known in shared.routes):
+                shared.routes = (*shared.routes, inlet)
+            return True
 
 
 def _is_pattern(route: Route | Rpc) -> bool:
