@@ -319,7 +319,7 @@ class _Printer:
         width = sum(WIDTH[type_of(each.value)] for each in loop.body if isinstance(each, Store))
         self.flush()
         outer = self.positions.at
-        holds = self.positions.loop(_assigned(loop.body))
+        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign))
         self.positions.values[loop.variable] = self.positions.new()
         if holds is None:
             self.positions.at = outer.plus(self.positions.values[loop.variable], width)
@@ -343,12 +343,9 @@ class _Printer:
 
     def _sequence_of(self, loop: For) -> Listed | None:
         """What a loop over rows goes through."""
-        found: set[int] = set()
-        for stmt, _ in statements(loop.body):
-            for expr in expressions_of(stmt):
-                for part in subexpressions(expr):
-                    if isinstance(part, Get) and self.scope.behind(part.place) == Local("i64", loop.variable):
-                        found.add(part.place.lane)
+        parts = [part for stmt, _ in statements(loop.body) for expr in expressions_of(stmt) for part in subexpressions(expr)]
+        round_ = Local("i64", loop.variable)
+        found = {part.place.lane for part in parts if isinstance(part, Get) and self.scope.behind(part.place) == round_}
         rows = [self.scope.sequences[lane] for lane in found if not isinstance(self.scope.sequences[lane].slot, Number)]
         if len(rows) > 1 or (rows and not self._is_count_of(rows[0].lane, loop.count)):
             raise NotInParts
@@ -390,7 +387,7 @@ class _Printer:
 
     def _while(self, loop: While) -> None:
         self.flush()
-        holds = self.positions.loop(_assigned(loop.body))
+        holds = self.positions.loop(stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign))
         begin, exact = self.positions.at, dict(self.exact)
         with self.function.writer.indented(f"while {self.function.text(loop.condition)}:"):
             self.block(loop.body)
@@ -399,7 +396,3 @@ class _Printer:
                 self.line("pass")
         self.exact = exact
         self._end(holds, begin, 0)
-
-
-def _assigned(block: Block) -> list[str]:
-    return [stmt.name for stmt, _ in statements(block) if isinstance(stmt, Assign)]
