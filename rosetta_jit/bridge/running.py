@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from rosetta_jit.bridge.announcing import announced, served, wanted
 from rosetta_jit.bridge.configuration import Route
 from rosetta_jit.bridge.limits import MAX_FOUND, MAX_OPENING
-from rosetta_jit.bridge.live import LINGER_S, LiveRoute
+from rosetta_jit.bridge.live import LINGER_S, Inlet, LiveRoute
 from rosetta_jit.bridge.patterns import is_pattern, matching, place_to_list
 from rosetta_jit.bridge.services import LiveService
-from rosetta_jit.bridge.translating import translator
+from rosetta_jit.bridge.translating import translation_of, translator
 from rosetta_jit.errors import RosettaError
 from rosetta_jit.transports.opening import call, names, publish, serve, subscribe
 
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from rosetta_jit.transports.end import End
 
     Live = LiveRoute | LiveService
+    Key = tuple[str, tuple[tuple[str, str], ...]]
+    """Of a source: its address, and the options that are not in it."""
 
 RETRY_S = 1.0
 """How long after a channel could not be opened it is tried again, and after which channels are listed again."""
@@ -42,8 +44,8 @@ class _Shared:
 
     source: Source | None = None
 
-    def __init__(self, first: LiveRoute) -> None:
-        self.routes: tuple[LiveRoute, ...] = (first,)
+    def __init__(self, first: LiveRoute | Inlet) -> None:
+        self.routes: tuple[LiveRoute | Inlet, ...] = (first,)
         self._sessions = 1
 
     def deliver(self, message: Message) -> None:
@@ -76,7 +78,7 @@ class Running:
         self.configuration = configuration
         self.live: dict[str, Live] = {}
         self._say = say
-        self._sources: dict[tuple[str, tuple[tuple[str, str], ...]], _Shared] = {}
+        self._sources: dict[Key, _Shared] = {}
         self._lock = threading.RLock()
         self._stopping = threading.Event()
         self._patterns: set[str] = set()
@@ -141,7 +143,9 @@ class Running:
     def _ends_of(self, each: Live) -> tuple[End | None, End | None]:
         if isinstance(each, LiveService):
             return each.server, each.caller
-        source = next((shared.source for shared in tuple(self._sources.values()) if each in shared.routes), None)
+        source = next(
+            (shared.source for shared in tuple(self._sources.values()) if any(inlet.live is each for inlet in shared.routes)), None
+        )
         return source, each.target
 
     # --- which routes there are ----------------------------------------------------------------------------------------
@@ -162,7 +166,7 @@ class Running:
 
     def _made(self, route: Route | Rpc, folders: tuple[str, ...]) -> Live:
         if isinstance(route, Route):
-            return LiveRoute(route, translator(route.translation, folders), self._say)
+            return LiveRoute(route, translation_of(route, folders), self._say)
         return LiveService(route, translator(route.request, folders), translator(route.reply, folders), self._say)
 
     def _drop(self, name: str) -> None:
@@ -174,7 +178,7 @@ class Running:
         """Bring a route no more messages; where it was the last one of its source, close that."""
         with self._lock:
             for key, shared in [*self._sources.items()]:
-                left = tuple(each for each in shared.routes if each is not gone)
+                left = tuple(each for each in shared.routes if each.live is not gone)
                 shared.routes = left
                 if not left:
                     shared.close()
@@ -251,26 +255,36 @@ class Running:
         route = each.route
         if each.target is None:
             if route.calls:
-                each.open(None, call(route.target, **announced(route.target, each.translate)))
+                each.open(None, call(route.target, **announced(route.target, each.translation)))
             else:
-                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translate)), None)
+                each.open(publish(route.target, lost=each.lost, **announced(route.target, each.translation)), None)
         self._listen(each)
         each.problem = ""
 
     def _listen(self, each: LiveRoute) -> None:
-        """Let a source bring its messages to this route, too."""
-        address = each.route.source
-        options = wanted(address, each.translate)
-        key = address, tuple(sorted(options.items()))
+        """Let its source bring its messages to this route, too; or those of all wires."""
+        inlets = [(address, Inlet(each, wire)) for wire, address in each.route.sources]
+        for address, inlet in inlets or [(each.route.source, each)]:
+            options = wanted(address, each.translation)
+            key = address, tuple(sorted(options.items()))
+            if not self._joins(key, inlet):
+                shared = _Shared(inlet)
+                shared.source = subscribe(address, shared.deliver, lost=shared.lost, **options)
+                with self._lock:
+                    first = self._sources.setdefault(key, shared)
+                if first is not shared:  # another route was quicker
+                    shared.close()
+                    self._joins(key, inlet)
+
+    def _joins(self, key: Key, inlet: LiveRoute | Inlet) -> bool:
+        """Whether there is such a source already: it then brings its messages to this inlet, too."""
         with self._lock:
             shared = self._sources.get(key)
-            if shared is not None:
-                shared.routes = (*shared.routes, each)
-                return
-        shared = _Shared(each)
-        shared.source = subscribe(address, shared.deliver, lost=shared.lost, **options)
-        with self._lock:
-            self._sources[key] = shared
+            if shared is None:
+                return False
+            if not any(known.live is inlet.live and known.wire == inlet.wire for known in shared.routes):
+                shared.routes = (*shared.routes, inlet)
+            return True
 
 
 def _is_pattern(route: Route | Rpc) -> bool:

@@ -134,7 +134,7 @@ def _cost_in(checked: Checked, name: str, request: Request) -> KernelCost | str:
     """The cost of the kernel; of several wires, that of the one that is named."""
     wires = [each.name for each in checked.mapping.wires]
     if wires and request.wire is None:
-        return f"each wire has its own: add `--wire` with one of {', '.join(wires)}"
+        return f"each wire has one of its own: `--wire {wires[0]}` shows what it costs"
     return _cost(name, request, _field_names(checked))
 
 
