@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
+from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import installed
 from rosetta_jit.generate.origins import origins_of
 from rosetta_jit.generate.unit import Unit, UserFunction
@@ -105,7 +106,7 @@ def unit_of(
         functions,
         wishes.freestanding,
         first.types.holder.name,
-        first.types.schema,
+        with_inner_types(first.types.schema, first.types.holder.name),
         wishes.holder,
         wishes.include,
         _origins(builds),
