@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, add_wire, encoding_of, parameters_of, wire_of
 from rosetta_jit.file_errors import named, whole
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--freestanding", action="store_true", help="use nothing of a C library but memcpy and memset")
     command.add_argument("--framework", help="the type's, where its name does not tell")
     add_encoding(command)
+    add_wire(command)
     add_parameters(command)
 
 
@@ -106,6 +107,7 @@ def _request(arguments: argparse.Namespace) -> Request:
     from rosetta_jit.api.options import request_of, type_request
 
     options: Options = {"encoding": encoding_of(arguments), "framework": arguments.framework, "parameters": parameters_of(arguments)}
+    options["wire"] = wire_of(arguments)
     subject = cast("str", arguments.subject)
     if _is_mapping(subject):
         return request_of("decode", options, mapping=subject)

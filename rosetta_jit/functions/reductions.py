@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import reductions as words
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
 from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64, bounds
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
 from rosetta_jit.language.typed import BOOL, INT64
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from typing import Literal
 
     from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language import typed
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.lowering.elements import Elements
     from rosetta_jit.model import expr as model
@@ -68,10 +68,33 @@ def _zero(elements: Elements) -> Const:
 
 def _lower_sum(elements: Elements) -> Expr:
     """The sum from the first value to the last; of integers it never wraps."""
+    if _has_few_bits(elements.reduce):
+        return _lower_blocks(elements)
     writer, values = elements.writer, elements.values
     total = writer.var("sum", _zero(elements))
     with elements.each() as value:
         writer.assign(total, binary(writer, "+", total, value, values.where, values.line))
+    return total
+
+
+def _has_few_bits(reduce: typed.Reduce) -> bool:
+    """Whether values are integers of an array that many of can be added without a check."""
+    match reduce:
+        case typed.Reduce(count=typed.LenOf(), value=typed.Convert(operand=typed.Access(type=Int(bits)), type=Int(), rule="widen")):
+            return bits <= 32
+        case _:
+            return False
+
+
+def _lower_blocks(elements: Elements) -> Expr:
+    """The sums of blocks, each without a check, and of these."""
+    writer, values = elements.writer, elements.values
+    total = writer.var("sum", index(0))
+    with elements.blocks() as (first, size):
+        part = writer.var("part", index(0))
+        with elements.each_of(first, size) as value:
+            writer.assign(part, Binary("add", part, value))
+        writer.assign(total, binary(writer, "+", total, part, values.where, values.line))
     return total
 
 
@@ -116,7 +139,10 @@ def _lower_count(elements: Elements) -> Expr:
     writer, values = elements.writer, elements.values
     found = writer.var("count", index(0))
     with elements.each() as holds:
-        writer.assign(found, writer.checked("add", found, Select(holds, index(1), index(0)), values.where, line=values.line))
+        one = Convert("i64", holds)
+        is_bounded = isinstance(elements.reduce.count, typed.LenOf)  # no array has so many elements that their number wraps
+        sum_ = Binary("add", found, one) if is_bounded else writer.checked("add", found, one, values.where, line=values.line)
+        writer.assign(found, sum_)
     return found
 
 

@@ -8,7 +8,8 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
-from rosetta_jit.errors import SchemaError
+from rosetta_jit.catalogue.wires import not_here
+from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import installed
@@ -91,6 +92,8 @@ def unit_of(
     builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}
     for role, build in builds.items():
+        if role != "encode" and build.wires:
+            raise MappingError((not_here(build.checked.mapping.wire_span, "generated source"),))
         kernels[role] = build.kernels[0]
         if role == "encode":
             kernels["size"] = build.kernels[1]

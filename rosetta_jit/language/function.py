@@ -43,13 +43,14 @@ if TYPE_CHECKING:
 GROUP = "rosetta_jit.functions"
 """The entry-point group in which packages offer functions of their own: a `Function` each."""
 
-GROUPS = ("rotations", "poses", "geodesy")
+GROUPS = ("rotations", "poses", "geodesy", "utm")
 """Those of `OURS` whose functions are components of functions of several values (`language.groups`)."""
 
 OURS = (
     "angles",
     "numbers",
     "reductions",
+    "sequences",
     "division",
     "counting",
     "clock",
@@ -215,7 +216,7 @@ Operation = OneOf[
 
 # --- the record ----------------------------------------------------------------------------------------------------------
 
-Table = OneOf["numbers", "groups", "elements", "texts", "bytes", "images"]
+Table = OneOf["numbers", "groups", "elements", "arrays", "texts", "bytes", "images"]
 """The tables of the reference."""
 
 

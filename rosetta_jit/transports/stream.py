@@ -39,6 +39,8 @@ class Stream:
         The other end's address.
     cut : bool
         Whether it ended in the middle of a message.
+    unsent : int
+        Once it has ended: how often `send` took something that was not sent any more.
     """
 
     def __init__(
@@ -54,6 +56,7 @@ class Stream:
         self.socket = sock
         self.peer = _name(sock)
         self.cut = False
+        self.unsent = 0
         self.closed = False
         self._ended = ended
         self._machine = machine
@@ -61,7 +64,8 @@ class Stream:
         self._most = max_waiting
         self._waiting: deque[memoryview] = deque()
         self._waiting_bytes = 0
-        self._room = threading.Condition()
+        self._turn = threading.RLock()  # a signal may interrupt a sender, and its handler send, too
+        self._room = threading.Condition(self._turn)
         self._finishing = False
         self._paused = False
         self._deadline: Timer | None = None
@@ -88,7 +92,7 @@ class Stream:
     def send(self, *parts: Bytes) -> bool:
         """Send parts as one, or let them wait; from any thread. False where too much waits, or it is closed: then nothing is sent."""
         size = sum(map(len, parts))
-        with self._room:
+        with self._turn:  # not the condition, whose block is entered by a function of Python
             if self.closed or self._finishing or (self._waiting and self._waiting_bytes + size > self._most):
                 return False
             sent = 0
@@ -138,6 +142,8 @@ class Stream:
             return
         with self._room:
             self.closed = True
+            self.unsent = len(self._waiting)
+            self._waiting.clear()
             self._room.notify_all()
         self.in_time()
         loop().unwatch(self.socket.fileno())
@@ -173,6 +179,9 @@ class Stream:
             loop().watch(self.socket.fileno(), events, self._ready)
 
     def _ready(self, events: int) -> None:
+        if events == READ:
+            self._read()
+            return
         if events & WRITE:
             self._write()
         if events & ~WRITE and not self.closed:

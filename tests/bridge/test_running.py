@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -15,14 +16,17 @@ import urllib.request
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.bridge import metrics as asking
+from rosetta_jit.bridge.announcing import announced
 from rosetta_jit.bridge.checking import checked
 from rosetta_jit.bridge.counting import Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
-from tests.transports.free import free_port, until
+from tests.transports.free import answers, free_port, until
 from tests.transports.name_server import NameServer
+from tests.transports.ros_master import Master
 
 TORSO = "yarp/icub/torso_state.mapping"
 
@@ -125,7 +129,7 @@ def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, 
         shown = text(bridge.snapshot())
         assert 'rosetta_jit_bridge_state{route="a",variable="decode.last"} 15.0\n' in shown
         assert 'rosetta_jit_bridge_state{route="a",variable="decode.seen"} 1.0\n' in shown
-        until(lambda: not next(iter(bridge._sources.values())).source.connections)
+        until(lambda: not bridge.snapshot()[0]["connections"]["source"])
         bridge.reload(bridge.configuration)
         assert bridge.snapshot()[0]["state"]["decode.last"] == 15  # a route that did not change goes on
         assert turned(3, 4) == [0, 1]
@@ -134,6 +138,92 @@ def test_state_is_shown_and_begins_anew_with_the_source_and_with_the_route(run, 
         bridge.reload(checked(str(tmp_path / "bridge.toml")))
         assert bridge.snapshot()[0]["state"]["decode.last"] == 0
         assert turned(9, 10) == [0, 1]
+
+
+TO_ROS1 = 'decode_type = "std_msgs/msg/Bool"\nencode_type = "std_msgs/Bool"\ndecode = { encoding = "cdr" }\nencode = { encoding = "ros1" }'
+BOOL = "8b94c1b53db61fb6aed406028ad6332a"
+"""The md5 sum of std_msgs/Bool, as `rosmsg md5` says it."""
+
+
+def test_the_target_gets_to_know_the_type(run):
+    """Its name, md5 sum and text come from what the route writes: a subscriber of ROS 1 that asks for them is served."""
+    master, source = Master(), free_port()
+    at = f"ros1:/{{}}?master={master.uri}"
+    try:
+        with rj.subscribe(at.format("on") + f"&type=std_msgs/Bool&md5={BOOL}&name=/reader") as there:
+            run(f'[[route]]\nsource = "tcp:{source}"\ntarget = "{at.format("on")}"\n{TO_ROS1}\n')
+            with rj.publish(f"tcp:{source}") as robot:
+                until(lambda: there.connections)
+                robot.send(b"\0\1\0\0\1")
+                message = there.take(5)
+            assert (message.data, message.type, message.attributes["md5"]) == (b"\1", "std_msgs/Bool", BOOL)
+            assert message.attributes["definition"] == "bool data\n"
+        assert not there.lost
+    finally:
+        master.close()
+
+
+def test_a_source_of_another_type_is_refused_and_said(run):
+    """Its messages could be read, as something that they are not."""
+    master, target = Master(), free_port()
+    at = f"ros1:/on?master={master.uri}"
+    mapping = (
+        'decode_type = "std_msgs/Bool"\nencode_type = "std_msgs/msg/Bool"\ndecode = { encoding = "ros1" }\nencode = { encoding = "cdr" }'
+    )
+    try:
+        with (
+            rj.publish(f"{at}&type=std_msgs/UInt8&md5=7c8164229e7d2c17eb95e9231617fdee&name=/other") as other,
+            rj.subscribe(f"tcp:{target}"),
+        ):
+            bridge, said = run(f'[[route]]\nname = "a"\nsource = "{at}"\ntarget = "tcp:{target}"\n{mapping}\n')
+            until(lambda: said)
+            other.send(b"\1")
+            (shown,) = bridge.snapshot()
+            assert "the publisher refuses: another" in said[0]
+            assert (shown["taken"], list(shown["dropped"].values())) == (0, [0])
+            bridge.stop(0.2)
+    finally:
+        master.close()
+
+
+SET = "bool data\n---\nbool success\nstring message\n"
+SUM = "09fb03525b03e7ea1fd3992bafd87e16"
+"""The md5 sum of such a service, as `rossrv md5 std_srvs/SetBool` says it."""
+
+
+def test_who_asks_a_service_gets_to_know_its_type(run, tmp_path):
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "Set.srv").write_text(SET)
+    master, inner = Master(), free_port()
+    half = '{ encoding = "ros1", imports = ["own/Set.srv"] }'
+    at = f"ros1:/set?master={master.uri}"
+    try:
+        with rj.serve(f"tcp:{inner}", lambda message: bytes(message.data) + bytes(4)):
+            request = f'{{ decode_type = "own/SetRequest", decode = {half}, encode = {half} }}'
+            bridge, _ = run(f'[[rpc]]\nserve = "{at}"\ncall = "tcp:{inner}"\nrequest = {request}\n')
+            with rj.call(f"{at}&md5={SUM}&name=/one") as ask:
+                assert ask(b"\1").data == b"\1" + bytes(4)
+            with rj.call(f"{at}&md5={'0' * 32}&name=/two") as ask, pytest.raises(rj.TransportError, match="another md5"):
+                ask(b"\1")
+            bridge.stop(0.2)
+    finally:
+        master.close()
+
+
+@pytest.mark.parametrize(
+    ("target", "told"),
+    [
+        ("ros1:/on", {"type", "md5", "definition"}),
+        ("ros1:/on?type=std_msgs/Bool", {"md5", "definition"}),
+        ("ros1:/on?type=own/Bool", set()),  # of which nothing is known
+        ("ros2-dds:/on", set()),  # it is a type of ROS 1
+        ("tcp:9000", set()),
+    ],
+)
+def test_what_an_address_says_goes_first(target, told):
+    bridge = rj.Bridge.of("std_msgs/msg/Bool", "std_msgs/Bool", decode={"encoding": "cdr"}, encode={"encoding": "ros1"})
+    assert announced(target, bridge).keys() == told
+    assert announced(target, None) == {}
 
 
 def test_a_rate(run):
@@ -387,7 +477,30 @@ def test_the_table_and_the_metrics(run):
         assert found.split("\n")[0].startswith("# HELP")
         assert 'rosetta_jit_bridge_bytes_sent_total{route="a \\"b\\"?[2J"} 5' in found
         assert 'reason="evil?[2J reason?"} 1' in found
+        assert 'rosetta_jit_bridge_connections{route="a \\"b\\"?[2J",end="target"} 1' in found
+        assert 'rosetta_jit_bridge_reconnects_total{route="a \\"b\\"?[2J",end="source"} 0' in found
         assert all(line.startswith("#") or line.count("{") == 1 for line in text(bridge.snapshot()).splitlines())
+
+
+def test_who_asks_for_metrics_and_says_nothing_holds_up_nobody(monkeypatch):
+    monkeypatch.setattr(asking, "MAX_ASKING", 2)
+    monkeypatch.setattr(asking._Handler, "timeout", 0.3)
+    metrics = MetricsServer("0", list)
+    try:
+        with socket.create_connection(("127.0.0.1", metrics.port)), socket.create_connection(("127.0.0.1", metrics.port)):
+            with socket.create_connection(("127.0.0.1", metrics.port)) as third:
+                assert third.recv(1) == b""
+            until(lambda: is_answered(metrics.port))
+    finally:
+        metrics.close()
+
+
+def is_answered(port):
+    try:
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics") as answer:
+            return answer.read().startswith(b"# HELP")
+    except OSError:
+        return False
 
 
 def test_the_command(tmp_path):
@@ -410,6 +523,12 @@ def test_the_command(tmp_path):
             said = program.stderr.readline()
             while "all goes on as before" not in said:
                 said = program.stderr.readline()
+            metrics = free_port()
+            path.write_text(path.read_text().replace("suorce", "source").replace("[bridge]", f'[bridge]\nmetrics = "{metrics}"'))
+            os.kill(program.pid, signal.SIGHUP)
+            until(lambda: answers(metrics))  # where the new file says
+            with urllib.request.urlopen(f"http://127.0.0.1:{metrics}/metrics") as answer:
+                assert b'messages_sent_total{route="a"} 1' in answer.read()
             threading.Timer(0.3, program.send_signal, (signal.SIGTERM,)).start()
             out, _ = program.communicate(timeout=20)
             assert json.loads(out.splitlines()[-1])["routes"][0]["sent"] == 1

@@ -1,6 +1,7 @@
 """What is true in every round of a loop: guessed at the entry, kept as long as each round keeps it.
 
-The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero. One that a
+The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero, what each
+round adds an integer of few bits to has grown by no more than so many times the largest. One that a
 round breaks is dropped for good, so that for all its loops together a kernel is walked at most once for each guess. To walk a loop again
 is to walk all loops in it again: what can hardly hold is not tried.
 """
@@ -9,23 +10,34 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Advance, Assign, Local
+from rosetta_jit.kernel.arithmetic import FLOATS, limits
+from rosetta_jit.kernel.ir import WIDTH, Advance, Assign, Binary, Const, Convert, If, Let, Local, Select
 from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.proof.symbolic import linear
-from rosetta_jit.kernel.shape import bound_names, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.kernel.shape import bound_names, expressions_of, statements
+from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
-    from rosetta_jit.kernel.ir import Block, Expr
+    from rosetta_jit.kernel.ir import Block, Expr, Stmt
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.scope import Scope, Typed
+
+
+ZERO = Linear(0)
+
+FEW_BYTES = 4
+"""Integers of so many are added up without a check in each round."""
+
+ROUNDS = 4
+"""The anchor that is a variable's first value and a ``step`` for each round before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,16 +47,22 @@ class Guess:
     name: str
     anchor: int
     sign: int
+    step: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """A loop's body and how to walk a round: ``enter`` is told the first atom of the round, ``leave`` checks what a round owes."""
+    """A loop's body and how to walk a round: ``enter`` is told the first atom of the round, ``leave`` checks what a round owes.
+
+    One that counts its rounds has a ``variable`` that does, and a ``count`` of all of them.
+    """
 
     body: Block
     enter: Callable[[int], None]
     walk: Callable[[], bool]
     leave: Callable[[], None]
+    variable: str = ""
+    count: Linear = ZERO
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +78,7 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
     names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
     at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
-    kept = [guess for guess in guesses(scope, names) if guess not in dropped]
+    kept = [guess for guess in (*guesses(scope, names), *counted(loop, scope)) if guess not in dropped]
     while True:
         written = 0 if scope.record is None else scope.record.mark()
         lost = _round(scope, loop, at_entry, kept)
@@ -73,9 +91,10 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
         dropped.update(lost)
         kept = [guess for guess in kept if guess not in dropped]
     if scope.record is not None:
-        first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)) for guess in kept]
+        first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO) for guess in kept]
         scope.record.owe_all(first, claims.RELATION_FIRST)
     forget(scope, at_entry, lanes, kept)
+    assume_counted(scope, at_entry, kept, loop.count)
 
 
 def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list[Guess]:
@@ -84,10 +103,13 @@ def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list
     mark, first_atom = facts.mark(), len(facts.lows)
     forget(scope, at_entry, advanced_lanes(loop.body), kept)
     loop.enter(first_atom)
+    index = linear(scope.locals[loop.variable][1]) if loop.variable else ZERO
+    assume_counted(scope, at_entry, kept, index)
     lost: list[Guess] = []
     if not loop.walk() and not facts.impossible:
         loop.leave()
-        claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess))) for guess in kept]
+        behind = shifted(index, 1)
+        claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), behind)) for guess in kept]
         lost = [guess for guess, formula in claimed if not facts.proves(formula)]
         if scope.record is not None:
             scope.record.owe_all([formula for _, formula in claimed], claims.RELATION_KEPT)
@@ -121,26 +143,25 @@ def changed_names(body: Block) -> set[str]:
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
 
 
-def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str]) -> set[Guess]:
+def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], reads: dict[int, set[str]]) -> set[Guess]:
     """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps.
 
-    What grows in each round is tried all the same: a loop around this one may grow by it.
+    What grows in each round is tried all the same: a loop around this one may grow by it. ``reads`` keeps the names that statements read,
+    by their ids: those of a loop are asked for again by each loop around it.
     """
     users: dict[str, set[str]] = {}
     assigned: dict[str, list[set[str]]] = {}
     for stmt, _ in statements(body):
-        read = {name for expr in expressions_of(stmt) for name in _names(expr)}
+        read = reads.get(id(stmt))
+        if read is None:
+            read = reads[id(stmt)] = set[str]().union(*map(locals_in, expressions_of(stmt)))
         if isinstance(stmt, Assign):
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
             users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
-    told = {name for expr in said for name in _names(expr)} - set(() if measure is None else _names(measure))
+    told = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
     variables = [name for name in assigned if name in known]
     return {Guess(name, 2, 1) for name in variables if name in told or not all(map(_made_of(name, users).intersection, assigned[name]))}
-
-
-def _names(expr: Expr) -> Iterator[str]:
-    return (part.name for part in subexpressions(expr) if isinstance(part, Local))
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
@@ -168,14 +189,76 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
         wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
         if type_ == "i64" and from_begin(value):
             wanted += [Guess(name, 0, 1), Guess(name, 1, -1)]
-        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, (type_, value), value))]
+        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, (type_, value), value, ZERO))]
     return found
 
 
-def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear) -> Linear:
-    """A guess about a value, as a fact; ``at_entry`` is the variable before the first round."""
-    marks = anchors(scope, at_entry)
+def counted(loop: Loop, scope: Scope) -> list[Guess]:
+    """How far variables may get to which each round adds an integer of few bits, in a loop that runs no negative number of times."""
+    named = {stmt.name: stmt.value for stmt in _once(loop.body) if isinstance(stmt, Let)}
+    every = [stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign)]
+    found: list[Guess] = []
+    for stmt in _once(loop.body):
+        added = _added(stmt.value, stmt.name, named) if isinstance(stmt, Assign) and every.count(stmt.name) == 1 else None
+        if added is None or not isinstance(stmt, Assign) or not _is_integer(scope.locals.get(stmt.name)):
+            continue
+        low, high = added
+        found += [Guess(stmt.name, ROUNDS, -1, high), *([Guess(stmt.name, ROUNDS, 1, low)] if low < 0 else [])]
+    return found if loop.variable and found and scope.facts.proves(loop.count) else []
+
+
+def _is_integer(known: Typed | None) -> bool:
+    return known is not None and known[0] == "i64" and isinstance(known[1], Linear)
+
+
+def _once(body: Block) -> Iterator[Stmt]:
+    """The statements that run once in a round at most."""
+    for stmt in body:
+        yield stmt
+        if isinstance(stmt, If):
+            yield from _once((*stmt.then, *stmt.otherwise))
+
+
+def _added(value: Expr, name: str, named: Mapping[str, Expr]) -> tuple[int, int] | None:
+    """The least and the most that a value is beyond that of a variable, where it is a sum with it."""
+    match _written(value, named):
+        case Binary("add", Local("i64", first), step) if first == name:
+            return _range(_written(step, named), named)
+        case _:
+            return None
+
+
+def _range(value: Expr, named: Mapping[str, Expr]) -> tuple[int, int] | None:
+    """The bounds of an integer of few bits."""
+    match value:
+        case Const(value=int(number)) if abs(number) <= 1:
+            return int(number), int(number)
+        case Select(_, then, otherwise):
+            ranges = [_range(_written(each, named), named) for each in (then, otherwise)]
+            known = [each for each in ranges if each is not None]
+            return (min(low for low, _ in known), max(high for _, high in known)) if len(known) == len(ranges) else None
+        case Convert(_, operand) if (type_ := type_of(operand)) not in FLOATS and (type_ == "bool" or WIDTH[type_] <= FEW_BYTES):
+            return (0, 1) if type_ == "bool" else limits(type_)
+        case _:
+            return None
+
+
+def _written(value: Expr, named: Mapping[str, Expr]) -> Expr:
+    """What a name was given, for a name."""
+    return named.get(value.name, value) if isinstance(value, Local) else value
+
+
+def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear, rounds: Linear) -> Linear:
+    """A guess about a value, as a fact; ``at_entry`` is the variable before the first round, and so many ``rounds`` were before."""
+    marks = [*anchors(scope, at_entry), plus(linear(at_entry[1]), times(rounds, guess.step))]
     return times(minus(value, marks[guess.anchor]), guess.sign)
+
+
+def assume_counted(scope: Scope, at_entry: Entry, kept: list[Guess], rounds: Linear) -> None:
+    """The guesses about what rounds count, where there were so many before."""
+    for guess in kept:
+        if guess.anchor == ROUNDS:
+            scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), rounds))
 
 
 def _now(scope: Scope, guess: Guess) -> Linear:
@@ -190,6 +273,7 @@ def forget(scope: Scope, at_entry: Entry, lanes: set[int], kept: list[Guess]) ->
         else:
             scope.bind(name, (type_, variable(scope, type_, relative=from_begin(linear(old)))))
     for guess in kept:
-        scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)))
+        if guess.anchor != ROUNDS:
+            scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO))
     for lane in sorted(lanes):
         scope.used[lane] = grown(scope, lane, at_entry.used[lane])

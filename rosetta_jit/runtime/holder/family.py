@@ -24,7 +24,7 @@ from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
-from rosetta_jit.runtime.holder.serialising import serialising_methods
+from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
 from rosetta_jit.runtime.limits import MAX_RECIPES
@@ -158,12 +158,14 @@ class Family:
         members = {"family_": self, "__slots__": (self._mark, *slots), **self.described}
         base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
         methods = {} if code is None else serialising_methods(self)
+        if code is not None and self.manners.base.from_dict.__func__ is Holder.from_dict.__func__:
+            methods["from_dict"] = building_method(self)
         made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
         for each in methods.values():
             each.holder_type = made
         if code is not None:
             self._kept = descriptors.take_slots(made, list(entries.values()))
-            descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray)
+            descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray, has_methods=len(methods) > 1)
             make_quickly(made)
             self._begins_alike = made.__init__ is Holder.__init__ or made.begins_alike_ is True
         return made
@@ -203,6 +205,7 @@ class Family:
         if view is None:
             base = self.of_struct(struct)
             view = _class(struct, (View, base), {"__slots__": ("_is_view",), **base.family_.described})
+            descriptors.describe_view(view, base, base.family_.kept_of(struct))
             self._views[struct] = view
         return view
 
@@ -381,6 +384,8 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     ValueError
         If another version of rosetta_jit has written this, whose lanes are others.
     """
+    from rosetta_jit.runtime.contents import fill  # only pickles need it
+
     family = _MARKED.get(mark)
     if family is None:
         family = family_of(text, manners_at(manners) if isinstance(manners, str) else manners)
@@ -389,5 +394,5 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     holder = family.new(family.plan)
     with holder.lanes_ as lanes:
         lanes.words[VALID], lanes.words[WASTED], content = contents
-        lanes.take_contents(content)
+        fill(lanes, content)
     return holder
