@@ -65,7 +65,7 @@ MAY_IMPORT = {
     "language.parse": READS | {"parsing"},
     "language.parameters": READS,
     "language.units": READS | {"language.parse"},
-    "language.arrays": READS,
+    "language.arrays": READS | {"language.units"},
     "language.functions": READS | {"language.arrays", "language.units"},
     "functions": FUNCTIONS,
     "language.both_ways": READS | {"language.arrays", "language.functions"},

@@ -168,11 +168,6 @@ def _of_request(program: Any, request: BridgeRequest) -> Any:
     return made
 
 
-def bridge_of(request: BridgeRequest) -> Bridge:
-    """The bridge that answers a request."""
-    return _of_request(Bridge, request)
-
-
 def _build(request: BridgeRequest) -> BridgeBuild | TranscodingBuild:
     imported("rosetta_jit.pipeline.bridge")
     from rosetta_jit.pipeline.bridge import BridgeBuild, is_open

@@ -222,7 +222,7 @@ def same_order(span: Span | None) -> Diagnostic:
 
 def one_value(span: Span | None, called: str = "", reductions: Sequence[str] = ()) -> Diagnostic:
     """Many elements for a place that holds one value; what is ``called`` with them may be a reduction, misspelt."""
-    meant = closest(called[:100], reductions) if called else None
+    meant = closest(called, reductions) if called else None
     help_ = f"did you mean `{meant}`?" if meant else "take one of them, `.n = .a[0]`, or one value of all: `.n = sum(.a[])`"
     return error("many-elements", "many elements are assigned to one value", span, "no array", help_=help_)
 

@@ -73,20 +73,29 @@ def wrong_factor(span: Span | None, factor: float, source: str, target: str, rig
 
 def no_float(span: Span | None, found: str) -> Diagnostic:
     """Something else than a float whose unit has to change."""
-    message = f"the units differ, and {found} is no float that could be converted"
-    return error("unit", message, span, help_="convert element by element: `.a[] = .b[]`, with a word where they are rounded")
+    return error("unit", f"the units differ, and {found} is no float that could be converted", span, f"this is {found}")
 
 
-def wide_integer(span: Span | None, found: str) -> Diagnostic:
-    """An integer of more bits than the float has in which units are converted."""
+def integers_within(span: Span | None, integers: str, known: str, wanted: str) -> Diagnostic:
+    """Integers within a whole value, which would be refused or rounded one by one."""
+    message = f"within this are values of {integers} in {shorten(known)} where {shorten(wanted)} is meant"
+    return error("unit", message, span, help_="write a rule for each such field or element: integers are converted one by one")
+
+
+EACH = ", and write `[]` behind the array that is set, too"
+
+
+def wide_integer(span: Span | None, found: str, element: str) -> Diagnostic:
+    """An integer of more bits than the float has in which units are converted; ``element`` where it is one of a whole array."""
     message = f"the units differ, and float64, in which they are converted, does not hold every {found}"
-    return error("unit", message, span, help_=f"say that it may be rounded: `float64({written_at(span)})`")
+    help_ = f"say that it may be rounded: `float64({element or written_at(span)})`{EACH if element else ''}"
+    return error("unit", message, span, help_=help_)
 
 
-def fraction_of_unit(span: Span | None, known: str, wanted: str, target: str) -> Diagnostic:
-    """An integer that may be a fraction in the unit of its place."""
+def fraction_of_unit(span: Span | None, known: str, wanted: str, target: str, element: str) -> Diagnostic:
+    """An integer that may be a fraction in the unit of its place; ``element`` where it is one of a whole array."""
     message = f"a whole number of {shorten(known)} need not be one of {shorten(wanted)}"
-    help_ = f"say how it is rounded: `{target}(float64({written_at(span)}), round)`, or `truncate`"
+    help_ = f"say how it is rounded: `{target}(float64({element or written_at(span)}), round)`, or `truncate`{EACH if element else ''}"
     return error("unit", message, span, help_=help_)
 
 

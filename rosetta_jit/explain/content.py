@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Literal
 
 from rosetta_jit.errors import ReportError
 from rosetta_jit.explain.cost import Cost, cost_of
-from rosetta_jit.explain.lines import MAX_LINES, Line, Lines
+from rosetta_jit.explain.limits import MAX_RULES
+from rosetta_jit.explain.lines import Line, Lines
 from rosetta_jit.explain.nodes import nodes
 from rosetta_jit.explain.rows import Row, rows
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -123,7 +124,7 @@ def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Check
     if not rules or not derived:
         return None
     source, target = (checked.wire, checked.holder) if name == "unpack" else (checked.holder, checked.wire)
-    lines = tuple(islice(Lines.of(written, name, rules, checked.uses).lines(derived), MAX_LINES))
+    lines = tuple(islice(Lines.of(written, name, rules, checked.uses).lines(derived), MAX_RULES))
     refusals = [rule.text for rule in rules_within(rules) if isinstance(rule, typed.Reject)]
     refusals += [node.reason for node in nodes(rules) if isinstance(node, typed.Choice) and node.otherwise is None]
     losses = tuple(_losses(rules, lines, source, target))

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
 Names = tuple[str, ...]
 
-MAX_LINES = 2_000
-"""Rules that are shown."""
-
 
 @dataclass(frozen=True, slots=True)
 class Line:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 GROUP = "rosetta_jit.functions"
 """The entry-point group in which packages offer functions of their own: a `Function` each."""
 
-GROUPS = ("rotations", "poses", "geodesy")
+GROUPS = ("rotations", "poses", "geodesy", "utm")
 """Those of `OURS` whose functions are components of functions of several values (`language.groups`)."""
 
 OURS = (

@@ -45,8 +45,9 @@ def files(wire: str, holder: str, rules: str) -> dict[str, str]:
     }
 
 
-def pair(wire: str, holder: str, rules: str, backend: str = "interpreter") -> Pair:
+def pair(wire: str, holder: str, rules: str, backend: str = "interpreter", *, head: str = "") -> Pair:
     texts = files(wire, holder, rules)
+    texts["m.mapping"] = head + texts["m.mapping"]
     options: dict[str, Any] = {"schema": texts, "encoding": "yarp3", "backend": backend}
     own = {**options, "imports": ["wire.bottle-schema"]}
     return Pair(

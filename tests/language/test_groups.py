@@ -240,6 +240,76 @@ def test_places_come_back(lat, lon, alt):
     assert abs(back["alt"] - alt) < 1e-6
 
 
+UTM = {
+    zone: pair(
+        '("lat" :double) ("lon" :double)',
+        "required double x = 1; required double y = 2;",
+        f"rules:\n  .x, .y <-> utm([.lat, .lon], {zone})\n",
+        "llvm",
+    )
+    for zone in (32, -60)
+}
+GRID = [
+    (32, (52.0, 8.5), (465674.8325450392, 5761156.235698992)),
+    (32, (60.0, 5.0), (276979.92640100635, 6658157.202407252)),
+    (-60, (-33.9, 178.2), (610950.1770188404, 6248283.651076244)),
+    (32, (0.0, 9.0), (500000.0, 0.0)),
+    (32, (84.0, 14.9), (568734.617344993, 9331616.57901011)),
+    (32, (-45.0, 6.0), (263553.9738987921, -4987329.504698914)),
+]
+
+
+@pytest.mark.parametrize(("zone", "place", "wanted"), GRID)
+def test_zones_of_utm(zone, place, wanted):
+    """As PROJ 9.5 computes them: `+proj=utm +ellps=WGS84`, with `+south` in zone -60."""
+    found = UTM[zone].unpack(lat=place[0], lon=place[1])
+    assert np.allclose(list(found.values()), wanted, rtol=0, atol=5e-8)
+    assert np.allclose(list(UTM[zone].pack(**found).values()), place, rtol=0, atol=1e-12)
+
+
+@settings(deadline=None)
+@given(st.floats(-89.9, 89.9), st.floats(-30, 30))
+def test_places_come_back_from_their_zone(lat, away):
+    lon = (177 + away + 180) % 360 - 180
+    back = UTM[-60].pack(**UTM[-60].unpack(lat=lat, lon=lon))
+    assert abs(back["lat"] - lat) < 1e-12
+    assert abs((back["lon"] - lon + 180) % 360 - 180) < 1e-12 / math.cos(math.radians(lat))
+
+
+def test_poles_are_in_all_zones_and_longitudes_turn_round():
+    at_pole = UTM[32].unpack(lat=90.0, lon=77.0)
+    assert np.allclose(list(at_pole.values()), [500000.0, 9997964.943], rtol=0, atol=1e-3)
+    assert UTM[32].pack(**at_pole)["lat"] == pytest.approx(90.0, abs=1e-12)
+    assert UTM[-60].unpack(lat=10.0, lon=-179.0)["x"] == pytest.approx(UTM[-60].unpack(lat=10.0, lon=181.0)["x"], abs=1e-8)
+    assert UTM[-60].pack(x=1.1e6, y=1e7)["lon"] < -170
+
+
+ZONED = pair(
+    '("lat" :double (:unit :radian)) ("lon" :double (:unit :degree)) ("zone" :int)',
+    "required double east = 1; required double north = 2;",
+    "unpack-rules:\n  .east, .north = utm([.lat, .lon], .zone)\n"
+    "pack-rules:\n  .lat, .lon = geodetic_of_utm([.east, .north], zone)\n  .zone = zone\n",
+    head="parameter zone: int64 = 32\n",
+)
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon", "zone"), [(50.0, 9.0, 61), (50.0, 9.0, 0), (0.0, 60.0, 32), (math.nan, 9.0, 32), (50.0, math.inf, 32)]
+)
+def test_far_from_a_zone_there_is_no_number(lat, lon, zone):
+    found = ZONED.unpack(lat=math.radians(lat), lon=lon, zone=zone)
+    assert all(map(math.isnan, found.values()))
+
+
+def test_a_zone_is_a_field_or_a_parameter():
+    place, grid = GRID[0][1:]
+    values = {"lat": math.radians(place[0]), "lon": place[1], "zone": 32}
+    found = ZONED.unpack(**values)
+    assert np.allclose(list(found.values()), grid, rtol=0, atol=5e-8)
+    assert ZONED.pack(**found) == pytest.approx(values, abs=1e-13)
+    assert all(math.isnan(value) for name, value in ZONED.pack(east=7e6, north=0.0).items() if name != "zone")
+
+
 # --- what stands for a group -------------------------------------------------------------------------------------------------
 
 

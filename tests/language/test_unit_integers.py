@@ -101,6 +101,25 @@ def test_elements_of_arrays(backend):
     assert both.packed(a=[float(np.float32(0.001)), -2.5], b=[3_000_000]) == {"a": [1, -2500], "b": [3]}
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("rules", ["  .a <-> .a\n  .b <-> .b\n", "  same names\n"])
+def test_whole_arrays(rules, backend):
+    """An array is converted as its elements are, whether its integers also get wider or not."""
+    wire, holder = (
+        f'("a" (:list :int) (:unit :{unit})) ("b" (:list :{kind}) (:unit :{unit}))' for unit, kind in (("m", "int"), ("mm", "int64"))
+    )
+    both = Both(wire, holder, "rules:\n" + rules, backend)
+    assert both.laws == EXACT
+    assert both.unpacked(a=[1, -2], b=[2**31 - 1]) == {"a": [1000, -2000], "b": [1000 * (2**31 - 1)]}
+    assert both.packed(a=[], b=[-3000]) == {"a": [], "b": [-3]}
+    with pytest.raises(rj.EncodeError) as remainder:
+        both.packed(a=[1000, 5001], b=[])
+    assert (remainder.value.kind, remainder.value.path) == ("range", ".a[1]")
+    with pytest.raises(rj.DecodeError) as beyond:
+        both.unpacked(a=[2**31 - 1], b=[])
+    assert (beyond.value.kind, beyond.value.path) == ("range", ".a[0]")
+
+
 def test_int64_in_floats_takes_its_word():
     both = Both('("t" :int64 (:unit :ns))', '("t" :double (:unit :s))', "rules:\n  .t <-> float64(.t)\n")
     assert both.unpacked(t=1_234_567_890_123) == {"t": 1_234_567_890_123 * 1e-9}

@@ -21,7 +21,8 @@ from rosetta_jit.language.conversions import is_single, same, widens
 from rosetta_jit.language.function import functions
 from rosetta_jit.language.limits import MAX_MADE
 from rosetta_jit.language.scope import element_type, members_of
-from rosetta_jit.language.typed import FieldStep
+from rosetta_jit.language.typed import INT64, Const, FieldStep, IndexStep, Local, Place
+from rosetta_jit.language.units.places import unit_at
 from rosetta_jit.model.expr import Binary, Call, Choice, Each, Index, Len, Literal, Member, Name, Path
 from rosetta_jit.model.mapping import Arranged, Assign, For, Reject, SetLength, Via, When
 from rosetta_jit.model.printer import show_expr
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.arrays.element_loops import Padding
     from rosetta_jit.language.arrays.layouts import NumberType, View
     from rosetta_jit.language.scope import Scope
+    from rosetta_jit.language.typed import Step
     from rosetta_jit.model.expr import Expr
     from rosetta_jit.model.mapping import Assignment, Rule
     from rosetta_jit.model.types import Type
@@ -92,7 +94,10 @@ class _Expansion:
     def assign(self, rule: Assignment, lengths: Lengths, level: int) -> tuple[Rule, ...]:
         if not isinstance(rule.by, Via) and isinstance(rule.value, Path) and self.are_unlike_maps(rule.place, rule.value):
             return tuple(made for each in _entries(rule, rule.value) for made in self.assign(each, lengths, level))
-        if isinstance(rule.value, Path) and self.are_unlike_numbers(rule.place, rule.value, fits=rule.by == "checked"):
+        if isinstance(rule.value, Path) and (
+            self.are_unlike_numbers(rule.place, rule.value, fits=rule.by == "checked")
+            or self.are_integers_in_other_units(rule.place, rule.value)
+        ):
             rule = _each(rule, rule.value)
         if rule.where is None and not any(is_many(part) for side in (rule.place, rule.value) for part in open_parts(side)):
             return (rule,)
@@ -226,22 +231,41 @@ class _Expansion:
             case _:
                 return False
 
+    def are_integers_in_other_units(self, one: Path, other: Path) -> bool:
+        """Whether an array of numbers is set to one of integers in another unit, which are converted one by one."""
+        target, source = self.place_of(one), self.place_of(other)
+        match target, source:
+            case Place(type=Array(Int() | Float())), Place(type=Array(Int())):
+                element = IndexStep(Local("element"))
+                units = [unit_at(replace(each, steps=(*each.steps, element))) for each in (target, source)]
+                return isinstance(units[0], str) and isinstance(units[1], str) and units[0] != units[1]
+            case _:
+                return False
+
     def type_of(self, path: Path) -> Type | None:
         """The type of a place without slices; None where there is none, which others report."""
-        message = self.scope.messages[path.side]
+        place = self.place_of(path)
+        return None if place is None else place.type
+
+    def place_of(self, path: Path) -> Place | None:
+        """A place without slices, its indices known where they are literals; None where there is none, which others report."""
+        message, base = self.scope.messages[path.side], self.scope.base(path.side)
         type_: Type = message.root
+        steps: list[Step] = [*base.steps]
         for step in path.steps:
             match step, type_:
                 case Member(name), Struct() | Union():
                     members = members_of(type_, message.schema)
                     if name not in members:
                         return None
+                    steps += [FieldStep(field) for field in members[name]]
                     type_ = message.value_type(members[name][-1].type)
-                case Index(), Array() | Bytes():
+                case Index(number), Array() | Bytes():
+                    steps.append(IndexStep(Const(number.value, INT64) if isinstance(number, Literal) else Local("element")))
                     type_ = message.value_type(element_type(type_))
                 case _:
                     return None
-        return type_
+        return Place(path.side, tuple(steps), type_, path.span)
 
     def variable(self, level: int, word: str = "element") -> str:
         """The name of the loop at a level, or of what it counts, which no rule of the mapping uses."""

@@ -135,6 +135,8 @@ def components_of(value: model.Expr, group: Group, scope: Scope, type_index: Typ
             place = resolve_path(value, scope, type_index)
             paths = None if isinstance(place, Broken) else paths_of(value, place.type, group, scope)
             return None if paths is None else [*paths]
+        case _ if len(group.components) == 1:
+            return [value]
         case _:
             scope.problems.append(words.not_a_group(value.span, "one value", group.name))
             return None
@@ -182,6 +184,8 @@ def paths_of(path: model.Path, type_: Type, group: Group, scope: Scope) -> list[
         return [replace(path, steps=(*path.steps, model.Index(model.Literal(number, path.span), path.span))) for number in numbers]
     if isinstance(type_, Struct):
         return _fields(path, type_, group, scope)
+    if len(group.components) == 1 and path.side != scope.target:
+        return [path]
     report = words.alone(path.span, group.name, _names(group)) if path.side == scope.target else None
     scope.problems.append(report or words.not_a_group(path.span, describe(type_), group.name))
     return None

@@ -39,7 +39,8 @@ def rules_of(rule: SameNames, names: list[str], scope: Scope) -> list[Assignment
 def _rule(here: Path, there: Path, span: Span | None, rule: SameNames, scope: Scope) -> Assignment:
     source, target = (_number(path, scope) for path in (there, here))
     is_narrower = isinstance(source, Int | Float) and isinstance(target, type(source)) and widens(target, source)
-    return Assign(here, there, span, by="checked" if rule.both and is_narrower else None)
+    packs = scope.target == "wire" and isinstance(source, Int) and source == target  # perhaps in other units, as by `<->`
+    return Assign(here, there, span, by="checked" if rule.both and (is_narrower or packs) else None)
 
 
 def unlike(rule: Assignment, names: SameNames, scope: Scope) -> Diagnostic | None:

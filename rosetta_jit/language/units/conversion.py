@@ -12,9 +12,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import units as words
+from rosetta_jit.catalogue.resolve import written_at
 from rosetta_jit.language.conversions import FLOAT64, convert, describe
 from rosetta_jit.language.function import functions
-from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, Nearest, Reduce, Unary
+from rosetta_jit.language.places import field_names
+from rosetta_jit.language.typed import Access, Binary, Call, Choice, Convert, IndexStep, Nearest, Reduce, Unary
 from rosetta_jit.language.units.dimensions import conversion
 from rosetta_jit.language.units.numbers import exactly, nearest, scaled, scaled_before_rounding
 from rosetta_jit.language.units.places import Mixed, pairs_in_step, unit_at
@@ -106,10 +108,19 @@ def _not_converted(value: Expr, target: Type, known: str, wanted: str) -> Diagno
     """Why a number is not converted."""
     source = describe(value.type)
     if isinstance(value.type, Int) and isinstance(target, Float):
-        return words.wide_integer(value.span, source)
+        return words.wide_integer(value.span, source, _element_of(value))
     if isinstance(value.type, Int) and isinstance(target, Int):
-        return words.fraction_of_unit(value.span, known, wanted, describe(target))
+        return words.fraction_of_unit(value.span, known, wanted, describe(target), _element_of(value))
     return words.no_float(value.span, source if convert(value, FLOAT64) is None else describe(target))
+
+
+def _element_of(value: Expr) -> str:
+    """How an element is written of an array that a rule names as a whole; empty of all other values."""
+    if not (isinstance(value, Access) and isinstance(value.place.steps[-1], IndexStep)):
+        return ""
+    written = written_at(value.span)
+    name = written if written.startswith(".") else "." + ".".join(field_names(value.place))
+    return "" if name.endswith("]") else f"{name}[]"
 
 
 def factors_between(known: str, wanted: str, span: Span | None, problems: list[Diagnostic]) -> Factors | None:

@@ -95,7 +95,7 @@ class _Finder:
         if factors is None or factors == (1.0, 0.0):
             return None
         if not isinstance(target, Float):
-            return self.report(words.no_float(self.value.span, describe(source)))
+            return self.report(words.integers_within(self.value.span, describe(source), known, wanted))
         return Rescale(known, wanted, *factors)
 
     def elements(self, types: _Types, contexts: _Contexts, depth: int) -> Change | None:

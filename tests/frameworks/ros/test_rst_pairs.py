@@ -180,9 +180,16 @@ def test_what_one_of_them_cannot_say_is_refused(backend):
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_places_from_a_satellite_receiver(backend):
-    options = {"encoding": "ros1", "backend": backend, "parameters": {"origin": [52.0, 8.5, 100.0]}}
-    decode, encode = rj.Decoder("ros1/nav_sat_fix.mapping", **options), rj.Encoder("ros1/nav_sat_fix.mapping", **options)
+@pytest.mark.parametrize(
+    ("name", "parameters", "wanted"),  # as PROJ computes them
+    [
+        ("nav_sat_fix", {"origin": [52.0, 8.5, 100.0]}, [1373.2821437, 1112.8860393, 29.7553353]),
+        ("nav_sat_fix_utm", {"zone": 32}, [467055.1744721, 5762259.2026191, 130.0]),
+    ],
+)
+def test_places_from_a_satellite_receiver(name, parameters, wanted, backend):
+    options = {"encoding": "ros1", "backend": backend, "parameters": parameters}
+    decode, encode = rj.Decoder(f"ros1/{name}.mapping", **options), rj.Encoder(f"ros1/{name}.mapping", **options)
 
     def fix(status=0, **place):
         state = theirs("sensor_msgs/NavSatStatus", status=status, service=1)
@@ -191,9 +198,14 @@ def test_places_from_a_satellite_receiver(backend):
 
     place = {"latitude": 52.01, "longitude": 8.52, "altitude": 130.0}
     found = decode(raw(fix(**place)))
-    assert [found.x, found.y, found.z] == pytest.approx([1373.2821437, 1112.8860393, 29.7553353], abs=2e-7)  # as PROJ computes them
+    assert [found.x, found.y, found.z] == pytest.approx(wanted, abs=2e-7)
     back = STORE.deserialize_ros1(encode(found), "sensor_msgs/msg/NavSatFix")
     assert {name: getattr(back, name) for name in place} == pytest.approx(place, abs=1e-9)
     with pytest.raises(rj.DecodeError) as error:
         decode(raw(fix(status=-1, **place)))
     assert error.value.kind == "rejected"
+    if "zone" in parameters:
+        with pytest.raises(rj.DecodeError) as far:
+            decode(raw(fix(**place | {"latitude": 5.0, "longitude": 90.0})))
+        assert far.value.kind == "rejected"
+        assert "far from zone 32" in str(far.value)
