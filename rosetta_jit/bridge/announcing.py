@@ -10,7 +10,7 @@ from rosetta_jit.transports.address import parse
 from rosetta_jit.transports.installed import installed
 
 if TYPE_CHECKING:
-    from rosetta_jit.bridge.translating import Joining, Translate
+    from rosetta_jit.bridge.translating import Translate
 
 
 def announced(target: str, translate: Translate | Joining | None) -> dict[str, Any]:
