@@ -20,6 +20,8 @@ ORDER = (
     "reorder",
     "groups",
     "state",
+    "wires",
+    "filters",
     "mapped",
     "bridges",
     "peers",

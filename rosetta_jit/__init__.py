@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from rosetta_jit.api.bridges import Bridge
     from rosetta_jit.api.options import Options
     from rosetta_jit.api.programs import Decoder, Encoder
+    from rosetta_jit.api.wires import Decoders, Encoders
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.logs.log import Log
     from rosetta_jit.pipeline.checked_mapping import CheckedMapping
@@ -56,8 +57,10 @@ __all__ = [
     "CacheWarning",
     "DecodeError",
     "Decoder",
+    "Decoders",
     "EncodeError",
     "Encoder",
+    "Encoders",
     "Holder",
     "InUse",
     "InvalidHolder",
@@ -83,6 +86,8 @@ __all__ = [
 _LAZY = {
     "Decoder": "rosetta_jit.api.programs",
     "Encoder": "rosetta_jit.api.programs",
+    "Decoders": "rosetta_jit.api.wires",
+    "Encoders": "rosetta_jit.api.wires",
     "Bridge": "rosetta_jit.api.bridges",
     "Batch": "rosetta_jit.runtime.batch",
     "Holder": "rosetta_jit.runtime.holder",

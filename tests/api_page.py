@@ -8,6 +8,7 @@ import re
 import rosetta_jit as rj
 from rosetta_jit.api.bridges import BridgeOptions
 from rosetta_jit.api.options import Options
+from rosetta_jit.api.wires import WireOptions
 from rosetta_jit.frameworks.corba.manners import Structure
 from rosetta_jit.frameworks.lcm.manners import LcmMessage
 from rosetta_jit.frameworks.protobuf.manners import ProtobufMessage
@@ -30,7 +31,7 @@ line is described by `rosetta-jit --help`.
 
 """
 CHAPTERS = {
-    "Programs": (rj.Decoder, rj.Encoder, rj.Bridge, Options, BridgeOptions, rj.check, rj.infer),
+    "Programs": (rj.Decoder, rj.Encoder, rj.Bridge, rj.Decoders, rj.Encoders, Options, WireOptions, BridgeOptions, rj.check, rj.infer),
     "Messages": (rj.Holder, rj.Batch, Ragged),
     "Logs": (rj.open, Log, Channel),
     "Transports": (rj.subscribe, rj.publish, rj.call, rj.serve, Message, Source, Sink, Caller, Server),

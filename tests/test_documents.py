@@ -79,11 +79,15 @@ def test_the_example_in_python_runs(tmp_path, monkeypatch):
     from rosetta_jit.cli import main
 
     text = (ROOT / "docs" / "python.md").read_text()
-    (generate, _), (source,), (said,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "py", "text"))
+    (generate, _, again), (source, arrays), (said, shown) = (
+        re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "py", "text")
+    )
     monkeypatch.chdir(tmp_path)
     assert main(generate.split()[1:]) == 0
     Path("main.py").write_text(source)
     assert subprocess.run([sys.executable, "-S", "main.py"], capture_output=True, text=True, check=True).stdout == said
+    assert main(again.split()[1:]) == 0
+    assert subprocess.run([sys.executable, "-c", arrays], capture_output=True, text=True, check=True).stdout == shown
 
 
 @pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL runs the example in Lisp")

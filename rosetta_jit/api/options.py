@@ -45,6 +45,8 @@ class Options(TypedDict, total=False):
     backend : {"numba", "llvm", "python", "interpreter"} or str
         What runs the kernel, also an installed one by its name; LLVM by default. numba types it on its way to LLVM, which takes longer
         and gives the same code.
+    wire : str
+        The name of one wire, of a mapping that has several.
     """
 
     encoding: str | None
@@ -58,6 +60,7 @@ class Options(TypedDict, total=False):
     borrow: bool
     functions: Mapping[str, Callable[..., Any]]
     backend: Backend | None
+    wire: str | None
 
 
 _KNOWN = {"decode": frozenset(Options.__annotations__), "encode": frozenset(Options.__annotations__) - {"borrow"}}
@@ -90,6 +93,7 @@ def request_of(direction: Direction, options: Options, *, mapping: str | None = 
         parameters=plain_parameters(options.get("parameters", {})),
         functions=_given(options.get("functions", {})),
         backend=options.get("backend"),
+        wire=options.get("wire"),
     )
 
 

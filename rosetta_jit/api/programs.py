@@ -63,7 +63,8 @@ class _Made:
     def __repr__(self) -> str:
         request, holder = self._request, self.holder_type.family_.struct.name
         what = holder if request.mapping is None else f"{request.mapping}, {'from' if request.direction == 'encode' else 'into'} {holder}"
-        return f"<{type(self).__name__} of {what}{'' if request.encoding is None else f', {request.encoding}'}>"
+        wire = f", wire {request.wire}" if request.wire else ""
+        return f"<{type(self).__name__} of {what}{wire}{'' if request.encoding is None else f', {request.encoding}'}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies and pickles are made anew from the request, by the cache of their process: they share code, but no holder."""
@@ -126,10 +127,10 @@ class Decoder(_Made, DecoderBase):
         program = Program(sites_of(build.header, 0), build.header["limit"], tell, self._untell)
         return callable_kernel(build.kernels[0], self.holder_type.family_, program)
 
-    def _make(self, request: Request) -> None:
-        """Become the program that answers a request."""
+    def _make(self, request: Request, beside: Self | None = None) -> None:
+        """Become the program that answers a request; ``beside`` is one for another wire of the same mapping."""
         self._request = request
-        self._start(_loaded(request))
+        self._start(_loaded(request), beside)
 
 
 class Encoder(_Made, EncoderBase):
@@ -159,10 +160,10 @@ class Encoder(_Made, EncoderBase):
 
         return typed(_build(self._request).kernels[0])
 
-    def _make(self, request: Request) -> None:
-        """Become the program that answers a request."""
+    def _make(self, request: Request, beside: Self | None = None) -> None:
+        """Become the program that answers a request; ``beside`` is one for another wire of the same mapping."""
         self._request = request
-        self._start(_loaded(request))
+        self._start(_loaded(request), beside)
 
 
 def _build(request: Request) -> Build:
@@ -193,6 +194,7 @@ def _linked(header: Mapping[str, Any], image: bytes) -> Loaded:
         told=header["told"],
         limit=header["limit"],
         state=Kept.of(header["state"]),
+        **_wires(header),
     )
 
 
@@ -209,7 +211,13 @@ def _interpreted(build: Build) -> Loaded:
         told=build.header["told"],
         limit=build.header["limit"],
         state=Kept.of(build.header["state"]),
+        **_wires(build.header),
     )
+
+
+def _wires(header: Mapping[str, Any]) -> dict[str, Any]:
+    """The wires of a mapping that has several, and of a decoder which of them it reads."""
+    return {"wires": tuple(header["wires"]), "wire": header["wire"]}
 
 
 def _holder_type(header: Mapping[str, Any]) -> type[Holder]:
@@ -266,14 +274,14 @@ class OwnPrograms:
         return self.decode.new()
 
 
-def program_of(request: Request) -> Any:
-    """The decoder or encoder that answers a request."""
-    return _of_request(Decoder if request.direction == "decode" else Encoder, request)
+def program_of(request: Request, beside: Any = None) -> Any:
+    """The decoder or encoder that answers a request; ``beside`` is one for another wire, with which it shares its holder and state."""
+    return _of_request(Decoder if request.direction == "decode" else Encoder, request, beside)
 
 
-def _of_request(program: Any, request: Request) -> Any:
+def _of_request(program: Any, request: Request, beside: Any = None) -> Any:
     made = program.__new__(program)
-    made._make(request)
+    made._make(request, beside)
     return made
 
 

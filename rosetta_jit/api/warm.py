@@ -95,9 +95,18 @@ def _made(request: Request) -> tuple[Warmed, ...]:
                 return ()
             case "ambiguous-encoding":
                 return tuple(made for each in _dialects(request) for made in _made(each))
+            case "wire-unsaid":
+                return tuple(made for each in _wires(request) for made in _made(each))
             case _:
                 return (Warmed(request, time.perf_counter() - started, error),)
     return (Warmed(request, time.perf_counter() - started),)
+
+
+def _wires(request: Request) -> list[Request]:
+    """The same program of each wire of the mapping."""
+    from rosetta_jit.pipeline.build import Build
+
+    return [replace(request, wire=each.name) for each in Build(request).checked.mapping.wires]
 
 
 def _dialects(request: Request) -> list[Request]:

@@ -74,10 +74,14 @@ def statements(block: Block) -> Iterator[Stmt]:
 
 
 def counted_lanes(kernel: Kernel, body: Block) -> list[int]:
-    """The holder's lanes whose used length the body's success may change: decoding into row 0 empties all lanes behind lane 0."""
-    emptied = range(1, kernel.lanes) if kernel.direction == "decode" else ()
+    """The holder's lanes whose used length the body's success may change: see `emptied_lanes`."""
     advanced = (each.lane for each in statements(body) if isinstance(each, Advance))
-    return sorted({*emptied, *(lane for lane in advanced if lane < kernel.lanes)})
+    return sorted({*emptied_lanes(kernel), *(lane for lane in advanced if lane < kernel.lanes)})
+
+
+def emptied_lanes(kernel: Kernel) -> frozenset[int]:
+    """The holder's lanes that decoding into row 0 empties: all behind lane 0, but for those that the kernel keeps."""
+    return frozenset(range(1, kernel.lanes)) - frozenset(kernel.kept) if kernel.direction == "decode" else frozenset()
 
 
 def inner_blocks(statement: Stmt) -> tuple[Block, ...]:

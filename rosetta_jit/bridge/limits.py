@@ -13,6 +13,9 @@ MAX_FOUND = 1000
 MAX_CAUSES = 100
 """different causes of errors that a route counts apart"""
 
+MAX_ASKING = 16
+"""requests for metrics that are answered at the same time; others are hung up on"""
+
 MAX_NAME = 48
 """characters of a route's name in the live table"""
 

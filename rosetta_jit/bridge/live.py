@@ -73,9 +73,9 @@ class LiveRoute:
         self._sink, self._caller = sink, caller
 
     @property
-    def is_open(self) -> bool:
-        """Whether its target is there."""
-        return self._sink is not None or self._caller is not None
+    def target(self) -> Sink | Caller | None:
+        """The end to which messages go; None before it is there."""
+        return self._sink if self._sink is not None else self._caller
 
     @property
     def state(self) -> Mapping[str, float | str]:

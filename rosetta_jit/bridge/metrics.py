@@ -6,6 +6,7 @@ import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, cast
 
+from rosetta_jit.bridge.limits import MAX_ASKING
 from rosetta_jit.errors import TransportError
 
 if TYPE_CHECKING:
@@ -41,6 +42,10 @@ def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
         for each in snapshot:
             for reason, count in each[key].items():
                 yield f"{PREFIX}_{name}{{{_label('route', each['route'])},{_label(label, reason)}}} {count}"
+    yield from _head("reconnects_total", "Connections that were made again.", "counter")
+    yield from _of_ends(snapshot, "reconnects_total", "reconnects")
+    yield from _head("connections", "Peers that are connected.", "gauge")
+    yield from _of_ends(snapshot, "connections", "connections")
     yield from _head("latency_seconds", "From arrival to what the target took.", "summary")
     for each in snapshot:
         for part, key in (("0.5", "p50_us"), ("0.99", "p99_us")):
@@ -55,6 +60,12 @@ def _lines(snapshot: list[dict[str, Any]]) -> Iterator[str]:
         yield from (
             f"{PREFIX}_{name}{{{_label('route', each['route'])}}} {each[value] if value else int(not each['problem'])}" for each in snapshot
         )
+
+
+def _of_ends(snapshot: list[dict[str, Any]], name: str, key: str) -> Iterator[str]:
+    for each in snapshot:
+        for end, count in each[key].items():
+            yield f"{PREFIX}_{name}{{{_label('route', each['route'])},{_label('end', end)}}} {count}"
 
 
 def _head(name: str, help_: str, kind: str) -> Iterator[str]:
@@ -102,6 +113,27 @@ class MetricsServer:
 class _Server(ThreadingHTTPServer):
     snapshot: Snapshot
     daemon_threads = True
+
+    def __init__(self, place: tuple[str, int], handler: type[BaseHTTPRequestHandler]) -> None:
+        super().__init__(place, handler)
+        self._room = threading.Semaphore(MAX_ASKING)
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Answer in a thread of its own, unless too many ask at the same time; then hang up."""
+        if self._room.acquire(blocking=False):
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Answer, in that thread."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._room.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Whoever asks may go away before the answer has come, and nobody wants to read of it."""
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from rosetta_jit.bridge.configuration import Configuration, Rpc
     from rosetta_jit.transports.base import Message, Source
+    from rosetta_jit.transports.end import End
 
     Live = LiveRoute | LiveService
 
@@ -120,17 +121,27 @@ class Running:
 
     def snapshot(self) -> list[dict[str, Any]]:
         """Each route with its counts."""
-        return [
-            {
-                "route": name,
-                **_ends(each),
-                "problem": each.problem,
-                "waiting": each.waiting,
-                **each.counts.snapshot(),
-                "state": dict(each.state),
-            }
-            for name, each in tuple(self.live.items())
-        ]
+        return [self._shown(name, each) for name, each in tuple(self.live.items())]
+
+    def _shown(self, name: str, each: Live) -> dict[str, Any]:
+        source, target = self._ends_of(each)
+        ends = {end: counts for end, counts in (("source", source), ("target", target)) if counts is not None}
+        return {
+            "route": name,
+            **_ends(each),
+            "problem": each.problem,
+            "waiting": each.waiting,
+            "connections": {end: counts.connections for end, counts in ends.items()},
+            "reconnects": {end: counts.reconnects for end, counts in ends.items()},
+            **each.counts.snapshot(),
+            "state": dict(each.state),
+        }
+
+    def _ends_of(self, each: Live) -> tuple[End | None, End | None]:
+        if isinstance(each, LiveService):
+            return each.server, each.caller
+        shared = self._sources.get(each.route.source)
+        return None if shared is None else shared.source, each.target
 
     # --- which routes there are ----------------------------------------------------------------------------------------
 
@@ -237,7 +248,7 @@ class Running:
 
     def _open_route(self, each: LiveRoute) -> None:
         route = each.route
-        if not each.is_open:
+        if each.target is None:
             if route.calls:
                 each.open(None, call(route.target))
             else:

@@ -27,12 +27,12 @@ class LiveService:
         self.problem = "not open yet"
         self.server: Server | None = None
         self._request, self._reply = request, reply
-        self._caller: Caller | None = None
+        self.caller: Caller | None = None
         self._say = say
 
     def open(self, caller: Caller) -> None:
         """The service that answers is there."""
-        self._caller = caller
+        self.caller = caller
         self.problem = ""
 
     @property
@@ -48,8 +48,8 @@ class LiveService:
         counts.bytes_in += len(message.data)
         try:
             data = message.data if self._request is None else self._request(message.data)
-            assert self._caller is not None
-            answered = self._caller(data, timeout=self.route.timeout_s).data
+            assert self.caller is not None
+            answered = self.caller(data, timeout=self.route.timeout_s).data
             reply = bytes(answered) if self._reply is None else self._reply(answered)
         except (MessageError, TransportError) as error:
             if counts.fail(f"{error.kind}: {error.detail}"):
@@ -65,6 +65,6 @@ class LiveService:
         del linger_s
         if self.server is not None:
             self.server.close()
-        if self._caller is not None:
-            self._caller.close()
+        if self.caller is not None:
+            self.caller.close()
         self.problem = "closed"

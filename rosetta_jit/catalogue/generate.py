@@ -21,6 +21,12 @@ def unknown_holder(name: str, known: Sequence[tuple[str, str]]) -> Diagnostic:
     return Diagnostic("error", "unknown-holder", f"`{name}` are no classes that can be filled", help=help_)
 
 
+def no_numpy(language: str, known: Sequence[str]) -> Diagnostic:
+    """A language whose arrays are its own."""
+    message = f"source in `{language}` has no arrays of numpy"
+    return Diagnostic("error", "no-numpy", message, help=f"leave out --arrays numpy, or choose --language {' or '.join(known)}")
+
+
 def no_manner(holder: str, kind: str, where: str) -> Diagnostic:
     """A field of a kind that the framework's classes do not have."""
     message = f"classes of `{holder}` have no fields as `{where}` ({kind.split(maxsplit=1)[0]})"

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from collections.abc import Callable
 
+    from rosetta_jit.api.options import Options
+
 
 class Commands(Protocol):
     """What `ArgumentParser.add_subparsers` gives; argparse has no public name for it."""
@@ -53,6 +55,11 @@ def add_encoding(command: ArgumentParser, default: str | None = None) -> None:
     command.add_argument("--encoding", default=default, help=f"one of those that `rosetta-jit frameworks` lists (default: {shown})")
 
 
+def add_wire(command: ArgumentParser) -> None:
+    """Which wire, of a mapping that has several."""
+    command.add_argument("--wire", metavar="NAME", help="one of several wires of the mapping")
+
+
 def add_parameters(command: ArgumentParser) -> None:
     """The values of the mapping's parameters."""
     command.add_argument(
@@ -84,6 +91,16 @@ def _parameter(text: str) -> tuple[str, object]:
 def parameters_of(arguments: Namespace) -> dict[str, object]:
     """The parameters that the user gave; of one that is given twice, the last."""
     return dict(cast("list[tuple[str, object]]", arguments.parameter))
+
+
+def wire_of(arguments: Namespace) -> str | None:
+    """The wire that the user named."""
+    return arguments.wire or None
+
+
+def options_of(arguments: Namespace) -> Options:
+    """What the user said of a program: encoding, parameters and wire."""
+    return {"encoding": encoding_of(arguments), "parameters": parameters_of(arguments), "wire": wire_of(arguments)}
 
 
 def encoding_of(arguments: Namespace) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import signal
 import sys
@@ -15,8 +16,12 @@ if TYPE_CHECKING:
     import argparse
 
     from rosetta_jit.bridge.configuration import Configuration
+    from rosetta_jit.bridge.metrics import MetricsServer
 
 CLEAR = "\x1b[H\x1b[J"
+SWITCH_S = 0.0005
+"""How long the thread that counts and prints holds up those that carry messages; Python's own 5 ms are a hundred times a latency."""
+
 SLOW_S = 10.0
 """How often the table is printed where it cannot be drawn over."""
 
@@ -57,6 +62,12 @@ def _explain(configuration: Configuration, arguments: argparse.Namespace) -> int
     return 0
 
 
+def _call_all_old() -> None:
+    """What the bridge consists of is there to stay: no search for garbage looks through it while messages wait."""
+    gc.collect()
+    gc.freeze()
+
+
 class _Session:
     """A bridge that runs until it is told to stop."""
 
@@ -70,22 +81,33 @@ class _Session:
         self._draws = sys.stdout.isatty() and not arguments.json and not arguments.quiet
         self._said: list[str] = []
         self._line = threading.Lock()
+        self._metrics: MetricsServer | None = None
 
     def run(self) -> int:
-        from rosetta_jit.bridge.metrics import MetricsServer
-
         self._listen_to_signals()
-        place = self._configuration.metrics
-        metrics = None if place is None else MetricsServer(place, self._bridge.snapshot)
+        self._serve_metrics(None)
+        sys.setswitchinterval(SWITCH_S)
         try:
             self._bridge.start()
+            _call_all_old()
             self._watch()
         finally:
             self._bridge.stop()
-            if metrics is not None:
-                metrics.close()
+            if self._metrics is not None:
+                self._metrics.close()
             self._show(self._bridge.snapshot())
         return 0
+
+    def _serve_metrics(self, before: str | None) -> None:
+        """Serve metrics where the file says, if that is another place than before."""
+        from rosetta_jit.bridge.metrics import MetricsServer
+
+        place = self._configuration.metrics
+        if place == before:
+            return
+        old, self._metrics = self._metrics, None if place is None else MetricsServer(place, self._bridge.snapshot)
+        if old is not None:
+            old.close()
 
     def _listen_to_signals(self) -> None:
         if threading.current_thread() is not threading.main_thread():
@@ -106,9 +128,8 @@ class _Session:
     def _watch(self) -> None:
         from time import monotonic
 
-        interval = self._configuration.interval_s if self._draws or self._arguments.json else SLOW_S
         end = float("inf") if self._arguments.seconds is None else monotonic() + self._arguments.seconds
-        due = monotonic() + interval
+        due = monotonic() + self._interval_s
         while not self._over and monotonic() < end:
             self._told.wait(max(0.0, min(due, end) - monotonic()))  # seldom: this thread holds up those that carry messages
             self._told.clear()
@@ -116,18 +137,31 @@ class _Session:
                 self._changed = False
                 self._reload()
             if monotonic() >= due:
-                due = monotonic() + interval
+                due = monotonic() + self._interval_s
                 self._show(self._bridge.snapshot())
+
+    @property
+    def _interval_s(self) -> float:
+        return self._configuration.interval_s if self._draws or self._arguments.json else SLOW_S
 
     def _reload(self) -> None:
         from rosetta_jit.bridge.checking import checked
         from rosetta_jit.errors import RosettaError
 
+        before = self._configuration.metrics
         try:
-            self._bridge.reload(checked(self._configuration.path))
-            self._say("the file was read again")
+            configuration = checked(self._configuration.path)
+            self._bridge.reload(configuration)
         except (RosettaError, OSError) as error:
             self._say(f"the file cannot be used, and all goes on as before:\n{error}")
+            return
+        self._configuration = configuration
+        _call_all_old()
+        self._say("the file was read again")
+        try:
+            self._serve_metrics(before)
+        except RosettaError as error:
+            self._say(str(error))
 
     def _show(self, snapshot: list[dict[str, Any]]) -> None:
         if self._arguments.json:

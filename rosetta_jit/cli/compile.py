@@ -60,10 +60,16 @@ def _show(warmed: Warmed, *, as_json: bool, progress: str) -> None:
     request, error = warmed.request, warmed.error
     name = request.mapping or request.type or ""
     if as_json:
-        plain = {"name": name, "direction": request.direction, "encoding": request.encoding, "seconds": round(warmed.seconds, 4)}
+        plain = {
+            "name": name,
+            "direction": request.direction,
+            "wire": request.wire,
+            "encoding": request.encoding,
+            "seconds": round(warmed.seconds, 4),
+        }
         print(json.dumps({**plain, "error": None if error is None else str(error)}), flush=True)
         return
-    encoding = "" if request.encoding is None else f", {request.encoding}"
+    encoding = "".join(f", {each}" for each in (request.wire, request.encoding) if each is not None)
     if error is None:
         print(f"[{progress}] {printable(name)}: {request.direction}{encoding}, {1000 * warmed.seconds:.0f} ms", flush=True)
     else:

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire, options_of
 from rosetta_jit.cli.inputs import add_topic, messages_of, program_of
 from rosetta_jit.errors import DecodeError
 
@@ -24,6 +24,7 @@ def add(commands: Commands) -> None:
     command.add_argument("files", metavar="FILE", nargs="+", help="one message, a recording (.rec, .rec.xz) or a log; - is standard input")
     add_topic(command)
     add_encoding(command)
+    add_wire(command)
     add_parameters(command)
     form = command.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help='one JSON object a message and line; bytes as {"base64": …}')
@@ -34,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Messages that cannot be decoded are reported and skipped; then the exit code is 1."""
     import rosetta_jit
 
-    decode = program_of(rosetta_jit.Decoder, arguments, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
+    decode = program_of(rosetta_jit.Decoder, arguments, **options_of(arguments))
     failures: list[str] = []
     holders = _holders(decode, cast("list[str]", arguments.files), arguments.topic, failures)
     if arguments.npz:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire, options_of
 from rosetta_jit.cli.inputs import program_of
 from rosetta_jit.pipeline.stages import STAGES
 
@@ -19,6 +19,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--stage", choices=[stage.name for stage in STAGES], default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
     add_encoding(command)
+    add_wire(command)
     add_parameters(command)
 
 
@@ -27,6 +28,6 @@ def run(arguments: argparse.Namespace) -> int:
     import rosetta_jit
 
     program = rosetta_jit.Encoder if arguments.direction == "encode" else rosetta_jit.Decoder
-    made = program_of(program, arguments, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
+    made = program_of(program, arguments, **options_of(arguments))
     print(made.stage(arguments.stage))
     return 0

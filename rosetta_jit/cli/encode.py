@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.catalogue import values as words
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, add_wire, options_of
 from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
 from rosetta_jit.file_errors import named
@@ -24,6 +24,7 @@ def add(commands: Commands) -> None:
     add_mapping(command)
     command.add_argument("files", metavar="FILE.json", nargs="+", help="one JSON object, or one a line, as `decode --json` prints them")
     add_encoding(command)
+    add_wire(command)
     add_parameters(command)
     command.add_argument(
         "-o", "--output", metavar="OUT", default="-", help="for one message any file, for several a recording (.rec, .rec.xz)"
@@ -34,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     """All messages are encoded before anything is written."""
     import rosetta_jit
 
-    encode = rosetta_jit.Encoder(arguments.mapping, encoding=encoding_of(arguments), parameters=parameters_of(arguments))
+    encode = rosetta_jit.Encoder(arguments.mapping, **options_of(arguments))
     holder = encode.holder_type
     values = [value for file in cast("list[str]", arguments.files) for value in _values(Path(file))]
     messages = [encode(holder.from_dict(value)) for value in values]

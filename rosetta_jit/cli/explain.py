@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, encoding_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_wire, encoding_of, wire_of
 from rosetta_jit.file_errors import named
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ def add(commands: Commands) -> None:
     command = add_command(commands, "explain", "Show the types of a mapping, its rules, what they lose, and what the kernels cost.", run)
     add_mapping(command)
     add_encoding(command)
+    add_wire(command)
     form = command.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object")
     form.add_argument("--html", metavar="FILE", help="write one page that needs nothing else")
@@ -31,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code 1 if the mapping is wrong; what is wrong goes to stderr."""
     from rosetta_jit.explain.content import explanation
 
-    found = explanation(arguments.mapping, encoding=encoding_of(arguments))
+    found = explanation(arguments.mapping, encoding=encoding_of(arguments), wire=wire_of(arguments))
     if arguments.json:
         print(json.dumps(plain(found), indent=2))
     elif arguments.html:

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, add_wire, encoding_of, parameters_of, wire_of
 from rosetta_jit.file_errors import whole
 
 if TYPE_CHECKING:
@@ -33,6 +33,12 @@ def add(commands: Commands) -> None:
         "--include", metavar="HEADER", help="the header that declares these classes (default: by the rules of their framework)"
     )
     command.add_argument(
+        "--arrays",
+        choices=("list", "numpy"),
+        default="list",
+        help="what arrays of numbers are in Python: lists, or numpy's (default: list)",
+    )
+    command.add_argument(
         "--directions",
         type=_directions,
         default=("decode", "encode"),
@@ -47,6 +53,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--freestanding", action="store_true", help="use nothing of a C library but memcpy and memset")
     command.add_argument("--framework", help="the type's, where its name does not tell")
     add_encoding(command)
+    add_wire(command)
     add_parameters(command)
 
 
@@ -75,7 +82,7 @@ def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
     from rosetta_jit.generate.build import Wishes, generated
 
     name = arguments.name or _name(arguments.subject)
-    wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "")
+    wishes = Wishes(arguments.freestanding, arguments.holder or "", arguments.include or "", numpy=arguments.arrays == "numpy")
     return generated(_request(arguments), arguments.language, arguments.directions, name, wishes)
 
 
@@ -96,6 +103,7 @@ def _request(arguments: argparse.Namespace) -> Request:
     from rosetta_jit.api.options import request_of, type_request
 
     options: Options = {"encoding": encoding_of(arguments), "framework": arguments.framework, "parameters": parameters_of(arguments)}
+    options["wire"] = wire_of(arguments)
     subject = cast("str", arguments.subject)
     if _is_mapping(subject):
         return request_of("decode", options, mapping=subject)

@@ -89,8 +89,8 @@ class Explanation:
     warnings: tuple[Diagnostic, ...]
 
 
-def explanation(mapping: str, *, encoding: str | None = None, folders: Iterable[str] = ()) -> Explanation:
-    """Explain a mapping.
+def explanation(mapping: str, *, encoding: str | None = None, folders: Iterable[str] = (), wire: str | None = None) -> Explanation:
+    """Explain a mapping; where it has several wires, with what the kernels of one ``wire`` cost.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def explanation(mapping: str, *, encoding: str | None = None, folders: Iterable[
     search, readers = SearchPath.of(folders), Readers(installed(), None, encoding)
     written = parse(search.open(mapping))
     checked = check(written, readers, search)
-    request = Request("decode", mapping, encoding=encoding, folders=folders)
+    request = Request("decode", mapping, encoding=encoding, folders=folders, wire=wire)
     found = (_direction("unpack", written, checked, request), _direction("pack", written, checked, request))
     return Explanation(
         mapping,
@@ -127,7 +127,15 @@ def _direction(name: Literal["unpack", "pack"], written: Mapping, checked: Check
     refusals = [rule.text for rule in rules_within(rules) if isinstance(rule, typed.Reject)]
     refusals += [node.reason for node in nodes(rules) if isinstance(node, typed.Choice) and node.otherwise is None]
     losses = tuple(_losses(rules, lines, source, target))
-    return Direction(name, lines, losses, tuple(dict.fromkeys(refusals)), _cost(name, request, _field_names(checked)))
+    return Direction(name, lines, losses, tuple(dict.fromkeys(refusals)), _cost_in(checked, name, request))
+
+
+def _cost_in(checked: Checked, name: str, request: Request) -> KernelCost | str:
+    """The cost of the kernel; of several wires, that of the one that is named."""
+    wires = [each.name for each in checked.mapping.wires]
+    if wires and request.wire is None:
+        return f"each wire has its own: add `--wire` with one of {', '.join(wires)}"
+    return _cost(name, request, _field_names(checked))
 
 
 def _losses(rules: tuple[Rule, ...], lines: tuple[Line, ...], source: Message, target: Message) -> list[Loss]:

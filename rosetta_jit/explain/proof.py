@@ -113,34 +113,42 @@ def proof(
     for direction in DIRECTIONS:
         request = Request(direction, mapping, encoding=encoding, parameters=given, backend="python")
         try:
-            encodings = (encoding,) if encoding is not None else tuple(Build(request).wire_framework.encodings)
-            for name in encodings:
-                kernels += _of_encoding(replace(request, encoding=name), absent, known, judge)
+            for each in _of_wires(request):
+                encodings = (encoding,) if encoding is not None else tuple(Build(each).wire_framework.encodings)
+                for name in encodings:
+                    kernels += _of_encoding(replace(each, encoding=name), absent, known, judge)
         except ReportError as error:
             absent[_reason(error)] = None
     return MappingProof(mapping, tuple(kernels), tuple(absent))
 
 
+def _of_wires(request: Request) -> list[Request]:
+    """The request for each wire of the mapping."""
+    wires = Build(request).checked.mapping.wires
+    return [replace(request, wire=each.name) for each in wires] or [request]
+
+
 def _of_encoding(request: Request, absent: dict[str, None], known: Known, judge: Judge | None) -> Iterator[KernelProof]:
     """The proofs of a direction's kernels in an encoding. A decoder that borrows is shown where it differs from the one that copies."""
     assert request.encoding is not None
+    shown = request.encoding if request.wire is None else f"{request.wire}, {request.encoding}"
     try:
         made = dict(zip(PURPOSES[request.direction], _kernels(request), strict=True))
-        if request.direction == "decode":
+        if request.direction == "decode" and request.wire is None:
             (borrowing,) = _kernels(replace(request, borrow=True))
             if borrowing != made["decode"]:
                 made["borrow"] = borrowing
     except ReportError as error:
         first = error.diagnostics[0]
         if first.code == UNPROVEN:
-            yield KernelProof(PURPOSES[request.direction][0], request.encoding, (), "\n".join(first.notes))
+            yield KernelProof(PURPOSES[request.direction][0], shown, (), "\n".join(first.notes))
         else:
-            absent[f"{request.encoding}: {_reason(error)}"] = None
+            absent[f"{shown}: {_reason(error)}"] = None
         return
     for purpose, kernel in made.items():
         if kernel not in known:
             known[kernel] = _proven(kernel, Build(request).layout, judge)
-        yield KernelProof(purpose, request.encoding, *known[kernel])
+        yield KernelProof(purpose, shown, *known[kernel])
 
 
 def _kernels(request: Request) -> tuple[Kernel, ...]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rosetta_jit.catalogue import reductions as words
 from rosetta_jit.kernel.ir import Binary, Compare, Const, Convert, Select
 from rosetta_jit.kernel.terms import index, type_of
+from rosetta_jit.language import typed
 from rosetta_jit.language.conversions import FLOAT64, bounds
 from rosetta_jit.language.function import NOT_FOLLOWED, SEVERAL, Function, Numbers, Reduction, Row, Units
 from rosetta_jit.language.typed import BOOL, INT64
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from typing import Literal
 
     from rosetta_jit.kernel.ir import Expr
-    from rosetta_jit.language import typed
     from rosetta_jit.language.scope import Scope
     from rosetta_jit.lowering.elements import Elements
     from rosetta_jit.model import expr as model
@@ -116,7 +116,10 @@ def _lower_count(elements: Elements) -> Expr:
     writer, values = elements.writer, elements.values
     found = writer.var("count", index(0))
     with elements.each() as holds:
-        writer.assign(found, writer.checked("add", found, Select(holds, index(1), index(0)), values.where, line=values.line))
+        one = Convert("i64", holds)
+        is_bounded = isinstance(elements.reduce.count, typed.LenOf)  # no array has so many elements that their number wraps
+        sum_ = Binary("add", found, one) if is_bounded else writer.checked("add", found, one, values.where, line=values.line)
+        writer.assign(found, sum_)
     return found
 
 

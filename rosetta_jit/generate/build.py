@@ -8,7 +8,8 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from rosetta_jit.catalogue import generate as words
-from rosetta_jit.errors import SchemaError
+from rosetta_jit.catalogue.wires import not_here
+from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.languages import installed
 from rosetta_jit.generate.origins import origins_of
@@ -64,11 +65,12 @@ class LowByteFirst(AheadOfTime):
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What a user wants besides: ``freestanding`` source, classes of a ``holder``, the header to ``include`` for them."""
+    """What a user wants besides: ``freestanding`` source, a ``holder``, the header to ``include`` for it, arrays of ``numpy``."""
 
     freestanding: bool = False
     holder: str = ""
     include: str = ""
+    numpy: bool = False
 
 
 NO_WISHES = Wishes()
@@ -89,6 +91,8 @@ def unit_of(
     builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
     kernels: dict[Role, Kernel] = {}
     for role, build in builds.items():
+        if role != "encode" and build.wires:
+            raise MappingError((not_here(build.checked.mapping.wire_span, "generated source"),))
         kernels[role] = build.kernels[0]
         if role == "encode":
             kernels["size"] = build.kernels[1]
@@ -109,6 +113,7 @@ def unit_of(
         wishes.include,
         _origins(builds),
         tuple((name, word) for name, _, word in first.header["state"]["variables"]),
+        wishes.numpy,
     )
 
 
@@ -215,6 +220,8 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     known = installed()
     if language not in known:
         raise SchemaError((words.unknown_language(language, tuple(known)),))
+    if wishes.numpy and not known[language].numpy:
+        raise SchemaError((words.no_numpy(language, tuple(name for name, each in known.items() if each.numpy)),))
     with within_stack():
         machine = LowByteFirst if known[language].low_byte_first else AheadOfTime
         return known[language].files(unit_of(request, known[language].roles(roles), name, wishes, machine))

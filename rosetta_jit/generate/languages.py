@@ -41,6 +41,8 @@ class Language:
         Its decoders leave bytes in the message, from where the code around them takes them.
     low_byte_first
         What it prints need not run on machines whose numbers have their high byte first.
+    numpy
+        Its arrays of numbers can be numpy's.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Language:
     printer: str
     borrows: bool = False
     low_byte_first: bool = False
+    numpy: bool = False
 
     def roles(self, wanted: tuple[Role, ...]) -> tuple[Role, ...]:
         """The kernels that the printer needs for what is wanted."""
@@ -60,7 +63,9 @@ class Language:
 
 
 LANGUAGES = (
-    Language("python", "one module of dataclasses", "rosetta_jit.generate.python.language:files", borrows=True, low_byte_first=True),
+    Language(
+        "python", "one module of dataclasses", "rosetta_jit.generate.python.language:files", borrows=True, low_byte_first=True, numpy=True
+    ),
     Language("c", "C11: NAME.h and NAME.c, without allocation, globals or dependencies", "rosetta_jit.generate.c.language:files"),
     Language(
         "cpp",

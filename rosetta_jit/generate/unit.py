@@ -50,6 +50,8 @@ class Unit:
         Which classes are filled, and the header that declares them, where the user says so.
     state
         The state variables of the mapping, in the order of registers, and the words that they are at first.
+    numpy
+        Arrays of numbers are numpy's, where the language has them.
     origins
         Which fields of the holder the rules of the mapping name, for each kernel.
     """
@@ -67,3 +69,4 @@ class Unit:
     include: str = ""
     origins: Mapping[Role, tuple[Origin, ...]] = field(default_factory=dict["Role", "tuple[Origin, ...]"])
     state: tuple[tuple[str, int], ...] = ()
+    numpy: bool = False

@@ -174,7 +174,7 @@ def _machine(kernel: Kernel, buffer: Memory, state: State, lanes: Sequence[Memor
     own, hidden = range(kernel.lanes), range(kernel.lanes, len(kernel.strides))
     capacities = [int(state[lane_word(k, CAPACITY)]) for k in own] + [len(views[k]) // kernel.strides[k] for k in hidden]
     starts_empty = kernel.direction == "decode" and row == 0
-    used = [0 if starts_empty and k else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
+    used = [0 if starts_empty and k and k not in kernel.kept else int(state[lane_word(k, USED)]) for k in own] + [0 for _ in hidden]
     routines = {routine.name: routine for routine in kernel.routines}
     told = {"now": int(state[NOW]), "number": int(state[NUMBER]) + row}
     return Machine(kernel.strides, memoryview(buffer).cast("B"), views, capacities, used, routines, told, (), functions, {})

@@ -1,6 +1,6 @@
 r"""The kernel: one small typed function from a message to a holder, or back. This page is its grammar and its meaning.
 
-    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*, how many registers
+    Kernel = name, direction, strides of the lanes, how many are hidden, Routine*, Body+, Site*, how many registers, kept lanes
     Body   = Stmt*                                        an attempt; the first that succeeds is the result
     Stmt   = Require(at, size) | Expect(condition) | Let(name, value) | Var(name, value) | Assign(name, value)
            | Store(at, value) | SetField(place, value) | Reserve(lane, count) | Advance(lane, count)
@@ -19,9 +19,9 @@ r"""The kernel: one small typed function from a message to a holder, or back. Th
 **Memory.** A kernel sees the message (bytes `begin` to `end` of a buffer, by int64 offset from the buffer's start) and the lanes
 of one holder, each an array of rows of `stride` bytes with a capacity and a used length, both in rows. Nothing else can be
 addressed, nothing is allocated. Used lengths are what the state says, but a kernel that decodes into row 0 starts with all lanes
-behind lane 0 empty. The last lanes may be **hidden**: the holder has no fields there, a kernel always starts with them empty, and what it
-leaves there is gone. Scalars in lanes are native and aligned as the layout says; scalars in the message have the byte order that
-the access names, and no alignment.
+behind lane 0 empty, unless it keeps them. The last lanes may be **hidden**: the holder has no fields there, a kernel always starts with
+them empty, and what it leaves there is gone. Scalars in lanes are native and aligned as the layout says; scalars in the message have
+the byte order that the access names, and no alignment.
 
 **Parameters** are the locals `begin`, `end` and `row`, all i64: where the message begins and ends in the buffer (0 <= begin <=
 end), and the row of lane 0 that stands for the message (0 <= row). To encode, `begin` is where to write and `end` the end of the
@@ -69,7 +69,8 @@ indices in the holder's state. A failing Reserve returns -1 at once, having left
 and calls again. Return ends the kernel with a position >= 0; only then do used lengths count.
 
 **Used lengths** at the start are those of the holder's state, but a decode into row 0 starts with every used length 0: the message
-replaces what the holder held. Later rows of a batch are added to the rows before.
+replaces what the holder held. Later rows of a batch are added to the rows before. A kernel for one of several wires fills a part of
+what the holder holds: the lanes that it **keeps**, lane 0 first of all, have the used lengths of the state then, too.
 """
 
 from __future__ import annotations
@@ -497,7 +498,9 @@ class Routine:
 class Kernel:
     """``sites[0]`` stands for a lane that must grow, so that real sites count from 1. The last ``hidden`` lanes are hidden ones.
 
-    ``registers`` is how many its program has at least.
+    ``registers`` is how many its program has at least. ``rare`` bodies, the last ones, are for messages that hardly ever come: whoever
+    compiles them takes no time for their speed. ``kept`` are the lanes whose rows stay when a message is decoded into row 0; none
+    unless the message is one of several that fill the holder, and then lane 0 is one of them.
     """
 
     name: str
@@ -508,6 +511,8 @@ class Kernel:
     routines: tuple[Routine, ...] = ()
     hidden: int = 0
     registers: int = 0
+    rare: int = 0
+    kept: tuple[int, ...] = ()
 
     @property
     def lanes(self) -> int:

@@ -91,8 +91,9 @@ def to_text(kernel: Kernel) -> str:
         Lines that end in a newline: the head, each routine and body, the sites.
     """
     hidden = f", {kernel.hidden} hidden" if kernel.hidden else ""
-    kept = f", {kernel.registers} registers" if kernel.registers else ""
-    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}{kept}"]
+    registers = f", {kernel.registers} registers" if kernel.registers else ""
+    kept = f", keeps lanes {list(kernel.kept)}" if kernel.kept else ""
+    lines = [f"kernel {_name(kernel.name)}: {kernel.direction}, strides {list(kernel.strides)}{hidden}{registers}{kept}"]
     for routine in kernel.routines:
         lines.extend(_routine(routine))
     for number, body in enumerate(kernel.bodies):

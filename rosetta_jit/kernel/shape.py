@@ -269,6 +269,8 @@ def shape_error(kernel: Kernel) -> str | None:
         return "a lane whose rows have less than no bytes"
     if not 0 <= kernel.hidden <= len(kernel.strides):
         return f"{kernel.hidden} of {len(kernel.strides)} lanes are hidden"
+    if kernel.kept and (kernel.direction != "decode" or kernel.kept[0] != 0 or not all(0 <= lane < kernel.lanes for lane in kernel.kept)):
+        return "it keeps lanes that it cannot keep"
     for number, routine in enumerate(kernel.routines):
         problem = _routine_error(routine, kernel.routines[:number])
         if problem is not None:

@@ -19,6 +19,9 @@ MAX_NESTING = 64
 MAX_STATE = 64
 """state variables of a mapping"""
 
+MAX_WIRES = 16
+"""wires of a mapping"""
+
 MAX_LIMIT = 1 << 40
 """bytes that a `limit` allows"""
 

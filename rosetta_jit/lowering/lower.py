@@ -23,6 +23,7 @@ from rosetta_jit.lowering.codec.wire_fields import Found, NotInPlaceError, WireF
 from rosetta_jit.lowering.rules.holder_side import HolderSide
 from rosetta_jit.lowering.rules.initial_values import bear, opened_lanes, places_left
 from rosetta_jit.lowering.rules.packed_values import Supplies, look_up_arrays
+from rosetta_jit.lowering.rules.shares import born_of, clear, kept_lanes
 from rosetta_jit.lowering.rules.state import begin
 from rosetta_jit.lowering.rules.statements import Runner
 from rosetta_jit.lowering.rules.values import Values
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosetta_jit.language.check.discriminators import Discriminator
+    from rosetta_jit.language.check.wires import Share
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.lowering.codec.fields import HolderFields
     from rosetta_jit.model.expr import Side
@@ -71,7 +73,9 @@ def lower(
     references
         How they refer to it: see `rosetta_jit.lowering.writer.References`. By the sign of their spans if None.
     """
-    lowering = _Lowering(encoding, layout, direction, borrow, references, 0 if mapped is None else mapped.registers)
+    registers, share = (0, None) if mapped is None else (mapped.registers, mapped.share)
+    kept = () if share is None else kept_lanes(share, layout)
+    lowering = _Lowering(encoding, layout, direction, borrow, references, registers, kept)
     if mapped is None:
         return lowering.kernel(name, lambda fields, attempt: _own(encoding, attempt, fields))
     mapped = _in_order(mapped, mapped.holder if direction == "decode" else mapped.wire)
@@ -92,6 +96,7 @@ class Mapped:
     wire_layout: Layout
     unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
     registers: int = 0
+    share: Share | None = None
 
     def side(self, fields: HolderFields, type_: Type, *, filled: Side | None) -> HolderSide:
         """A message in lanes; where rules fill it, with what it is born with."""
@@ -99,8 +104,13 @@ class Mapped:
             return HolderSide(fields)
         births, cell = Births(self.schema, fields.layout), fields.cell
         opened = opened_lanes(self.rules, fields.layout, cell.slot, filled)
-        bear(fields, births.of(type_, cell.slot, cell.lane), cell.row, opened)
-        return HolderSide(fields, births, opened, self.unions)
+        born = births.of(type_, cell.slot, cell.lane)
+        if self.share is None or filled == "wire":
+            bear(fields, born, cell.row, opened)
+            return HolderSide(fields, births, opened, self.unions)
+        clear(fields, self.share)
+        bear(fields, born_of(self.share, born, fields.layout), cell.row, opened)
+        return HolderSide(fields, births, opened, self.unions, joined=self.share.joined)
 
 
 def _in_order(mapped: Mapped, target: Type) -> Mapped:
@@ -117,7 +127,7 @@ def _in_order(mapped: Mapped, target: Type) -> Mapped:
 
 @dataclass(frozen=True, slots=True)
 class _Lowering:
-    """What is lowered, whatever relates the message to the holder; ``registers`` is how many the program has."""
+    """What is lowered, whatever relates the message to the holder; ``registers`` and ``kept`` are as of a `Kernel`."""
 
     encoding: Encoding
     layout: Layout
@@ -125,6 +135,7 @@ class _Lowering:
     borrow: bool
     references: References | None = None
     registers: int = 0
+    kept: tuple[int, ...] = ()
 
     def kernel(self, name: str, relate: Relate) -> Kernel:
         writer = Writer(self.direction, [*(lane.stride for lane in self.layout.lanes), SCRATCH_STRIDE], references=self.references)
@@ -132,7 +143,9 @@ class _Lowering:
         attempts = self.encoding.attempts if self.direction == "decode" else (self.encoding.written,)
         bodies = tuple(self.body(writer, attempt, relate) for attempt in attempts if attempt is not None)
         strides, routines = tuple(writer.strides), tuple(writer.routines.values())
-        return Kernel(name, self.direction, strides, bodies, tuple(writer.sites), routines, len(strides) - own, self.registers)
+        sites, hidden = tuple(writer.sites), len(strides) - own
+        rare = self.encoding.rare if self.direction == "decode" else 0
+        return Kernel(name, self.direction, strides, bodies, sites, routines, hidden, self.registers, rare, self.kept)
 
     def body(self, writer: Writer, attempt: Codec, relate: Relate) -> Block:
         writer.registers = {}
@@ -141,7 +154,7 @@ class _Lowering:
             writer.origin = add(writer.position, self.encoding.origin)
             fields = root_fields(writer, self.layout, borrow=self.borrow)
             writer.expect(Compare("lt", ROW, Capacity(0)), "index", Where(), "the holder has no row for the message")
-            if writer.direction == "decode":
+            if writer.direction == "decode" and not self.kept:
                 writer.emit(Fill(KernelPlace(0, ROW), index(self.layout.lanes[0].stride)))
             relate(fields, attempt)
             end(writer, self.encoding)

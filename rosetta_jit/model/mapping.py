@@ -1,6 +1,6 @@
 """A mapping: two types and the rules between their fields, one block for each direction.
 
-    Mapping = Import*, Function*, Parameter*, State*, holder type, wire type, Rule* for both directions, Rule* to unpack, Rule* to pack
+    Mapping = Import*, Function*, Parameter*, State*, holder type, wire type or Wire*, Rule* for both directions, to unpack, to pack
     Rule    = those of `model.rules`, with Path and Expr; an Assign is `by` a Via, or "checked"
             | Relation(Path | Len | List, Expr, Via) | Rest | SameNames(Renamed*, Path*) | Arranged(place, flag, {constant: Expr})
             | Several(Path*, Expr)
@@ -77,6 +77,15 @@ class TypeName:
     """The name of a scalar type."""
 
     name: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """``wire-schema name: type``: one of several wires, whose messages arrive one by one and are one holder together."""
+
+    name: str
+    type: str
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -181,7 +190,8 @@ class Mapping:
     """What a mapping file says. None as rules means that the block is missing, ``()`` that it is empty.
 
     ``limit`` is how many bytes of a holder's lane a message may ask for whatever its own size, where the mapping says so. ``rounds`` is
-    whether float64 becomes float32 without a word in each rule, ``is_old`` whether it is read as mappings of 2012 were.
+    whether float64 becomes float32 without a word in each rule, ``is_old`` whether it is read as mappings of 2012 were. Where it has
+    several ``wires``, ``wire_type`` is the name of a struct that has a field for each of them, by its name.
     """
 
     source: Source
@@ -199,3 +209,4 @@ class Mapping:
     rounds: bool = False
     state: tuple[State, ...] = ()
     is_old: bool = False
+    wires: tuple[Wire, ...] = ()

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.wires import not_here
 from rosetta_jit.errors import MappingError
 from rosetta_jit.kernel.ir import Reserve
 from rosetta_jit.kernel.printer import to_text
@@ -49,6 +50,8 @@ class BridgeBuild:
         if is_open(decode) and is_open(encode):
             raise MappingError((words.half_a_bridge(),))
         first, second = Build(_closed(decode, encode)), Build(_closed(encode, decode))
+        if first.wires:
+            raise MappingError((not_here(first.checked.mapping.wire_span, "a bridge"),))
         filled, packed = first.types.holder, second.types.holder
         is_same = same_name(filled.name, packed.name)
         if is_same and not have_same_fields(first.layout, second.layout):

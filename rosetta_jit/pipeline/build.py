@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.catalogue.wires import single as single_wire
+from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -35,6 +37,7 @@ from rosetta_jit.pipeline.request import ByteOrder
 from rosetta_jit.pipeline.stages import shown
 from rosetta_jit.pipeline.types import Types
 from rosetta_jit.pipeline.user_functions import called_functions, check_compiled, check_given
+from rosetta_jit.pipeline.wires import types_of_wire
 from rosetta_jit.runtime.cache.kernels import digest_file
 from rosetta_jit.runtime.limits import MAX_PIXEL_BYTES
 from rosetta_jit.runtime.run import GRACE_BYTES
@@ -147,7 +150,7 @@ class Build:
     def _mapped(self, rules: tuple[Rule, ...]) -> Mapped:
         types = self.types
         ends = Ref(types.holder.name), Ref(types.wire.name)
-        return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial))
+        return Mapped(rules, types.schema, *ends, self._layout(types.wire), registers=len(types.state.initial), share=types.share)
 
     def _choices(self, framework: Framework, encoding: str) -> Choices:
         """What the request says about the encoding, if the encoding leaves it to say."""
@@ -210,7 +213,7 @@ class Build:
         kernels = [to_text(kernel) for kernel in self.kernels]
         digests = [f"{given.name} {given.identity.digest}" for given in self.called]
         holder = json.dumps(self.header["type"], sort_keys=True)
-        state = json.dumps(self.header["state"])
+        state = json.dumps([self.header["state"], self.wires, self.header["wire"]])
         return "\n".join([self.backend.name, self.entry, self.manners, str(self.limit), state, holder, *kernels, *digests])
 
     @cached_property
@@ -231,6 +234,8 @@ class Build:
             "state": kept_of(self.kernels, {"": self.types.state}),
             "host": our_functions(self.kernels),
             "limit": self.limit,
+            "wires": self.wires,
+            "wire": None if self.types.share is None else self.types.share.number,
         }
 
     @property
@@ -240,6 +245,11 @@ class Build:
         if said is not None:
             return said
         return MAX_PIXEL_BYTES if our_functions(self.kernels) else GRACE_BYTES
+
+    @property
+    def wires(self) -> list[str]:
+        """The names of the mapping's wires, of which the program's own is one; none where it has one wire."""
+        return [] if self.request.mapping is None else [each.name for each in self.checked.mapping.wires]
 
     def check_functions(self) -> tuple[str, ...]:
         """The names of the user's functions whose code has addresses of this process. MappingError where one is not what is declared."""
@@ -299,6 +309,11 @@ def _mapped_types(build: Build) -> Types:
     rules = checked.unpack if request.direction == "decode" else checked.pack
     if rules is None or not rules:
         raise MappingError((words.no_rules(checked.mapping.wire_span, request.direction),))
+    if checked.mapping.wires:
+        return types_of_wire(checked, request, _both(checked), rules)
+    if request.wire is not None:
+        span = checked.mapping.wire_span
+        raise MappingError((unknown_wire(span, request.wire, ()) if request.wire else single_wire(span),))
     return Types(checked.holder.root, checked.wire.root, _both(checked), rules, checked.functions, checked.state)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosetta_jit.catalogue import pipeline as words
 from rosetta_jit.catalogue.bind import needless
+from rosetta_jit.catalogue.wires import unknown as unknown_wire
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.frameworks.installed import Readers, installed
 from rosetta_jit.language.imports.search import Reading, SearchPath, refusal
@@ -42,6 +43,8 @@ def files_of(request: Request) -> Files:
 
 def declared_types(request: Request, files: Files) -> Types:
     """The type that a request names, as it is declared."""
+    if request.wire is not None:
+        raise report(request, unknown_wire(None, request.wire, ()))
     for name in json.loads(request.parameters):
         raise report(request, needless(name))
     if request.plain is not None:

@@ -62,6 +62,8 @@ class Request:
         Functions of the user's own that the mapping calls.
     backend
         What runs the kernels; None for LLVM.
+    wire
+        The name of one of several wires of the mapping; empty for the first of them.
     """
 
     direction: Direction
@@ -79,6 +81,7 @@ class Request:
     parameters: str = "{}"
     functions: tuple[GivenFunction, ...] = ()
     backend: Backend | None = None
+    wire: str | None = None
 
     def __str__(self) -> str:
         return f"{self.mapping or self.type} ({self.direction})"

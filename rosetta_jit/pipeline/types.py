@@ -11,6 +11,7 @@ from rosetta_jit.startup.dataclass import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosetta_jit.language.check.wires import Share
     from rosetta_jit.language.parameters.state import Declared
     from rosetta_jit.language.typed import Rule
     from rosetta_jit.language.uses import Signature
@@ -19,7 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Types:
-    """The types of a program, and the rules between them, if they are two, with the state that they keep."""
+    """The types of a program, and the rules between them, if they are two, with the state that they keep.
+
+    Where the mapping has several wires, one of them is this one's, and its messages fill a ``share`` of the holder.
+    """
 
     holder: Struct
     wire: Struct
@@ -27,3 +31,4 @@ class Types:
     rules: tuple[Rule, ...] | None
     functions: Mapping[str, Signature] = field(default_factory=dict[str, "Signature"])
     state: Declared = NO_STATE
+    share: Share | None = None

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from threading import get_ident, local
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast, overload
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from rosetta_jit.errors import DecodeError
 from rosetta_jit.kernel.state import CAPACITY, CLEAN, USED, VALID, lane_word
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.callable import THREAD
+from rosetta_jit.runtime.callable import FAILED, THREAD
+from rosetta_jit.runtime.joining import NOT_WHOLE, broken_wires, joining
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
 from rosetta_jit.runtime.room import roomier
@@ -46,8 +48,8 @@ class DecoderBase(Program):
             """Decode into a holder, by default the decoder's own; returns it."""
             ...
 
-    def _start(self, loaded: Loaded) -> None:
-        self._bind(loaded, self._call_slowly)
+    def _start(self, loaded: Loaded, beside: DecoderBase | None = None) -> None:
+        self._bind(loaded, self._call_slowly, beside)
 
     if TYPE_CHECKING:  # for people and type checkers it is a method
 
@@ -88,6 +90,7 @@ class DecoderBase(Program):
         ValuesError
             The class lacks an attribute, or no class is known for a message within it.
         """
+        self._refuse_part("to a new object")
         quick = self._quick.get(object_type) if types is None else None
         if quick is not None:
             return quick(message)
@@ -146,6 +149,7 @@ class DecoderBase(Program):
         InUse
             Another thread is filling, changing or encoding the batch.
         """
+        self._refuse_part("with many others")
         if on_error not in ("raise", "skip", "mask"):
             raise ValueError(f'on_error is "raise", "skip" or "mask", not {on_error!r}')
         source, places = laid_out(cast("Any", messages), offsets)
@@ -234,20 +238,36 @@ class DecoderBase(Program):
         holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
         source, before = _source(message), holder.lanes_.source[0]
         data = run.readable(source)
+        if self._loaded.wire is not None:
+            self._join(data, holder, self._loaded.wire)
+            return holder
         with holder.lanes_ as lanes, self._told(lanes):
             lanes.begin_filling()
-            with run.decoding():
-                result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
-            if result < 0:
-                raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
-            self._need(roomier(self._plan, lanes))
+            self._decode(data, lanes)
             lanes.source[0] = source if self._loaded.borrow else None
             lanes.words[VALID] = CLEAN
         del before  # outside: what ends with it may run any code
         return holder
 
+    def _decode(self, data: NDArray[np.uint8], lanes: Lanes) -> None:
+        """One message into the first row of lanes."""
+        with run.decoding():
+            result = run.run_growing(self._loaded.kernel, data, 0, data.size, lanes, 0, message_limit=self._loaded.limit)
+        if result < 0:
+            raise run.decode_error(self._loaded.sites[-1 - result], lanes, 0, data.size)
+        self._need(roomier(self._plan, lanes))
+
+    def _join(self, data: NDArray[np.uint8], holder: Holder, wire: int) -> None:
+        """One message into its part of a holder."""
+        words = self._context[1]
+        has_failed, words[FAILED] = bool(words[FAILED]), 0
+        broken = broken_wires(self._owners.setdefault("broken", WeakKeyDictionary()), holder)
+        with holder.lanes_ as lanes, self._told(lanes), joining(holder, wire, broken, has_failed=has_failed):
+            self._decode(data, lanes)
+
     def _into_foreign(self, message: Any, value: object) -> object:
         """Decode into an object of another class."""
+        self._refuse_part("into an object of another class")
         holder = self._borrow()
         try:
             self._loaded.holder_type.family_.givers.fill(value, self(message, holder))
@@ -255,17 +275,22 @@ class DecoderBase(Program):
             self._give_back(holder)
         return value
 
+    def _refuse_part(self, how: str) -> None:
+        """Where a message has to fill a whole holder."""
+        if self._loaded.wire is not None:
+            raise ValueError(NOT_WHOLE.format(how))
+
     def _becomes_mine(self) -> bool:
         """Let the decoder's own holder belong to this thread, if it belongs to none: in one step, which dicts have."""
         thread = get_ident()
-        if vars(self).setdefault("_thread", thread) != thread:
+        if self._owners.setdefault("first", thread) != thread:
             return False
         self._context[1][THREAD] = thread
         return True
 
     def _holder_of_thread(self) -> Holder:
         """What stands for the decoder's own holder in this thread."""
-        holders = vars(self).setdefault("_holders", local())
+        holders = self._owners.setdefault("others", local())
         if not hasattr(holders, "own"):
             holders.own = self.new()
         return holders.own

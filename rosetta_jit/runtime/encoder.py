@@ -15,7 +15,7 @@ from rosetta_jit.runtime.holder.classes import settle_lanes
 from rosetta_jit.runtime.holder.message import Message, place
 from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.runtime.program import MANY, Loaded, Program, is_foreign, one_by_one
-from rosetta_jit.runtime.whole_objects import encoding
+from rosetta_jit.runtime.whole_objects import encoding, encoding_by_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -54,8 +54,8 @@ class EncoderBase(Program):
             """
             ...
 
-    def _start(self, loaded: Loaded) -> None:
-        self._bind(loaded, self._call_slowly)
+    def _start(self, loaded: Loaded, beside: EncoderBase | None = None) -> None:
+        self._bind(loaded, self._call_slowly, beside)
 
     def into(self, holder: Any, buffer: Buffer, offset: int = 0) -> int:
         """Write a message into a buffer; returns the offset behind it.
@@ -232,12 +232,22 @@ class EncoderBase(Program):
             is_row = value.access_ is self._loaded.holder_type.family_.root and value.parent_ is None
             return self._of_row(value, *more) if is_row else self._of_foreign(value, self, *more)
         whole = self._loaded.holder_type.family_.wholes[type(value)]
-        if whole is None:
+        steps = self._loaded.holder_type.family_.takers.steps(value) if whole is None else None
+        if whole is not None:
+            quick = encoding(self.builtin, self.new, whole)
+        elif steps is not None:
+            quick = encoding_by_steps(self.builtin, self.new, steps, self._of_unusual)
+        else:
             return self._of_foreign(value, self, *more)
-        quick = encoding(self.builtin, self.new, whole)
         if len(self._quick) < MAX_CLASSES:
             self._quick[type(value)] = quick
         return quick(value, *more)
+
+    def _of_unusual(self, value: object, *more: object) -> Any:
+        """Encode an object that is not as the others of its class. Where the class has changed, the next one is looked at anew."""
+        if self._loaded.holder_type.family_.takers.is_stale(type(value)):
+            self._quick.pop(type(value), None)
+        return self._of_foreign(value, self, *more)
 
     def _of_row(self, message: Message, *more: object) -> Any:
         """Encode one message of a batch where it lies."""

@@ -44,7 +44,7 @@ from rosetta_jit.runtime.plan import Plan, plan
 
 if TYPE_CHECKING:
     from _thread import LockType
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -104,24 +104,8 @@ class Lanes:
     """
 
     __slots__ = (
-        "__weakref__",
-        "address",
-        "arena",
-        "array_type",
-        "arrays",
-        "buffers",
-        "cells",
-        "hidden",
-        "is_filled",
-        "lock",
-        "memory",
-        "plan",
-        "registers",
-        "rows",
-        "source",
-        "spares",
-        "state",
-        "words",
+        *("__weakref__", "address", "arena", "array_type", "arrays", "buffers", "cells", "hidden", "is_filled", "lock"),
+        *("memory", "plan", "registers", "rows", "source", "spares", "state", "words"),
     )
     arena: bytearray
     arrays: Arrays
@@ -312,29 +296,6 @@ class Lanes:
                 made.words[lane_word(lane, USED)] = used
             made.words[VALID], made.words[WASTED], made.rows = self.words[VALID], self.words[WASTED], self.rows
         return made
-
-    def contents(self) -> list[bytes]:
-        """The bytes of each lane's rows. Nothing may be borrowed."""
-        memory, words, strides = self.memory, self.words, self.plan.strides
-        return [bytes(memory[lane][: words[lane_word(lane, USED)] * stride]) for lane, stride in enumerate(strides[:-1])]
-
-    def take_contents(self, contents: Sequence[bytes]) -> None:
-        """Become lanes with such bytes; inside ``with lanes:``.
-
-        Raises
-        ------
-        ValueError
-            If they cannot be of this layout.
-        """
-        strides = self.plan.strides[:-1]
-        if len(contents) != len(strides) or any(len(each) % stride for each, stride in zip(contents, strides, strict=True)):
-            raise ValueError("these are no lanes of this type")
-        for lane, (content, stride) in enumerate(zip(contents, strides, strict=True)):
-            used = len(content) // stride
-            if used > self.capacity(lane):
-                self.grow(lane, used - self.capacity(lane))
-            self.memory[lane][: len(content)] = content
-            self.words[lane_word(lane, USED)] = used
 
     def adopt(self, other: Lanes) -> None:
         """Take over the rows of other lanes of the same layout, which are not used any more."""

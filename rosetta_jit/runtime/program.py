@@ -59,6 +59,10 @@ class Loaded:
         How many bytes of a lane a message may ask for, whatever its own size.
     state
         What it keeps from one message to the next.
+    wires
+        The names of the mapping's wires, where it has several.
+    wire
+        Of a decoder, the number of the one among them whose messages it reads; None where messages fill the whole holder.
     """
 
     holder_type: type[Holder]
@@ -71,6 +75,8 @@ class Loaded:
     told: bool = False
     limit: int = 0
     state: Kept = NOTHING_KEPT
+    wires: tuple[str, ...] = ()
+    wire: int | None = None
 
 
 def entry_of(library: Library | None, state: Kept) -> int | None:
@@ -177,19 +183,33 @@ class Program(Told):
 
     _loaded: Loaded
     _holder: Holder
+    _owners: dict[str, Any]
     _plan: Plan
 
-    def _bind(self, loaded: Loaded, slow: Callable[..., object]) -> None:
+    def _bind(self, loaded: Loaded, slow: Callable[..., object], beside: Program | None = None) -> None:
+        """Become a loaded program; ``beside`` is one for another wire, with which it shares its own holder, and its state."""
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
-        self._loaded, self._asks, self._registers = loaded, loaded.told, loaded.state.registers()
-        self._holder = loaded.holder_type()
+        self._loaded, self._asks = loaded, loaded.told
+        if beside is None:
+            self._registers, self._holder, self._owners = loaded.state.registers(), loaded.holder_type(), {}
+        else:
+            self._registers, self._holder, self._owners = beside.shared_()
         self._plan = loaded.holder_type.family_.plan
         if library() is not None:
             vars(self)["new"] = maker(loaded.holder_type, self._plan)
         lanes = self._holder.lanes_
         context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers))
         bind_call(self, entry_of(loaded.library, loaded.state), context)
+
+    @property
+    def wires_(self) -> tuple[str, ...]:
+        """The names of the mapping's wires, where it has several."""
+        return self._loaded.wires
+
+    def shared_(self) -> tuple[Registers | None, Holder, dict[str, Any]]:
+        """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
+        return self._registers, self._holder, self._owners
 
     @property
     def state(self) -> Mapping[str, bool | int | float]:
@@ -200,7 +220,9 @@ class Program(Told):
         InUse
             Another thread's call of the program has not returned.
         """
-        return {} if self._registers is None else self._registers.shown()
+        if self._registers is None:
+            return {}
+        return {name: value for name, value in self._registers.shown().items() if name.isidentifier()}
 
     @property
     def holder_type(self) -> type[Holder]:

@@ -1,4 +1,5 @@
-"""Objects that are handed over at once (`rosetta_jit.runtime.holder.objects.foreign.Whole`): what programs do with those of one class.
+"""Objects that are handed over at once (`rosetta_jit.runtime.holder.objects.foreign.Whole`), or by compiled code that sets all fields
+(`rosetta_jit.runtime.holder.objects.steps`): what programs do with those of one class.
 
 Such an object overwrites all that a holder has, so the holders between it and the program's bytes need not be emptied. Each function keeps
 some of them, one for each thread that runs it at the same time.
@@ -8,12 +9,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.runtime.attributes.code import functions
+from rosetta_jit.runtime.holder.objects.steps import LEFT
 from rosetta_jit.runtime.limits import MAX_SPARES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosetta_jit.runtime.holder.objects.foreign import Whole
+    from rosetta_jit.runtime.holder.objects.steps import Steps
 
 
 def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole) -> Callable[..., Any]:
@@ -31,6 +35,37 @@ def encoding(encode: Callable[..., Any], new: Callable[[], Any], whole: Whole) -
         finally:
             if len(spares) < MAX_SPARES:
                 spares.append(holder)
+
+    return call
+
+
+def encoding_by_steps(
+    encode: Callable[..., Any], new: Callable[[], Any], steps: Steps, otherwise: Callable[..., Any]
+) -> Callable[..., Any]:
+    """The same where compiled code takes the objects; ``otherwise`` encodes those that it leaves to Python.
+
+    Holders are emptied in between nevertheless: texts and arrays that are assigned again and again would leave gaps.
+    """
+    take, table, spares = functions()["take_anew"], steps.table, list[tuple[Any, bytes]]()
+
+    def call(value: object, *more: object) -> Any:
+        try:
+            spare = spares.pop()
+        except IndexError:
+            made = new()
+            spare = made, made.lanes_.plan.fresh
+        holder, fresh = spare
+        try:
+            taken = take(table, holder, value, fresh)
+        except LEFT:
+            taken = False
+        if not taken:
+            return otherwise(value, *more)
+        try:
+            return encode(holder, *more)
+        finally:
+            if len(spares) < MAX_SPARES:
+                spares.append(spare)
 
     return call
 

@@ -97,7 +97,8 @@ class Source(End):
 
     def arrived(self, message: Message) -> None:
         """Count a message, and pass it on; for transports. What the callback raises is reported, and costs this message alone."""
-        self.passed(len(message.data))
+        self.messages += 1
+        self.bytes += len(message.data)
         try:
             self._deliver(message)
         except Exception as error:  # noqa: BLE001 - the user's code: it must not end the thread that serves all connections

@@ -57,21 +57,30 @@ class Feed:
     ----------
     done
         Whether the generator has returned: the connection has come to its end.
+    size
+        Bytes of memory that it holds.
     """
 
-    __slots__ = ("_buffer", "_end", "_machine", "_searched", "_start", "_want", "done")
+    __slots__ = ("_buffer", "_end", "_machine", "_searched", "_start", "_want", "done", "size")
 
     def __init__(self, machine: Machine) -> None:
         self._buffer = memoryview(bytearray(FIRST_BYTES))
+        self.size = FIRST_BYTES
         self._start = self._end = self._searched = 0
         self._machine = machine
         self.done = False
         self._want: int | Until = 0
-        self._ask(None)
+        try:
+            self._want = next(machine)
+        except StopIteration:
+            self.done = True
 
     def room(self) -> memoryview:
         """Where the next bytes are to be put; `filled` says how many."""
-        if self._end == len(self._buffer) or self._start == self._end:
+        if self._start == self._end:
+            self._start = self._end = self._searched = 0
+            return self._buffer
+        if self._end == self.size:
             self._make_room()
         return self._buffer[self._end :]
 
@@ -84,6 +93,7 @@ class Feed:
             The peer is wrong.
         """
         self._end += count
+        send = self._machine.send
         while not self.done:
             want = self._want
             if isinstance(want, int):
@@ -96,7 +106,10 @@ class Feed:
                 return
             piece = self._buffer[self._start : stop]
             self._start = self._searched = stop
-            self._ask(piece)
+            try:
+                self._want = send(piece)
+            except StopIteration:
+                self.done = True
 
     def feed(self, data: bytes | memoryview) -> None:
         """Hand on bytes that lie elsewhere; as `filled`."""
@@ -109,11 +122,6 @@ class Feed:
             self.filled(count)
 
     @property
-    def size(self) -> int:
-        """Bytes of memory that it holds."""
-        return len(self._buffer)
-
-    @property
     def is_between(self) -> bool:
         """Whether the stream may end here: no message has begun."""
         if self.done:
@@ -124,12 +132,6 @@ class Feed:
         """Let the generator end."""
         self.done = True
         self._machine.close()
-
-    def _ask(self, piece: memoryview | None) -> None:
-        try:
-            self._want = self._machine.send(piece)  # pyright: ignore[reportArgumentType] - what starts a generator
-        except StopIteration:
-            self.done = True
 
     def _found(self, want: Until) -> int:
         """Where the delimiter ends; 0 where it did not come yet."""
@@ -153,6 +155,7 @@ class Feed:
         if left > len(buffer) // 2:
             wanted = self._want if isinstance(self._want, int) else 0
             buffer = memoryview(bytearray(max(2 * len(buffer), min(wanted, 4 * len(buffer)))))
+            self.size = len(buffer)
         if left:
             buffer[:left] = self._buffer[self._start : self._end]
         self._searched = max(self._searched - self._start, 0)

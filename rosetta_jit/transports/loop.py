@@ -108,11 +108,15 @@ class Loop:
         os.read(self._wake_read, 4096)
 
     def _run(self) -> None:
+        poll, watched = self._epoll.poll, self._watched
         while True:
-            for number, events in self._epoll.poll(self._pause()):
-                ready = self._watched.get(number)
+            for number, events in poll(self._pause()):
+                ready = watched.get(number)
                 if ready is not None:
-                    _guarded(ready, events)
+                    try:
+                        ready(events)
+                    except Exception as error:  # noqa: BLE001 - as of `_guarded`, whose call takes its time
+                        _report(error)
             self._awake = False
             self._call_due()
             for _ in range(len(self._soon)):
@@ -137,7 +141,11 @@ def _guarded(function: Callable[..., object], *arguments: Any) -> None:
     try:
         function(*arguments)
     except Exception as error:  # noqa: BLE001
-        threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
+        _report(error)
+
+
+def _report(error: Exception) -> None:
+    threading.excepthook(threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread())))
 
 
 def loop() -> Loop:
@@ -145,6 +153,15 @@ def loop() -> Loop:
     return _loop_of(os.getpid())
 
 
+_MAKING = threading.Lock()
+
+
 @cache
-def _loop_of(_: int) -> Loop:
+def _loop_of(process: int) -> Loop:
+    with _MAKING:  # threads that ask at the same time for the first loop of a process get the same one
+        return _made(process)
+
+
+@cache
+def _made(_: int) -> Loop:
     return Loop()

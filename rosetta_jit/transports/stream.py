@@ -61,7 +61,8 @@ class Stream:
         self._most = max_waiting
         self._waiting: deque[memoryview] = deque()
         self._waiting_bytes = 0
-        self._room = threading.Condition()
+        self._turn = threading.Lock()
+        self._room = threading.Condition(self._turn)
         self._finishing = False
         self._paused = False
         self._deadline: Timer | None = None
@@ -88,7 +89,7 @@ class Stream:
     def send(self, *parts: Bytes) -> bool:
         """Send parts as one, or let them wait; from any thread. False where too much waits, or it is closed: then nothing is sent."""
         size = sum(map(len, parts))
-        with self._room:
+        with self._turn:  # not the condition, whose block is entered by a function of Python
             if self.closed or self._finishing or (self._waiting and self._waiting_bytes + size > self._most):
                 return False
             sent = 0
@@ -173,6 +174,9 @@ class Stream:
             loop().watch(self.socket.fileno(), events, self._ready)
 
     def _ready(self, events: int) -> None:
+        if events == READ:
+            self._read()
+            return
         if events & WRITE:
             self._write()
         if events & ~WRITE and not self.closed:

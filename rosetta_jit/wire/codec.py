@@ -344,6 +344,7 @@ class Encoding:
     ``recursive`` are the messages of recursive structs; where the message is not `Tagged`, ``nested`` are their codecs, for each attempt.
     ``origin`` is where alignment counts from, in bytes behind the begin of the message. At its end there is what ``ending`` says, and
     ``spare`` bytes may be left over. Of the leniency ``trailing`` of the encoding, so many could: ``forgivable``, 0 where it has none.
+    The last ``rare`` attempts are for messages that hardly ever come.
     """
 
     name: str
@@ -355,3 +356,4 @@ class Encoding:
     ending: Ending | None = None
     spare: int = 0
     forgivable: int = 0
+    rare: int = 0

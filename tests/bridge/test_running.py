@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -15,13 +16,14 @@ import urllib.request
 import pytest
 
 import rosetta_jit as rj
+from rosetta_jit.bridge import metrics as asking
 from rosetta_jit.bridge.checking import checked
 from rosetta_jit.bridge.counting import Latencies, RouteCounts
 from rosetta_jit.bridge.limits import MAX_CAUSES
 from rosetta_jit.bridge.metrics import MetricsServer, text
 from rosetta_jit.bridge.running import Running
 from rosetta_jit.bridge.table import rows
-from tests.transports.free import free_port, until
+from tests.transports.free import answers, free_port, until
 from tests.transports.name_server import NameServer
 
 TORSO = "yarp/icub/torso_state.mapping"
@@ -387,7 +389,30 @@ def test_the_table_and_the_metrics(run):
         assert found.split("\n")[0].startswith("# HELP")
         assert 'rosetta_jit_bridge_bytes_sent_total{route="a \\"b\\"?[2J"} 5' in found
         assert 'reason="evil?[2J reason?"} 1' in found
+        assert 'rosetta_jit_bridge_connections{route="a \\"b\\"?[2J",end="target"} 1' in found
+        assert 'rosetta_jit_bridge_reconnects_total{route="a \\"b\\"?[2J",end="source"} 0' in found
         assert all(line.startswith("#") or line.count("{") == 1 for line in text(bridge.snapshot()).splitlines())
+
+
+def test_who_asks_for_metrics_and_says_nothing_holds_up_nobody(monkeypatch):
+    monkeypatch.setattr(asking, "MAX_ASKING", 2)
+    monkeypatch.setattr(asking._Handler, "timeout", 0.3)
+    metrics = MetricsServer("0", list)
+    try:
+        with socket.create_connection(("127.0.0.1", metrics.port)), socket.create_connection(("127.0.0.1", metrics.port)):
+            with socket.create_connection(("127.0.0.1", metrics.port)) as third:
+                assert third.recv(1) == b""
+            until(lambda: is_answered(metrics.port))
+    finally:
+        metrics.close()
+
+
+def is_answered(port):
+    try:
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics") as answer:
+            return answer.read().startswith(b"# HELP")
+    except OSError:
+        return False
 
 
 def test_the_command(tmp_path):
@@ -410,6 +435,12 @@ def test_the_command(tmp_path):
             said = program.stderr.readline()
             while "all goes on as before" not in said:
                 said = program.stderr.readline()
+            metrics = free_port()
+            path.write_text(path.read_text().replace("suorce", "source").replace("[bridge]", f'[bridge]\nmetrics = "{metrics}"'))
+            os.kill(program.pid, signal.SIGHUP)
+            until(lambda: answers(metrics))  # where the new file says
+            with urllib.request.urlopen(f"http://127.0.0.1:{metrics}/metrics") as answer:
+                assert b'messages_sent_total{route="a"} 1' in answer.read()
             threading.Timer(0.3, program.send_signal, (signal.SIGTERM,)).start()
             out, _ = program.communicate(timeout=20)
             assert json.loads(out.splitlines()[-1])["routes"][0]["sent"] == 1

@@ -78,9 +78,9 @@
            (funcall (find-symbol name *runtime*) condition)))
     (handler-case
         (sb-int:with-float-traps-masked (:invalid :overflow :divide-by-zero)
-          (let* ((object (call "decode" octets)) (value (with-output-to-string (text) (show object text))))
+          (let* ((object (call "decode" octets)) (value (with-output-to-string (text) (show object text))) (again (call "encode" object)))
             (write-string "ok " stream)
-            (hexadecimal (call "encode" object) stream)
+            (hexadecimal again stream)
             (format stream " ~A" value)))
       (error (condition)
         (if (typep condition (find-symbol "MESSAGE-ERROR" *runtime*))

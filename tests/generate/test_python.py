@@ -8,12 +8,13 @@ import subprocess
 import sys
 import types
 
+import numpy as np
 import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from tests.generate.corpora import corpora, numbers_in_texts
 from tests.generate.driver import expected, harmed
 from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
@@ -28,10 +29,10 @@ FEW = {"lcm exlcm.example_t", "corba RTC::TimedWChar little", "protobuf rj.OneOf
 def module(monkeypatch):
     """A function that imports what is generated."""
 
-    def imported(request, directions=BOTH):
+    def imported(request, directions=BOTH, wishes=NO_WISHES):
         made = types.ModuleType("generated_unit")
         monkeypatch.setitem(sys.modules, made.__name__, made)  # dataclasses look there for the names of types
-        text = generated(request, "python", directions, "unit")["unit.py"]
+        text = generated(request, "python", directions, "unit", wishes)["unit.py"]
         exec(compile(text, "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
         return made
 
@@ -189,3 +190,74 @@ def test_what_the_host_tells(module):
     unit.now = lambda: 17
     message = struct.pack("<iii", 257, 1, 40)
     assert [(found.value, found.now) for found in map(unit.decode, [message] * 3)] == [(40, 17), (41, 17), (42, 17)]
+
+
+# --- arrays of numpy's -------------------------------------------------------------------------------------------------------------
+
+NUMPY = Wishes(numpy=True)
+ARRAYS = {"lcm exlcm.example_t", "ros2 test_interface_files/UnboundedSequences big"}
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_with_arrays_of_numpy_it_answers_as_the_library_does(name, module):
+    request, good = SUBJECTS[name]
+    of = (rj.Decoder, rj.Encoder) if request.mapping else (rj.Decoder.of, rj.Encoder.of)
+    programs = [make(request.mapping or request.type, encoding=request.encoding) for make in of]
+    answers_as_the_library(module(request, wishes=NUMPY), programs, harmed(good, 4, name))
+
+
+@pytest.mark.parametrize("corpus", [each for each in corpora() if each.name in ARRAYS], ids=lambda each: each.name)
+def test_messages_of_peers_as_arrays_of_numpy(corpus, module):
+    answers_as_the_library(module(corpus.request, wishes=NUMPY), corpus.programs(), harmed(list(corpus.messages[:2]), 2, corpus.name))
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("corpus", corpora(), ids=lambda each: each.name)
+def test_all_messages_of_peers_as_arrays_of_numpy(corpus, module):
+    answers_as_the_library(module(corpus.request, wishes=NUMPY), corpus.programs(), harmed(list(corpus.messages), 4, corpus.name))
+
+
+def test_arrays_of_numpy_have_the_types_of_their_fields(module):
+    unit = module(SUBJECTS["joints"][0], wishes=NUMPY)
+    sent = unit.JointState(name=["a", "b"], position=np.array([1.5, -2.0]), velocity=[3, 4], effort=np.array([5, 6], ">i2"))
+    message = bytearray(unit.encode(sent))
+    found = unit.decode(message)
+    for name, values in (("position", [1.5, -2.0]), ("velocity", [3, 4]), ("effort", [5, 6])):
+        array = getattr(found, name)
+        assert (array.dtype, array.tolist()) == (np.float64, values)
+        assert array.flags.writeable
+        assert array.dtype.isnative
+    message[:] = bytes(len(message))
+    assert found.position.tolist() == [1.5, -2.0], "a copy, which the message has no part in"
+    assert found == unit.JointState(name=["a", "b"], position=[1.5, -2.0], velocity=np.array([3.0, 4.0]), effort=np.array([5.0, 6.0]))
+    assert found != unit.JointState(name=["a", "b"], position=np.zeros(2))
+    assert unit.JointState() == unit.JointState()
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(found)
+
+
+def test_arrays_of_numpy_can_be_views(module):
+    unit = module(SUBJECTS["joints"][0], wishes=NUMPY)
+    found = unit.decode(unit.encode(unit.JointState(position=np.arange(3.0))), copy=False)
+    assert found.position.tolist() == [0.0, 1.0, 2.0]
+    assert not found.position.flags.owndata
+    assert not found.position.flags.writeable
+    swapped = module(type_request("decode", "exlcm.example_t", {"encoding": "lcm"}), wishes=NUMPY)
+    ranges = swapped.decode(swapped.encode(swapped.example_t(num_ranges=2, ranges=[1, -2])), copy=False).ranges
+    assert (ranges.dtype, ranges.dtype.isnative, ranges.tolist()) == (np.int16, True, [1, -2])
+
+
+@pytest.mark.parametrize(
+    "ranges",
+    [[1.0, 2.0], [1, 40000], np.array([[1, 2]]), ["1", "2"], np.array([1, 2**40]), [None, 1]],
+    ids=["float", "range", "2d", "text", "wide", "none"],
+)
+def test_arrays_that_are_not_the_fields_are_refused(ranges, module):
+    unit = module(type_request("decode", "exlcm.example_t", {"encoding": "lcm"}), wishes=NUMPY)
+    with pytest.raises(unit.EncodeError):
+        unit.encode(unit.example_t(num_ranges=2, ranges=ranges))
+
+
+def test_other_languages_have_no_arrays_of_numpy():
+    with pytest.raises(SchemaError, match="no-numpy"):
+        generated(TORSO, "c", BOTH, "torso", NUMPY)

@@ -1,4 +1,4 @@
-"""State in generated source: what C, C++ and Python keep from one message to the next is what the library keeps."""
+"""State in generated source: what C, C++, Python and Lisp keep from one message to the next is what the library keeps."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.build import generated
-from tests.generate import cpp
+from tests.generate import cpp, lisp
 from tests.generate.cpp import needs_cpp
 from tests.generate.driver import answers, compiled, driver, expected, harmed, needs_gcc, write
+from tests.generate.lisp import needs_sbcl
 from tests.generate.test_python import answer
 
 FILES = {
@@ -113,6 +113,21 @@ def test_python_keeps_what_the_library_keeps(monkeypatch):
         made.reset()
 
 
-def test_lisp_says_that_it_has_none():
-    with pytest.raises(SchemaError, match="needs state from message to message, which source in `lisp` cannot have"):
-        generated(REQUEST, "lisp", BOTH, "unit")
+@needs_sbcl
+def test_lisp_keeps_what_the_library_keeps(tmp_path):
+    """The system's own codec keeps the state, if no other is given: what another has, or `reset` forgets, is as it is at first."""
+    every = messages()
+    (found,) = lisp.answers(tmp_path, [(REQUEST, every)])
+    assert [" ".join(line.split()[:2]) if line.startswith("ok ") else line for line in found] == wanted(every)
+    octets = f"(coerce '({' '.join(map(str, every[1]))}) 'unit-0:octets)"
+    forms = (
+        "(require :asdf)",
+        '(asdf:load-asd (truename "unit-0.asd"))',
+        '(let ((*standard-output* *error-output*)) (asdf:load-system "unit-0"))',
+        f"""(flet ((speed (codec) (unit-0:m-speed (unit-0:decode {octets} :codec codec))))
+              (let ((codec (unit-0:make-codec)))
+                (format t "~{{~A~%~}}" (list (speed unit-0:*codec*) (speed codec)
+                                          (unit-0:message-error-kind (nth-value 1 (ignore-errors (speed codec))))
+                                          (progn (unit-0:reset codec) (speed codec))))))""",
+    )
+    assert lisp.run(*forms, cwd=tmp_path).split() == ["1.0d0", "1.0d0", "REJECTED", "1.0d0"]

@@ -244,6 +244,27 @@ def test_loops():
     refused(start, For("i", END, body), Let("x", Load("u8", at)), DONE, match="beyond the end")
 
 
+def test_what_rounds_count_is_no_more_than_there_were():
+    """So a count does not wrap, and what is kept of so many rows has room in as many."""
+    n, found = i64("n"), i64("found")
+    load = (ROW_EXISTS, need(BEGIN, 8), Let("n", Load("i64", BEGIN)), expect(compare("ge", n, 0)))
+    rows = (Reserve(1, n), Let("start", Used(1)), Advance(1, n), Var("found", index(0)))
+    positive = compare("gt", Load("i64", BEGIN), 0)
+    keep = SetField(Place(1, Binary("add", i64("start"), found), 0), index(1))
+    count = kernels.Assign("found", add(found, kernels.Convert("i64", positive)))
+    verify(kernel((*load, *rows, For("i", n, (keep, count)), DONE)))
+    verify(
+        kernel((*load, *rows, For("i", n, (Let("more", add(found, 1)), If(positive, (keep, kernels.Assign("found", i64("more")))))), DONE))
+    )
+    behind = SetField(Place(1, Binary("add", i64("start"), Binary("sub", found, index(1))), 0), index(1))
+    verify(kernel((*load, *rows, For("i", n, (count,)), If(compare("ge", found, 1), (behind,)), DONE)))
+    refused(*load, *rows, For("i", n, (count,)), keep, DONE, match="outside its lane|wrap")
+    refused(*load, *rows, For("i", n, (keep, kernels.Assign("found", add(found, 2)))), DONE, match="outside its lane|wrap")
+    refused(*load, *rows, For("i", n, (keep, For("j", n, (count,)))), DONE, match="outside its lane|wrap")
+    refused(*load, *rows, For("i", n, (count, keep)), DONE, match="outside its lane|wrap")
+    refused(*load[:-1], Var("found", index(0)), For("i", n, (kernels.Assign("found", add(found, index(2))),)), DONE, match="wrap")
+
+
 def test_a_body_that_the_usual_guesses_do_not_prove_is_walked_with_all(monkeypatch):
     at = i64("at")
     body = (need(at, 1), kernels.Assign("at", add(at, 1)))

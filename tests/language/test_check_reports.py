@@ -26,6 +26,7 @@ from rosetta_jit.catalogue import state as state_words
 from rosetta_jit.catalogue import texts as texts_words
 from rosetta_jit.catalogue import unit_files as unit_files_words
 from rosetta_jit.catalogue import units as units_words
+from rosetta_jit.catalogue import wires as wires_words
 from rosetta_jit.diagnostics import MAX_LINE, render, render_all, to_json
 from rosetta_jit.errors import MappingError
 from rosetta_jit.frameworks.installed import Readers, installed
@@ -68,6 +69,7 @@ CATALOGUE = (
     groups_words,
     reductions_words,
     checksums_words,
+    wires_words,
 )
 MAKERS = ("error", "warning", "note", "placed", "in_one_way")
 OF_FILES = ("file_too_large", "texts_too_large", "file_not_text", "file_unreadable", "mapping_not_found", "in_used")
@@ -81,6 +83,9 @@ OF_PIECES = ("many_pieces", "lone_brace", "no_value")
 
 OF_PROGRAMS = ("missing", "unknown", "needless", "not_given", "not_declared", "does_not_compile", "no_compiler", "no_library")
 """What is given to a program, and what is not installed: test_parameters.py, test_functions.py and test_compressed.py have it."""
+
+OF_WIRES = ("unsaid", "single", "cannot_borrow", "not_here")
+"""What programs of a mapping with several wires are refused: tests/api/test_wires.py has it."""
 
 OF_SIZES = (
     "many_copies",
@@ -101,7 +106,7 @@ OF_WIDE_TEXTS = ("wide_text", "text_length")
 OF_UNIONS = ("other_case", "late_discriminator", "many_labels")
 """Discriminators, which the frameworks here lack: test_unions.py has it."""
 
-ELSEWHERE = (*OF_UNIONS, *OF_FILES, *OF_BOTH_WAYS, *OF_PIECES, *OF_PROGRAMS, *OF_SIZES, *OF_WIDE_TEXTS)
+ELSEWHERE = (*OF_UNIONS, *OF_FILES, *OF_BOTH_WAYS, *OF_PIECES, *OF_PROGRAMS, *OF_WIRES, *OF_SIZES, *OF_WIDE_TEXTS)
 
 
 def diagnostics(path: Path) -> tuple[Diagnostic, ...]:

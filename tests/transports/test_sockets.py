@@ -13,6 +13,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.errors import AddressError, TransportError
+from rosetta_jit.transports import loop as loops
 from rosetta_jit.transports.base import Source
 from rosetta_jit.transports.installed import installed
 from rosetta_jit.transports.stream import Stream
@@ -59,6 +60,24 @@ def test_datagrams_have_a_limit():
         assert source.lost == {"a message larger than max_message": 1}
         with pytest.raises(TransportError, match="too large"):
             sink.send(bytes(65_508))
+
+
+def test_threads_that_ask_for_the_first_loop_at_the_same_time_get_the_same_one(monkeypatch):
+    made = []
+
+    class Slow:
+        def __init__(self):
+            time.sleep(0.02)
+            made.append(self)
+
+    monkeypatch.setattr(loops, "Loop", Slow)
+    got, threads = [], [threading.Thread(target=lambda: got.append(loops._loop_of(-1))) for _ in range(8)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert len(made) == 1
+    assert got == made * 8
 
 
 def test_datagrams_that_the_system_drops_are_counted(monkeypatch):

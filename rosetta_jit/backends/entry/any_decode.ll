@@ -45,7 +45,9 @@ decode:
   %epoch = call i64 @epoch(ptr %state)
   %unused = icmp sge i64 %epoch, 0
   %unshared = call i1 @registers_are_free(ptr %context)
-  %free = and i1 %unused, %unshared
+  %ready = call i1 @is_ready(ptr %state)
+  %fit = and i1 %unused, %unshared
+  %free = and i1 %fit, %ready
   br i1 %free, label %run, label %finish, !prof !0
 run:
   call void @enter(ptr %state, i64 %epoch, i64 1)
@@ -59,6 +61,7 @@ run:
   br i1 %good, label %finish, label %failed, !prof !0
 failed:
   call void @untell(ptr %context, ptr %state)
+  call void @say_failed(ptr %context)
   call void @note(i64 %result, ptr %state)
   br label %finish
 finish:

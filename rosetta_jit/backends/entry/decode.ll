@@ -23,7 +23,9 @@ bytes:
   %free = icmp sge i64 %epoch, 0
   %unshared = call i1 @registers_are_free(ptr %context)
   %known = and i1 %mine, %free
-  %usable = and i1 %known, %unshared
+  %ready = call i1 @is_ready(ptr %state)
+  %fit = and i1 %known, %unshared
+  %usable = and i1 %fit, %ready
   br i1 %usable, label %decode, label %other, !prof !1
 decode:
   %data = getelementptr i8, ptr %message, i64 32
@@ -47,6 +49,7 @@ failed:
   %bad.state = load ptr, ptr %context
   store i64 0, ptr %bad.state
   call void @untell(ptr %context, ptr %bad.state)
+  call void @say_failed(ptr %context)
   call void @note(i64 %result, ptr %bad.state)
   %answer = tail call ptr @slow(ptr %context, ptr %args, i64 1, ptr null)
   ret ptr %answer

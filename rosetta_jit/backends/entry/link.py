@@ -8,7 +8,8 @@ The object exports, beside each kernel as `kernel` (and `size`, of an encoder, a
 
 A program is made of two modules. *Its own* has the kernels, and, where the first of them is short, the usual call, so that LLVM puts the
 kernel into it; a bridge's has all. *The surroundings* have the rest, which is the same for many programs: compiled once a machine, they are
-kept in the cache.
+kept in the cache. Bodies of kernels for messages that hardly ever come have modules of their own, *aside*, which LLVM compiles in a tenth
+of the time, to code of twice the size.
 """
 
 from __future__ import annotations
@@ -91,11 +92,19 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     """
     if not is_prelinking():
         return object_file(kernels, entry, **options)
-    machine = target_machine(hurried=are_vast(kernels))
-    module = linked(_own_parts(kernels, entry, options, whole=False))
+    machine, texts = target_machine(hurried=are_vast(kernels)), list[str]()
+    module = linked(_own_parts(kernels, entry, options, texts))
     _optimise(module, kernels, entry, machine, options)
-    image = prelinked(machine.emit_object(module), *_surroundings(module, kernels, entry), gives=(*SYMBOLS[entry], TABLE))
-    return image or object_file(kernels, entry, **options)
+    aside = [linked([text]) for text in texts]
+    images = machine.emit_object(module), *map(_hurried, aside), *_surroundings((module, *aside), kernels, entry)
+    return prelinked(*images, gives=(*SYMBOLS[entry], TABLE)) or object_file(kernels, entry, **options)
+
+
+def _hurried(module: binding.ModuleRef) -> bytes:
+    """The object file of a module whose speed does not matter."""
+    machine = target_machine(hurried=True)
+    run_few_passes(module, machine)
+    return machine.emit_object(module)
 
 
 def object_file(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Options]) -> bytes:
@@ -117,7 +126,7 @@ def assembly(kernels: Sequence[Kernel], entry: EntryName, **options: Unpack[Opti
 
 def optimised(kernels: Sequence[Kernel], entry: EntryName, machine: binding.TargetMachine, options: Options) -> binding.ModuleRef:
     """The whole program in one module, after one run of LLVM's passes."""
-    module = linked((*_own_parts(kernels, entry, options, whole=True), *_surrounding_texts(kernels, entry)))
+    module = linked((*_own_parts(kernels, entry, options, None), *_surrounding_texts(kernels, entry)))
     _optimise(module, kernels, entry, machine, options)
     return module
 
@@ -148,13 +157,16 @@ def _optimise(
 # --- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, *, whole: bool) -> Iterator[str]:
-    """The modules that a program's own is linked from, as LLVM text. `support` is defined in what is to be ``whole``."""
+def _own_parts(kernels: Sequence[Kernel], entry: EntryName, options: Options, aside: list[str] | None) -> Iterator[str]:
+    """The modules that a program's own is linked from, as LLVM text. Those ``aside`` are appended to a list.
+
+    Without such a list the program is to be one module: it has the rare bodies, and defines what it calls of `support`.
+    """
     if options["with_numba"] and not is_large(kernels[0]) and not calls_to_host(kernels):
         yield from _typed(kernels[0])
     else:
-        yield _emitted(kernels[0], FUNCTIONS[0], whole=whole)
-    yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+        yield _emitted(kernels[0], FUNCTIONS[0], aside)
+    yield from (_emitted(kernel, name, aside) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
     for function in options.get("functions", ()):
         from rosetta_jit.backends.numba.user_functions import compile_function
 
@@ -184,12 +196,12 @@ def _usual(text: str, exported: tuple[str, ...]) -> str:
     return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
-def _surroundings(module: binding.ModuleRef, kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
-    """The object files of what stands around a program's own module."""
+def _surroundings(modules: Sequence[binding.ModuleRef], kernels: Sequence[Kernel], entry: EntryName) -> Iterator[bytes]:
+    """The object files of what stands around a program's own modules."""
     around = _surrounding_texts(kernels, entry)
     if around:
         yield _entries(*around)
-    wanted = {each.name for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
+    wanted = {each.name for module in modules for each in module.functions if each.is_declaration} & set(support.SIGNATURES)
     if wanted:
         yield _support(*sorted(wanted))
 
@@ -204,9 +216,12 @@ def _support(*names: str) -> bytes:
     return kept("support", " ".join(names), lambda: object_of([definitions.text(names)], names))
 
 
-def _emitted(kernel: Kernel, name: str, *, whole: bool) -> str:
+def _emitted(kernel: Kernel, name: str, aside: list[str] | None) -> str:
     module = ir.Module(name)
-    llvm.emit(module, kernel, name, whole=whole)
+    rare = ir.Module(f"{name}.rare") if aside is not None and kernel.rare else None
+    llvm.emit(module, kernel, name, whole=aside is None, rare=rare)
+    if aside is not None and rare is not None:
+        aside.append(str(rare))
     return str(module)
 
 
@@ -224,7 +239,8 @@ def _entry_text(templates: Sequence[str], kernels: Sequence[Kernel]) -> str:
     hosted = "hosted.ll" if calls_to_host(kernels) else "unhosted.ll"
     count = max(kernel.registers for kernel in kernels)
     kept = _template("registers.ll").replace("COUNT", str(count)) if count else _template("no_registers.ll")
-    texts = (*map(_template, ("objects.ll", told, hosted, _thread_template(), _large_template())), kept, *map(_template, templates))
+    joined = "joined.ll" if any(kernel.kept for kernel in kernels) else "alone.ll"
+    texts = (*map(_template, ("objects.ll", told, hosted, joined, _thread_template(), _large_template())), kept, *map(_template, templates))
     inline = ("alwaysinline" if is_short_and_straight(kernel) else "" for kernel in kernels)
     attributes = (f"attributes #{number} = {{ nounwind {each} }}" for number, each in enumerate(inline))
     return "\n".join((*texts, *attributes))

@@ -115,7 +115,8 @@ class Exit:
 class Frame:
     """One body being printed. ``entry`` prints into the function's entry block, ``builder`` where the body has got to.
 
-    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``.
+    A routine that is printed where it is called has a frame with locals of its own, which knows its ``caller``. ``is_rare`` says that LLVM
+    will take no time for the body's speed.
     """
 
     module: ir.Module
@@ -127,9 +128,10 @@ class Frame:
     loaded: dict[tuple[int, int], ir.Value]
     done: Exit
     failed: Exit
-    decodes: bool
+    emptied: frozenset[int]
     routines: Mapping[str, ir.Function | Routine]
     caller: tuple[Frame, Call] | None = None
+    is_rare: bool = False
     locals: dict[str, ir.Value | Variable] = field(default_factory=dict[str, "ir.Value | Variable"])
     used: dict[int, ir.Value] = field(default_factory=dict[int, ir.Value])
 
@@ -181,9 +183,9 @@ class Frame:
         return builder.load(self.used[lane], typ=I64) if lane in self.used else self._used_before(builder, lane)
 
     def _used_before(self, builder: ir.IRBuilder, lane: int) -> ir.Value:
-        """Each body starts with the used length that the state says, and decoding into row 0 with nothing."""
+        """Each body starts with the used length that the state says, and decoding into row 0 with nothing in the lanes that it empties."""
         start = self._load(builder, lane, USED, I64, f"used{lane}")
-        if not (self.decodes and lane):
+        if lane not in self.emptied:
             return start
         return builder.select(builder.icmp_signed("==", self.parameters.row, constant(0)), constant(0), start)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from llvmlite import ir
 
-from rosetta_jit.backends.base import counted_lanes, statements
+from rosetta_jit.backends.base import counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
@@ -51,12 +51,21 @@ TINY, SHORT = 8, 24
 """Statements up to which a routine is part of its callers: if it does not loop, and if its callers are not many."""
 
 
-def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) -> ir.Function:
+def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, rare: ir.Module | None = None) -> ir.Function:
     """Define the kernel's function in the module.
 
     The kernel must have passed `verify`: what it promises there is handed to LLVM as a fact. Unless the module is to be ``whole``, it only
-    declares the functions of `support` that the kernel calls.
+    declares the functions of `support` that the kernel calls, and rare bodies if there is a module for these.
     """
+    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
+    _attempt(function, kernel, kernel.bodies, _routines(module, kernel, name), rare)
+    if whole:
+        definitions.define(module)
+    return _behind_check(module, kernel, function, name) if kernel.hidden else function
+
+
+def _routines(module: ir.Module, kernel: Kernel, name: str) -> Mapping[str, ir.Function | Routine]:
+    """What calls of routines become: functions of the module, or their statements."""
     calls, routines = _calls(kernel), dict[str, "ir.Function | Routine"]()
     for routine in kernel.routines:
         if _is_in_place(routine, calls[routine.name]):
@@ -65,11 +74,7 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True) ->
         function = routines[routine.name] = _routine(module, kernel, routine, f"{name}.{routine.name}", routines)
         if calls[routine.name] >= _many(routine):
             function.attributes.add("noinline")
-    function = _function(module, SIGNATURE, f"{name}.inside" if kernel.hidden else name, ARGUMENTS)
-    _attempt(function, kernel, kernel.bodies, routines)
-    if whole:
-        definitions.define(module)
-    return _behind_check(module, kernel, function, name) if kernel.hidden else function
+    return routines
 
 
 def _calls(kernel: Kernel) -> Counter[str]:
@@ -135,8 +140,8 @@ def _routine(module: ir.Module, kernel: Kernel, routine: Routine, name: str, rou
     first = function.append_basic_block("body")
     parameters = Parameters(*function.args[:4], row=constant(0))
     done, failed = _exit(entry, "done", len(routine.results)), _exit(entry, "failed", 2)
-    lanes, decodes = (kernel.strides, kernel.lanes), kernel.direction == "decode"
-    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    lanes, emptied = (kernel.strides, kernel.lanes), emptied_lanes(kernel)
+    frame = Frame(module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
     frame.locals.update(zip(("begin", "end"), function.args[1:3], strict=True))
     frame.locals.update(zip((each.name for each in routine.parameters), function.args[4:], strict=True))
     llvm_stmt.block(frame, routine.body)
@@ -158,15 +163,22 @@ def _give(target: Exit, outcome: ir.LiteralStructType, values: Sequence[ir.Value
     builder.ret(whole)
 
 
-def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]) -> None:
+def _attempt(
+    function: ir.Function,
+    kernel: Kernel,
+    bodies: Sequence[Block],
+    routines: Mapping[str, ir.Function | Routine],
+    rare: ir.Module | None = None,
+) -> None:
     """The first of the bodies, whose failures lead to the next one. What has failed so far stands in the state.
 
     Each body has a function of its own, so that those behind the first take no part in what it keeps in registers.
     """
     entry, first = ir.IRBuilder(function.append_basic_block("entry")), function.append_basic_block("body")
     done, failed = _exit(entry, "done", 1), _exit(entry, "failed", 2 + _width(kernel))
-    parameters, lanes, decodes = Parameters(*function.args), (kernel.strides, kernel.lanes), kernel.direction == "decode"
-    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, decodes, routines)
+    parameters, lanes, emptied = Parameters(*function.args), (kernel.strides, kernel.lanes), emptied_lanes(kernel)
+    frame = Frame(function.module, entry, ir.IRBuilder(first), parameters, *lanes, {}, done, failed, emptied, routines)
+    frame.is_rare = len(bodies) <= kernel.rare
     frame.locals.update(begin=parameters.begin, end=parameters.end, row=parameters.row)
     llvm_checks.body(frame, bodies[0])
     if not frame.builder.block.is_terminated:
@@ -181,18 +193,30 @@ def _attempt(function: ir.Function, kernel: Kernel, bodies: Sequence[Block], rou
     if len(bodies) == 1:
         builder.ret(builder.sub(constant(-1), site))
     else:
-        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines), function.args))
+        builder.ret(builder.call(_next_attempt(function, kernel, bodies[1:], routines, rare), function.args))
 
 
 def _next_attempt(
-    function: ir.Function, kernel: Kernel, bodies: Sequence[Block], routines: Mapping[str, ir.Function | Routine]
+    function: ir.Function,
+    kernel: Kernel,
+    bodies: Sequence[Block],
+    routines: Mapping[str, ir.Function | Routine],
+    rare: ir.Module | None,
 ) -> ir.Function:
     """A function that goes on where another one failed. It saves the registers that it uses, so that those that call it need not."""
-    following = _function(function.module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
-    following.linkage = "internal"
+    following = _following(function.module, function)
+    if rare is None or len(bodies) > kernel.rare:
+        following.linkage = "internal"
+        _attempt(following, kernel, bodies, routines, rare)
+    else:
+        _attempt(_following(rare, function), kernel, bodies, _routines(rare, kernel, f"{function.name}.rare"))
+    return following
+
+
+def _following(module: ir.Module, function: ir.Function) -> ir.Function:
+    following = _function(module, SIGNATURE, f"{function.name}.next", ARGUMENTS)
     following.attributes.add("noinline")
     following.calling_convention = "preserve_mostcc"
-    _attempt(following, kernel, bodies, routines)
     return following
 
 

@@ -25,6 +25,7 @@ from rosetta_jit.backends.llvm.expr import (
 from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Variable, constant, forgotten, state_word
 from rosetta_jit.backends.llvm.host import host_called
 from rosetta_jit.backends.llvm.rounds import print_switch, rounds_of
+from rosetta_jit.backends.llvm.swap import swapped
 from rosetta_jit.kernel.ir import (
     Advance,
     Assign,
@@ -138,6 +139,8 @@ def _keep(frame: Frame, registers: tuple[tuple[int, Expr], ...]) -> None:
 
 def _nested(frame: Frame, statement: For | While | If | Switch) -> None:
     match statement:
+        case For() if frame.is_rare and swapped(frame, statement):
+            pass
         case For(variable, count, body):
             _for(frame, variable, expression(frame, count), body)
         case While():

@@ -11,7 +11,7 @@ from __future__ import annotations
 import keyword
 from typing import TYPE_CHECKING, Any, assert_never
 
-from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, statements
+from rosetta_jit.backends.base import Namespace, Writer, counted_lanes, emptied_lanes, statements
 from rosetta_jit.backends.python.expr import FLOATS, FORMATS, Names, expression, location, part
 from rosetta_jit.kernel.host import NO_FUNCTIONS
 from rosetta_jit.kernel.interpret import runnable as interpreted
@@ -152,12 +152,13 @@ class _Attempt:
         """The body, behind the lengths that it turned out to read."""
         outer, self.writer = self.writer, Writer(depth=self.writer.depth)
         self._block(self.body)
+        emptied = emptied_lanes(self.kernel)
         for lane in sorted(self.names.used | set(self.counted)):
             if lane >= self.kernel.lanes:
                 outer.line(f"used_{lane} = 0")
                 continue
             start = f"int(state[{lane_word(lane, USED)}])"
-            outer.line(f"used_{lane} = {start} if row else 0" if lane and self.kernel.direction == "decode" else f"used_{lane} = {start}")
+            outer.line(f"used_{lane} = {start} if row else 0" if lane in emptied else f"used_{lane} = {start}")
         for lane in sorted(self.names.capacities):
             own, stride = lane < self.kernel.lanes, self.kernel.strides[lane]
             capacity = f"int(state[{lane_word(lane, CAPACITY)}])" if own else f"len(lanes[{lane}]) // {stride}"

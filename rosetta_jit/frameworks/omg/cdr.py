@@ -92,6 +92,7 @@ def encode_type(struct: Struct, schema: Schema, name: str, choices: Choices) -> 
         ending=_ending(name, choices),
         spare=spare,
         forgivable=PADDING_OF_PAYLOADS,
+        rare=len(attempts) - 1,  # no machine that is still built writes big-endian CDR unless told to
     )
 
 

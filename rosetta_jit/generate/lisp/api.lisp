@@ -1,5 +1,5 @@
 ;; == decode
-(defun decode (octets &key (end (length octets)) (codec (make-codec)) before)
+(defun decode (octets &key (end (length octets)) (codec $codec) before)
   "The object of a message: bytes 0 to END of a vector. BEFORE is an object that is filled instead of a new one.
 
 Signals DECODE-ERROR. With a codec and an object that are used again, numbers are read without allocating memory."
@@ -33,12 +33,12 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
   (or ($begin (attempts codec #'encode-kernel data (length data) $attempts))
       (signal-failure codec *encode-sites* nil)))
 
-(defun message-size (object &key (codec (make-codec)))
+(defun message-size (object &key (codec $codec))
   "How many bytes the message of an object has. Signals ENCODE-ERROR."
   (collect-message codec object)
   (size-of-rows codec))
 
-(defun encode-into (octets object &key (codec (make-codec)))
+(defun encode-into (octets object &key (codec $codec))
   "Write the message of an object to a vector from its byte 0 on; gives where it ends. Signals ENCODE-ERROR.
 
 With a codec that is used again, numbers are written without allocating memory."
@@ -47,7 +47,7 @@ With a codec that is used again, numbers are written without allocating memory."
   $measure
   (encode-rows codec octets))
 
-(defun encode (object &key (codec (make-codec)))
+(defun encode (object &key (codec $codec))
   "The message of an object, a vector of octets. Signals ENCODE-ERROR."
   (collect-message codec object)
   (let* ((size (size-of-rows codec))

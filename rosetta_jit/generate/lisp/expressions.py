@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import field
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Literal, assert_never
 
 import numpy as np
 
@@ -67,13 +67,15 @@ LEAST, GREATEST = 1e-300, 1e300
 class Scope:
     """What the printers of a function share.
 
-    ``touched`` are the lanes whose rows it reads or writes, ``counted`` those whose rows in use it counts.
+    ``touched`` are the lanes whose rows it reads or writes, ``counted`` those whose rows in use it counts, ``registers`` those
+    with the state of the mapping.
     """
 
     locals: Names
     lanes: Lanes
     touched: set[int] = field(default_factory=set[int])
     counted: set[int] = field(default_factory=set[int])
+    registers: Literal["unpack", "pack"] = "unpack"
 
     def rows(self, lane: int) -> str:
         """The variable with a lane's rows."""
@@ -130,10 +132,15 @@ def _known(scope: Scope, expr: Known) -> str:
             return "1" if lane == 0 else f"(the i64 (truncate (length {scope.rows(lane)}) {scope.lanes.stride(lane)}))"
         case Told(what):
             return f"(codec-state-{what} codec)"
-        case Register():
-            raise AssertionError("a unit with state is not printed in Lisp")
+        case Register(number):
+            return state_word(scope, number)
         case _:
             assert_never(expr)
+
+
+def state_word(scope: Scope, number: int) -> str:
+    """What a state variable holds."""
+    return f"(aref (codec-state-{scope.registers}-registers codec) {number})"
 
 
 def constant(type_: Scalar, value: float) -> str:

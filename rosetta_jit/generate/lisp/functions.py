@@ -90,7 +90,7 @@ def _function(
     routines: Mapping[str, str],
     routine: Routine | None = None,
 ) -> Function:
-    scope = Scope(Names(lanes.words()), lanes)
+    scope = Scope(Names(lanes.words()), lanes, registers="unpack" if kernel.direction == "decode" else "pack")
     sites = kernel.sites if routine is None else routine.sites
     origins = about.origins if routine is None else ()
     return Function(name, scope, sites, routines, numbers, about.paths, about.functions or {}, origins, is_routine=routine is not None)

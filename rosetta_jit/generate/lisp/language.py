@@ -20,7 +20,7 @@ from rosetta_jit.generate.lisp.words import package_of, runtime_text
 from rosetta_jit.kernel.shape import is_told
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from rosetta_jit.generate.lisp.functions import Printed
     from rosetta_jit.generate.lisp.lanes import Lanes
@@ -43,8 +43,6 @@ def files(unit: Unit) -> dict[str, str]:
     """The texts of the system's files by their names."""
     if unit.holder not in ("", "own"):
         raise SchemaError((words.unknown_holder(unit.holder, (("own", "structures"),)),))
-    if unit.state:
-        raise SchemaError((words.not_in_language(unit.name, "state from message to message", "lisp"),))
     package = package_of(unit.name)
     made = _Source(unit)
     return {
@@ -87,7 +85,7 @@ class _Source:
             self._package(package),
             definitions(self.structures),
             self._constants(),
-            codec(self.lanes),
+            codec(self.lanes, self.unit.state),
             *(text for role in self.unit.kernels for text in (self._sites(role), self.printed[role].text)),
             *walks,
             *self._functions_of_the_header(),
@@ -100,7 +98,7 @@ class _Source:
         lines.line("")
         lines.line("(declaim (sb-ext:muffle-conditions sb-ext:compiler-note))")
         lines.line("")
-        names = [*self.structures.exported(), *self.functions.values()]
+        names = [*self.structures.exported(), *self.functions.values(), *(["*codec*"] if self.unit.state else [])]
         lines.line(f"(export '({' '.join(names)}))")
         return lines.text()
 
@@ -142,6 +140,7 @@ class _Source:
         told = is_told(self.unit.kernels.values())
         given = {
             "type": self.structures.types[self.unit.type],
+            "codec": "*codec*" if self.unit.state else "(make-codec)",
             "tell": "(tell codec)" if told else "",
             "measure": "(size-of-rows codec)" if self._needs_measures() else "",
             "empty": "".join(f"\n        {self.lanes.place_of_used(lane)} 0" for lane in range(1, self.lanes.own)),
@@ -154,16 +153,24 @@ class _Source:
             yield re.sub(r"\n +(?=\n)|\n +(?=\))", "", Template(sections[NAMES[role]]).substitute(given, **around))
 
 
-def codec(lanes: Lanes) -> str:
-    """The structure with a vector for each lane, and how many of its rows are in use."""
+def codec(lanes: Lanes, state: Sequence[tuple[str, int]] = ()) -> str:
+    """The structure with a vector for each lane, and how many of its rows are in use; one of its own for a mapping that has state."""
     lines = Lines()
-    with lines.form("(defstruct (codec (:include codec-state) (:conc-name codec.) (:copier nil) (:predicate nil))"):
+    if state:
+        head = "(eval-when (:compile-toplevel :load-toplevel :execute)", "(defparameter *initial-state*", "(list"
+        with lines.form(head[0]), lines.form(head[1]), lines.form(head[2]):
+            for name, word in state:
+                lines.line(str(word), name)
+    included = "".join(f" ({each}-registers (apply #'registers *initial-state*))" for each in ("first", "unpack", "pack") if state)
+    with lines.form(f"(defstruct (codec (:include codec-state{included}) (:conc-name codec.) (:copier nil) (:predicate nil))"):
         lines.line('"Memory that is kept from one message to the next. Each thread needs its own."')
         for lane in range(len(lanes.all)):
             size = lanes.stride(0) if lane == 0 else 0
             lines.line(f"({lanes.rows(lane)} (make-array {size} :element-type 'u8) :type octets)")
             if lane:
                 lines.line(f"({lanes.used(lane)} 0 :type fixnum)")
+    if state:
+        lines.line('(defvar *codec* (make-codec) "Keeps the state of the mapping, for functions that are given no other codec.")')
     return lines.text()
 
 

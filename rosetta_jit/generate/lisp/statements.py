@@ -7,7 +7,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.generate.c.statements import described
-from rosetta_jit.generate.lisp.expressions import access, expression, got, location, zero
+from rosetta_jit.generate.lisp.expressions import access, expression, got, location, state_word, zero
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import literal
 from rosetta_jit.generate.lisp.words import LISP_TYPES, hyphenated
@@ -172,8 +172,8 @@ def _statement(function: Function, stmt: Stmt) -> None:
             function.line(_effect(function.scope, stmt), _origin(function, stmt))
         case Reserve() | Advance():
             _rows(function, stmt)
-        case Return(position):
-            function.line(function.leave(function.form(position)))
+        case Return(position, changed):
+            _return(function, position, changed)
         case For() | While() | If() | Switch():
             _nested(function, stmt)
         case Call():
@@ -182,6 +182,18 @@ def _statement(function: Function, stmt: Stmt) -> None:
             _host_call(function, stmt)
         case _:
             assert_never(stmt)
+
+
+def _return(function: Function, position: Expr, changed: Sequence[tuple[int, Expr]]) -> None:
+    """The end of a message that was handled: only now state changes, all of it at once."""
+    if not changed:
+        function.line(function.leave(function.form(position)))
+        return
+    assigned = " ".join(f"{state_word(function.scope, number)} {function.form(value)}" for number, value in changed)
+    with function.lines.form(f"(let ((behind {function.form(position)}))"):
+        function.line("(declare (type i64 behind))")
+        function.line(f"(psetf {assigned})")
+        function.line(function.leave("behind"))
 
 
 def _origin(function: Function, stmt: Stmt) -> str:

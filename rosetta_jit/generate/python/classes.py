@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.base import Namespace
 from rosetta_jit.generate.cpp.classes import reached_types
+from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Union
 
 if TYPE_CHECKING:
@@ -16,10 +17,26 @@ if TYPE_CHECKING:
     from rosetta_jit.model.types import Type
 
 OWN = """array dataclass field Struct Any Callable math c_float now functions decode encode size
-Refused MessageError DecodeError EncodeError"""
+Refused MessageError DecodeError EncodeError np npt copy"""
 TAKEN = frozenset((*keyword.kwlist, *dir(builtins), *OWN.split()))
 MEMBERS = frozenset((*keyword.kwlist, "unknown_fields", "field"))
 MAX_DOC = 200
+
+
+NUMPY = {
+    "bool": ("bool_", "u1"),
+    "i8": ("int8", "i1"),
+    "u8": ("uint8", "u1"),
+    "i16": ("int16", "i2"),
+    "u16": ("uint16", "u2"),
+    "i32": ("int32", "i4"),
+    "u32": ("uint32", "u4"),
+    "i64": ("int64", "i8"),
+    "u64": ("uint64", "u8"),
+    "f32": ("float32", "f4"),
+    "f64": ("float64", "f8"),
+}
+"""What numpy calls scalars, and how it abbreviates them on the wire."""
 
 
 def names_of(unit: Unit) -> dict[str, str]:
@@ -47,6 +64,17 @@ def classes(unit: Unit) -> str:
     return "\n\n".join(texts)
 
 
+def numpy_scalar(element: Type, unit: Unit) -> str | None:
+    """What numpy calls the elements of an array, where arrays of such are numpy's."""
+    if not unit.numpy:
+        return None
+    match unit.schema.resolve(element):
+        case Bool() | Int() | Float() | Enum() as number:
+            return NUMPY[scalar_of(number)][0]
+        case _:
+            return None
+
+
 def _enum(identifier: str, enum: Enum) -> str:
     scope = Namespace(frozenset(keyword.kwlist))
     values = [f"    {scope.identifier(name)} = {value}" for name, value in enum.values] or ["    pass"]
@@ -60,7 +88,9 @@ def _doc(text: str) -> str:
 
 
 def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit) -> str:
-    lines = ["@dataclass(slots=True)", f"class {identifier}:", f"    {_doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')}", ""]
+    head = ["@dataclass(slots=True)", f"class {identifier}:"]
+    head = ["@dataclass(slots=True, eq=False)", f"class {identifier}(_Comparable):"] if unit.numpy else head
+    lines = [*head, f"    {_doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')}", ""]
     for each, member in zip(struct.fields, member_names(struct), strict=True):
         lines.append(f"    {member}: {_type(each.type, names, unit)} = {_default(each.type, names, unit)}")
         said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
@@ -82,6 +112,8 @@ def _type(type_: Type, names: dict[str, str], unit: Unit, *, inside: bool = Fals
             return "str"
         case Bytes():
             return "bytes"
+        case Array(element) if (scalar := numpy_scalar(element, unit)) is not None:
+            return f"npt.NDArray[np.{scalar}]"
         case Array(element):
             return f"list[{_type(element, names, unit, inside=True)}]"
         case Map(key, value):
@@ -114,6 +146,8 @@ def _default(type_: Type, names: dict[str, str], unit: Unit) -> str:
             return f"bytes({length})"
         case Bytes():
             return 'b""'
+        case Array(element, length) if (scalar := numpy_scalar(element, unit)) is not None:
+            return f"field(default_factory=lambda: np.zeros({length if isinstance(length, int) else 0}, np.{scalar}))"
         case Array(_, int(length)):
             return f"field(default_factory=lambda: {_elements(type_, names, unit)})" if length else "field(default_factory=list)"
         case Array():
@@ -135,6 +169,8 @@ def _default(type_: Type, names: dict[str, str], unit: Unit) -> str:
 def _elements(type_: Type, names: dict[str, str], unit: Unit) -> str:
     """An expression for the first value of an array of a fixed length, and of what is in it."""
     match type_:
+        case Array(element, length) if (scalar := numpy_scalar(element, unit)) is not None:
+            return f"np.zeros({length if isinstance(length, int) else 0}, np.{scalar})"
         case Array(element, int(length)):
             return f"[{_elements(element, names, unit)} for _ in range({length})]"
         case Array():

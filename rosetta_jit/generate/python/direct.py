@@ -76,9 +76,12 @@ class Direct:
         return next((span for span, place in self.texts.items() if place == (at, size)), None)
 
 
-def direct(block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int]) -> tuple[Block, Direct]:
-    """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct."""
-    found = _Search(counted(block), kernel, layout, arrays)
+def direct(block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int], *, few: int = FEW) -> tuple[Block, Direct]:
+    """A body of a decoder whose message's row is locals, without the statements that lanes of ``arrays`` needed; and what is direct.
+
+    Arrays of a fixed length, up to ``few`` elements, are read together with the numbers around them.
+    """
+    found = _Search(counted(block), kernel, layout, arrays, few)
     found.arrays(found.block, Place(0, index(0)))
     return found.rewritten(found.block), found.direct
 
@@ -86,8 +89,8 @@ def direct(block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int]
 class _Search:
     """Looks for arrays and texts in the block that fills a row, and in the loops that fill rows there."""
 
-    def __init__(self, block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int]) -> None:
-        self.block, self.layout, self.lists, self.direct = block, layout, arrays, Direct()
+    def __init__(self, block: Block, kernel: Kernel, layout: Layout, arrays: Collection[int], few: int) -> None:
+        self.block, self.layout, self.lists, self.few, self.direct = block, layout, arrays, few, Direct()
         self.instead: dict[int, Block] = {}
         self.mentions: dict[int, list[Stmt]] = {}
         self.fields: dict[tuple[int, int], list[Stmt]] = {}
@@ -193,7 +196,7 @@ class _Search:
                 outer = next((each for each in block if each is copy or _if_any(each, count, copy)), None)
                 if outer is None:
                     return False
-                if isinstance(count, Const) and isinstance(element, Number) and 0 < count.value <= FEW and element.scalar != "bool":
+                if isinstance(count, Const) and isinstance(element, Number) and 0 < count.value <= self.few and element.scalar != "bool":
                     places = [Place(lane, add(start, number)) for number in range(int(count.value))]
                     self.direct.elements[lane] = places
                     self.instead[id(outer)] = tuple(

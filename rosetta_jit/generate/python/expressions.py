@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from rosetta_jit.generate.python.classes import NUMPY
 from rosetta_jit.generate.python.direct import Direct
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import (
@@ -93,6 +94,7 @@ class Scope:
     rooms: set[int] = field(default_factory=set[int])
     told: set[str] = field(default_factory=set[str])
     direct: Direct = field(default_factory=Direct)
+    numpy: bool = False
 
     def view(self, lane: int, code: str) -> str:
         """The view of a lane's rows as numbers of one type."""
@@ -111,6 +113,13 @@ class Scope:
         """A function of the struct module: ``load_I`` with the low byte first, ``load_I_be`` with the high one."""
         code = "".join(f"{count}{each}" if (count := len([*same])) > 1 else each for each, same in groupby(code))
         name = f"_{verb}_{code}{'' if order == '<' else '_be'}"
+        self.loads.add(name)
+        return name
+
+    def dtype(self, scalar: str, order: str = "<") -> str:
+        """Numpy's type of a scalar in the message."""
+        code = NUMPY[scalar][1]
+        name = f"_dtype_{code}{'_be' if order == '>' and code[1:] != '1' else ''}"
         self.loads.add(name)
         return name
 

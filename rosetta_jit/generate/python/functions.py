@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Namespace, Writer
 from rosetta_jit.generate.c.statements import reached, read_names
-from rosetta_jit.generate.python.direct import direct, settled
+from rosetta_jit.generate.python.direct import FEW, direct, settled
 from rosetta_jit.generate.python.expressions import CODES, Scope, bare, expression, flat_name, view_name
 from rosetta_jit.generate.python.groups import not_negative, undamaged
 from rosetta_jit.generate.python.statements import Attempt, Function, print_block
@@ -53,8 +53,10 @@ WORDS = frozenset(
         "parts",
         "functions",
         "now",
+        "copy",
+        "np",
     )
-) | {f"told_{what}" for what in ("now", "number", "registers", "end")}
+) | {f"told_{what}" for what in ("now", "number", "registers", "end", "copy")}
 
 
 def is_flat(kernel: Kernel, lanes: Lanes) -> bool:
@@ -116,7 +118,7 @@ def print_kernel(
     words = words_of(lanes)
 
     def scope() -> Scope:
-        return Scope(Namespace(words), lanes, flat, loads, kernel.name, paths)
+        return Scope(Namespace(words), lanes, flat, loads, kernel.name, paths, numpy=objects.numpy)
 
     for routine in kernel.routines:
         function = Function(scope(), kernel, routine.sites, routines, (), objects, is_routine=True)
@@ -134,7 +136,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function) -> Att
     if kernel.direction != "decode":
         body = undamaged(body, kernel.sites)
     elif scope.flat and objects.layout is not None:
-        body, scope.direct = direct(body, kernel, objects.layout, objects.arrays)
+        body, scope.direct = direct(body, kernel, objects.layout, objects.arrays, few=0 if scope.numpy else FEW)
     function.settled = settled(body)
     function.read, function.positive = read_names(body), not_negative(body)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, Reserve))

@@ -52,6 +52,8 @@ class Given(Scope):
         if known is not None and place.offset in known:
             return known[place.offset]
         found = self.element_of(place, scalar)
+        if self.numpy and scalar[0] in "iu" and self.sequences[place.lane].element is not None:
+            return f"int({found})"
         return f"_single({found})" if scalar == "f32" else f"float({found})" if scalar == "f64" else found
 
     def element_of(self, place: Place, scalar: str) -> str:

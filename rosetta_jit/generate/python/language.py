@@ -33,6 +33,7 @@ REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 
 RUNTIME = Path(__file__).with_name("runtime.py")
 DECIMALS = Path(__file__).with_name("decimals.py")
+ARRAYS = Path(__file__).with_name("arrays.py")
 OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
 
@@ -64,6 +65,12 @@ class _Module:
         if any(function in part for function in OF_DECIMALS for part in parts):
             decimals = DECIMALS.read_text("utf-8")
             runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
+        if self.unit.numpy:
+            arrays = ARRAYS.read_text("utf-8")
+            runtime = runtime.replace(
+                "from typing import Any\n", "from typing import Any\n\nimport numpy as np\nimport numpy.typing as npt\n"
+            )
+            runtime += f"\n\n\n{arrays[arrays.index('class ') :].rstrip()}"
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
@@ -77,7 +84,9 @@ class _Module:
         lines: list[str] = []
         for name in sorted(self.loads):
             _, verb, code, *order = name.split("_")
-            if verb == "EMPTY":
+            if verb == "dtype":
+                lines.append(f'{name} = np.dtype("{">" if order else "<"}{code}")')
+            elif verb == "EMPTY":
                 lines.append(f'{name} = memoryview(b"").cast("{code}")')
             else:
                 method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
@@ -134,15 +143,18 @@ class _Module:
             return Make(self.unit, scope, self.names, taken).value(arrays[lane], self.unit.layout.lanes[lane].element, lane, "")
 
         origins, lanes = self.unit.origins.get("borrow", ()), self._lanes(kernel)
-        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays))
+        objects = Objects(made, row, inner, self.unit.layout, frozenset(arrays), self.unit.numpy)
         text, attempts = print_kernel(kernel, lanes, "borrow", self.loads, origins, objects, self.paths, flat=is_flat(kernel, lanes))
         return "\n\n".join([self._sites("borrow"), f"\n{text.rstrip()}", f"\n{self._decode(attempts)}"])
 
     def _decode(self, attempts: tuple[Attempt, ...]) -> str:
         writer = Writer()
-        writer.line(f"def decode(data: bytes | bytearray | memoryview) -> {self.root}:")
+        copies = any("told_copy" in attempt.needs for attempt in attempts)
+        given = ", *, copy: bool = True" if copies else ""
+        writer.line(f"def decode(data: bytes | bytearray | memoryview{given}) -> {self.root}:")
         writer.depth = 1
-        writer.line('"""Read a message; raises `DecodeError`."""')
+        said = "; without ``copy`` arrays are views of it, where they can be, which nothing writes to. Raises" if copies else "; raises"
+        writer.line(f'"""Read a message{said} `DecodeError`."""')
         writer.line("data = bytes(data)")
         writer.line("end = len(data)")
         writer.line("most = 1048576 + 64 * end")
@@ -162,6 +174,8 @@ class _Module:
     def _told(self, writer: Writer, needs: set[str], direction: Direction) -> None:
         if "told_registers" in needs:
             writer.line(f"told_registers = {REGISTERS[direction]}")
+        if "told_copy" in needs:
+            writer.line("told_copy = copy")
         if "told_now" in needs:
             writer.line("told_now = now()")
         if "told_number" in needs:
@@ -171,7 +185,7 @@ class _Module:
 
     def _encoder_in_parts(self) -> str:
         kernel, lanes = self.unit.kernels["encode"], self._lanes(self.unit.kernels["encode"])
-        scope = Given(Namespace(words_of(lanes)), lanes, flat=True, loads=set(), name=kernel.name, paths=self.paths)
+        scope = Given(Namespace(words_of(lanes)), lanes, flat=True, loads=set(), name=kernel.name, paths=self.paths, numpy=self.unit.numpy)
         origins = self.unit.origins.get("encode", ())
         objects = Objects(lambda _, __: "message")
         function = Function(scope, kernel, kernel.sites, {}, origins, objects, writer=Writer(depth=2))

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.base import Writer
-from rosetta_jit.generate.python.classes import member_names
+from rosetta_jit.generate.python.classes import NUMPY, member_names
 from rosetta_jit.generate.python.expressions import CODES, Scope, flat_name
 from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, Struct, Union
@@ -111,8 +111,13 @@ class Make:
             case Array() if isinstance(element, Number):
                 if WIDTH[element.scalar] == 1 and element.scalar != "bool":
                     borrowed = self._text("_bytes", slot, lane, row)
+                    if self.unit.numpy:
+                        return f"np.array(bytearray({borrowed}), np.uint8).view(np.{NUMPY[element.scalar][0]})"
                     return f'memoryview({borrowed}).cast("{CODES[element.scalar]}").tolist()'
-                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{start} : {start} + {count}].tolist()"
+                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{start} : {start} + {count}]"
+                if self.unit.numpy:
+                    return self._numbers(numbers, element.scalar)
+                numbers += ".tolist()"
                 return f"[*map(bool, {numbers})]" if element.scalar == "bool" else numbers
             case Array(inner) if self._is_borrowed(inner, slot.lane):
                 assert isinstance(inner, String)
@@ -133,13 +138,22 @@ class Make:
                 self.depth -= 1
                 return f"{{{parts[0]}: {parts[1]} for {index} in range({start}, {start} + {count})}}"
 
+    def _numbers(self, numbers: str, scalar: str) -> str:
+        """An array of a list, or of a view of memory."""
+        return f"np.array({numbers}, np.{NUMPY[scalar][0]})" if self.unit.numpy else numbers
+
     def _direct(self, slot: Span, lane: int) -> str | None:
         """What is a list or a string already."""
         known = self.scope.direct
-        if slot.lane in known.whole or slot.lane in known.appended:
+        element = self.unit.layout.lanes[slot.lane].element
+        if slot.lane in known.whole:
             return self.scope.lanes.rows(slot.lane)
-        if slot.lane in known.elements:
-            return f"[{', '.join(self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))}]"
+        if slot.lane in known.appended:
+            rows = self.scope.lanes.rows(slot.lane)
+            return self._numbers(rows, element.scalar) if isinstance(element, Number) else rows
+        if slot.lane in known.elements and isinstance(element, Number):
+            texts = (self.scope.element(slot.lane, number) for number in range(len(known.elements[slot.lane])))
+            return self._numbers(f"[{', '.join(texts)}]", element.scalar)
         return self.scope.text(lane, slot.offset) if (lane, slot.offset) in known.texts else None
 
     def _is_borrowed(self, type_: Type, lane: int) -> bool:
@@ -300,6 +314,9 @@ class Collect:
                 return f'{at}.encode("utf-8", "surrogateescape")'
             case Bytes():
                 return at
+            case Array() if self.unit.numpy:
+                self.wholes.add(dtype := f"_dtype_{NUMPY[scalar][1]}")
+                return f"_raw({dtype}, {at}{', is_bool=True' if scalar == 'bool' else ''})"
             case Array(_, int(length)) if 0 < length <= MOST_AT_ONCE:
                 self.wholes.add(whole := f"_whole_{CODES[scalar] * length}")
                 return f'{whole}(*{at}) if len({at}) == {length} else _packed("{CODES[scalar]}", {at})'

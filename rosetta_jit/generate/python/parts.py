@@ -61,6 +61,9 @@ if TYPE_CHECKING:
 MOST_STARRED = 40
 """Numbers of an array of a fixed length that are packed together with those around it."""
 
+FEW_STARRED = 4
+"""The same of an array of numpy's, whose elements become Python's one by one."""
+
 
 def encoder_in_parts(unit: Unit, kernel: Kernel, function: Function, scope: Given) -> list[str]:
     """The lines of an encoder's function, from the object ``target`` on.
@@ -216,8 +219,11 @@ class _Printer:
     def _numbers(self, sequence: Listed, order: str, exact: int | None) -> None:
         assert isinstance(sequence.slot, Number)
         code, own = CODES[sequence.slot.scalar], sequence.local
-        if exact is not None and 0 < exact <= MOST_STARRED:
+        if exact is not None and 0 < exact <= (FEW_STARRED if self.unit.numpy else MOST_STARRED):
             self._add(order if WIDTH[sequence.slot.scalar] > 1 else "", code * exact, (f"*{own}",))
+        elif self.unit.numpy:
+            dtype, is_bool = self.scope.dtype(sequence.slot.scalar, order), sequence.slot.scalar == "bool"
+            self.pending.append(Part("", "", (f"_raw({dtype}, {own}{', is_bool=True' if is_bool else ''})",)))
         elif sequence.slot.scalar == "u8":
             self.pending.append(Part("", "", (f"bytes({own})",)))
         else:

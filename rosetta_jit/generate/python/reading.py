@@ -35,6 +35,11 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     """The list of numbers that lie in the message, or of rows that are numbers, of which ``row`` makes objects."""
     begin, stride = bare(expression(scope, at)), scope.lanes.stride(lane)
     part = f"data[{begin} : {begin} + {expression(scope, size)}]"
+    if isinstance(slot, Number) and scope.numpy:
+        count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
+        scope.told.add("copy")
+        found = f"_array({scope.dtype(slot.scalar, order)}, data, {bare(expression(scope, count))}, {begin}, told_copy)"
+        return f"{found} != 0" if slot.scalar == "bool" else found
     if isinstance(slot, Number):
         if stride == 1 and slot.scalar != "i8":
             return f"[*map(bool, {part})]" if slot.scalar == "bool" else f"[*{part}]"

@@ -66,7 +66,7 @@ class Objects:
     """How a function comes to objects: ``result`` is what a return of success gives at a position.
 
     Of decoders ``row`` is the object of a lane's row, ``inner`` are the lines of functions for rows that contain rows of their own type,
-    and ``arrays`` are the lanes of arrays in the ``layout``.
+    and ``arrays`` are the lanes of arrays in the ``layout``. ``numpy``: arrays of numbers are numpy's.
     """
 
     result: Callable[[Scope, str], str]
@@ -74,6 +74,7 @@ class Objects:
     inner: Callable[[Scope], list[str]] = lambda _: []
     layout: Layout | None = None
     arrays: frozenset[int] = frozenset()
+    numpy: bool = False
 
 
 @dataclass(slots=True)

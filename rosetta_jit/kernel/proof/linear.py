@@ -6,8 +6,12 @@ is exact: Python's integers do not wrap.
 
 from __future__ import annotations
 
+from functools import partial
 from math import gcd
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Terms = tuple[tuple[int, int], ...]
 """(atom, coefficient) pairs, by rising atom, no coefficient zero."""
@@ -20,35 +24,50 @@ class Linear(NamedTuple):
     terms: Terms = ()
 
 
+_linear: Callable[[tuple[int, Terms]], Linear] = partial(tuple[int | Terms].__new__, Linear)
+"""A `Linear` of a pair, in half the time of its class: no others are made so often."""
+
+
 def plus(left: Linear, right: Linear) -> Linear:
     """The sum of two."""
-    if not right.terms:
-        return Linear(left.constant + right.constant, left.terms)
-    if not left.terms:
-        return Linear(left.constant + right.constant, right.terms)
-    total = dict(left.terms)
-    for atom, coefficient in right.terms:
+    constant, terms = left
+    other, other_terms = right
+    if not other_terms:
+        return _linear((constant + other, terms))
+    if not terms:
+        return _linear((constant + other, other_terms))
+    total = dict(terms)
+    for atom, coefficient in other_terms:
         total[atom] = total.get(atom, 0) + coefficient
-    return Linear(left.constant + right.constant, _terms(total))
+    return _linear((constant + other, _terms(total)))
 
 
 def times(linear: Linear, factor: int) -> Linear:
     """A multiple."""
     if factor == 0:
         return Linear(0)
-    return Linear(linear.constant * factor, tuple((a, c * factor) for a, c in linear.terms))
+    constant, terms = linear
+    return _linear((constant * factor, tuple([(atom, coefficient * factor) for atom, coefficient in terms])))
 
 
 def minus(left: Linear, right: Linear) -> Linear:
     """The difference of two."""
-    if not right.terms:
-        return Linear(left.constant - right.constant, left.terms)
-    return plus(left, times(right, -1))
+    constant, terms = left
+    other, other_terms = right
+    if terms == other_terms:
+        return _linear((constant - other, ()))
+    if not other_terms:
+        return _linear((constant - other, terms))
+    total = dict(terms)
+    for atom, coefficient in other_terms:
+        total[atom] = total.get(atom, 0) - coefficient
+    return _linear((constant - other, _terms(total)))
 
 
 def shifted(linear: Linear, by: int) -> Linear:
     """A constant more."""
-    return Linear(linear.constant + by, linear.terms)
+    constant, terms = linear
+    return _linear((constant + by, terms))
 
 
 def coefficient_of(linear: Linear, atom: int) -> int:
@@ -160,4 +179,4 @@ def _strongest(facts: list[Linear]) -> list[Linear]:
 
 
 def _terms(total: dict[int, int]) -> Terms:
-    return tuple(sorted((atom, coefficient) for atom, coefficient in total.items() if coefficient))
+    return tuple(sorted([term for term in total.items() if term[1]]))

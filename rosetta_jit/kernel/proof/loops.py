@@ -1,6 +1,7 @@
 """What is true in every round of a loop: guessed at the entry, kept as long as each round keeps it.
 
-The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero. One that a
+The relations guessed are few: a position stays within the message, nothing falls below its first value or below zero, what a round adds
+one to at most has grown by no more than there were rounds. One that a
 round breaks is dropped for good, so that for all its loops together a kernel is walked at most once for each guess. To walk a loop again
 is to walk all loops in it again: what can hardly hold is not tried.
 """
@@ -10,22 +11,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.arithmetic import FLOATS
-from rosetta_jit.kernel.ir import Advance, Assign, Local
+from rosetta_jit.kernel.ir import Advance, Assign, Binary, Const, Convert, If, Let, Local, Select
 from rosetta_jit.kernel.limits import MAX_LOOP_ROUNDS
 from rosetta_jit.kernel.proof import claims
 from rosetta_jit.kernel.proof.formula import All, Any
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted, times
 from rosetta_jit.kernel.proof.paths import anchors, from_begin, grown, variable
 from rosetta_jit.kernel.proof.symbolic import linear
-from rosetta_jit.kernel.shape import bound_names, expressions_of, statements, subexpressions
+from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.kernel.shape import bound_names, expressions_of, statements
+from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
-    from rosetta_jit.kernel.ir import Block, Expr
+    from rosetta_jit.kernel.ir import Block, Expr, Stmt
     from rosetta_jit.kernel.proof.formula import Formula
     from rosetta_jit.kernel.proof.scope import Scope, Typed
+
+
+ZERO = Linear(0)
+
+ROUNDS = 4
+"""The anchor that is a variable's first value and as many as there were rounds before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +48,17 @@ class Guess:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """A loop's body and how to walk a round: ``enter`` is told the first atom of the round, ``leave`` checks what a round owes."""
+    """A loop's body and how to walk a round: ``enter`` is told the first atom of the round, ``leave`` checks what a round owes.
+
+    One that counts its rounds has a ``variable`` that does, and a ``count`` of all of them.
+    """
 
     body: Block
     enter: Callable[[int], None]
     walk: Callable[[], bool]
     leave: Callable[[], None]
+    variable: str = ""
+    count: Linear = ZERO
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +74,8 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
     """Walk any round of a loop, and go to the place after it, with the same guesses known."""
     names, lanes = changed_names(loop.body), advanced_lanes(loop.body)
     at_entry = Entry(scope.mark(), list(scope.used), {name: scope.locals[name] for name in sorted(names & scope.locals.keys())})
-    kept = [guess for guess in guesses(scope, names) if guess not in dropped]
+    counted = [Guess(name, ROUNDS, -1) for name in counters(loop, scope)]
+    kept = [guess for guess in (*guesses(scope, names), *counted) if guess not in dropped]
     while True:
         written = 0 if scope.record is None else scope.record.mark()
         lost = _round(scope, loop, at_entry, kept)
@@ -73,9 +88,10 @@ def walk_rounds(scope: Scope, loop: Loop, dropped: set[Guess]) -> None:
         dropped.update(lost)
         kept = [guess for guess in kept if guess not in dropped]
     if scope.record is not None:
-        first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)) for guess in kept]
+        first = [instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO) for guess in kept]
         scope.record.owe_all(first, claims.RELATION_FIRST)
     forget(scope, at_entry, lanes, kept)
+    assume_counted(scope, at_entry, kept, loop.count)
 
 
 def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list[Guess]:
@@ -84,10 +100,13 @@ def _round(scope: Scope, loop: Loop, at_entry: Entry, kept: list[Guess]) -> list
     mark, first_atom = facts.mark(), len(facts.lows)
     forget(scope, at_entry, advanced_lanes(loop.body), kept)
     loop.enter(first_atom)
+    index = linear(scope.locals[loop.variable][1]) if loop.variable else ZERO
+    assume_counted(scope, at_entry, kept, index)
     lost: list[Guess] = []
     if not loop.walk() and not facts.impossible:
         loop.leave()
-        claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess))) for guess in kept]
+        behind = shifted(index, 1)
+        claimed = [(guess, instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), behind)) for guess in kept]
         lost = [guess for guess, formula in claimed if not facts.proves(formula)]
         if scope.record is not None:
             scope.record.owe_all([formula for _, formula in claimed], claims.RELATION_KEPT)
@@ -121,26 +140,25 @@ def changed_names(body: Block) -> set[str]:
     return {stmt.name for stmt, _ in statements(body) if isinstance(stmt, Assign)}
 
 
-def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str]) -> set[Guess]:
+def needless(body: Block, said: Iterable[Expr], measure: Expr | None, known: Container[str], reads: dict[int, set[str]]) -> set[Guess]:
     """That a variable does not fall below its first value, where a loop sets it to what is not made of that, or says what it keeps.
 
-    What grows in each round is tried all the same: a loop around this one may grow by it.
+    What grows in each round is tried all the same: a loop around this one may grow by it. ``reads`` keeps the names that statements read,
+    by their ids: those of a loop are asked for again by each loop around it.
     """
     users: dict[str, set[str]] = {}
     assigned: dict[str, list[set[str]]] = {}
     for stmt, _ in statements(body):
-        read = {name for expr in expressions_of(stmt) for name in _names(expr)}
+        read = reads.get(id(stmt))
+        if read is None:
+            read = reads[id(stmt)] = set[str]().union(*map(locals_in, expressions_of(stmt)))
         if isinstance(stmt, Assign):
             assigned.setdefault(stmt.name, []).append(read)
         for name in read:
             users.setdefault(name, set()).update((stmt.name,) if isinstance(stmt, Assign) else bound_names(stmt))
-    told = {name for expr in said for name in _names(expr)} - set(() if measure is None else _names(measure))
+    told = {name for expr in said for name in locals_in(expr)} - (set[str]() if measure is None else locals_in(measure))
     variables = [name for name in assigned if name in known]
     return {Guess(name, 2, 1) for name in variables if name in told or not all(map(_made_of(name, users).intersection, assigned[name]))}
-
-
-def _names(expr: Expr) -> Iterator[str]:
-    return (part.name for part in subexpressions(expr) if isinstance(part, Local))
 
 
 def _made_of(name: str, users: Mapping[str, set[str]]) -> set[str]:
@@ -168,14 +186,65 @@ def guesses(scope: Scope, names: set[str]) -> list[Guess]:
         wanted = [Guess(name, 2, 1), Guess(name, 3, 1)]
         if type_ == "i64" and from_begin(value):
             wanted += [Guess(name, 0, 1), Guess(name, 1, -1)]
-        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, (type_, value), value))]
+        found += [guess for guess in wanted if scope.facts.proves(instance(scope, guess, (type_, value), value, ZERO))]
     return found
 
 
-def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear) -> Linear:
-    """A guess about a value, as a fact; ``at_entry`` is the variable before the first round."""
-    marks = anchors(scope, at_entry)
+def counters(loop: Loop, scope: Scope) -> list[str]:
+    """The variables to which a round adds one at most, as its text shows, in a loop that does not run a negative number of times."""
+    named = {stmt.name: stmt.value for stmt in _once(loop.body) if isinstance(stmt, Let)}
+    once = [stmt for stmt in _once(loop.body) if isinstance(stmt, Assign)]
+    every = [stmt.name for stmt, _ in statements(loop.body) if isinstance(stmt, Assign)]
+    found = [each.name for each in once if every.count(each.name) == 1 and _adds_one(each.value, each.name, named)]
+    known = [name for name in found if scope.locals.get(name, ("", None))[0] == "i64" and isinstance(scope.locals[name][1], Linear)]
+    return known if loop.variable and known and scope.facts.proves(loop.count) else []
+
+
+def _once(body: Block) -> Iterator[Stmt]:
+    """The statements that run once in a round at most."""
+    for stmt in body:
+        yield stmt
+        if isinstance(stmt, If):
+            yield from _once((*stmt.then, *stmt.otherwise))
+
+
+def _adds_one(value: Expr, name: str, named: Mapping[str, Expr]) -> bool:
+    """Whether a value is that of a variable, or one more."""
+    match _written(value, named):
+        case Binary("add", Local("i64", first), step) if first == name:
+            return _is_bit(_written(step, named), named)
+        case _:
+            return False
+
+
+def _is_bit(value: Expr, named: Mapping[str, Expr]) -> bool:
+    match value:
+        case Const(value=0 | 1):
+            return True
+        case Select(_, then, otherwise):
+            return all(_is_bit(_written(each, named), named) for each in (then, otherwise))
+        case Convert(_, operand):
+            return type_of(operand) == "bool"
+        case _:
+            return False
+
+
+def _written(value: Expr, named: Mapping[str, Expr]) -> Expr:
+    """What a name was given, for a name."""
+    return named.get(value.name, value) if isinstance(value, Local) else value
+
+
+def instance(scope: Scope, guess: Guess, at_entry: Typed, value: Linear, rounds: Linear) -> Linear:
+    """A guess about a value, as a fact; ``at_entry`` is the variable before the first round, and so many ``rounds`` were before."""
+    marks = [*anchors(scope, at_entry), plus(linear(at_entry[1]), rounds)]
     return times(minus(value, marks[guess.anchor]), guess.sign)
+
+
+def assume_counted(scope: Scope, at_entry: Entry, kept: list[Guess], rounds: Linear) -> None:
+    """The guesses about what rounds count, where there were so many before."""
+    for guess in kept:
+        if guess.anchor == ROUNDS:
+            scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), rounds))
 
 
 def _now(scope: Scope, guess: Guess) -> Linear:
@@ -190,6 +259,7 @@ def forget(scope: Scope, at_entry: Entry, lanes: set[int], kept: list[Guess]) ->
         else:
             scope.bind(name, (type_, variable(scope, type_, relative=from_begin(linear(old)))))
     for guess in kept:
-        scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess)))
+        if guess.anchor != ROUNDS:
+            scope.facts.assume(instance(scope, guess, at_entry.variables[guess.name], _now(scope, guess), ZERO))
     for lane in sorted(lanes):
         scope.used[lane] = grown(scope, lane, at_entry.used[lane])

@@ -111,6 +111,9 @@ def _meet(scope: Scope, before: dict[str, Typed], arrivals: list[Arrival]) -> No
         scope.facts.assume(Linear(-min([bound, *(b for b in shared if b is not None)]), terms) if None not in shared else None)
     for name, old in before.items():
         scope.bind(name, _met(scope, old, arrivals, name))
+    if all(arrival.used == first.used for arrival in arrivals):
+        scope.used = list(first.used)
+        return
     scope.used = [
         first.used[lane] if all(a.used[lane] == first.used[lane] for a in arrivals) else grown(scope, lane, used)
         for lane, used in enumerate(scope.used)

@@ -36,7 +36,7 @@ from rosetta_jit.kernel.printer import statement_text
 from rosetta_jit.kernel.proof import claims, contracts, effects, paths
 from rosetta_jit.kernel.proof.formula import All, equal, negated
 from rosetta_jit.kernel.proof.linear import Linear, minus, plus, shifted
-from rosetta_jit.kernel.proof.loops import Loop, bounds, needless, walk_rounds
+from rosetta_jit.kernel.proof.loops import ZERO, Loop, bounds, needless, walk_rounds
 from rosetta_jit.kernel.proof.obligations import UnprovenError, demand, oblige
 from rosetta_jit.kernel.proof.scope import entry
 from rosetta_jit.kernel.proof.symbolic import condition, evaluate, integer, linear
@@ -70,6 +70,7 @@ class _Walk:
     dropped: dict[int, set[Guess]] = field(default_factory=dict[int, "set[Guess]"])
     seen: dict[int, Stmt] = field(default_factory=dict[int, "Stmt"])
     needed: set[int] = field(default_factory=set[int])
+    reads: dict[int, set[str]] = field(default_factory=dict[int, "set[str]"])
 
 
 def verify(kernel: Kernel, record: Record | None = None) -> None:
@@ -308,7 +309,7 @@ def _for(walk: _Walk, loop: For) -> None:
         scope.bind(loop.variable, ("i64", index))
 
     walk.loops += 1
-    _rounds(walk, loop, enter, lambda: None)
+    _rounds(walk, loop, enter, lambda: None, count)
     walk.loops -= 1
 
 
@@ -340,9 +341,10 @@ def _assume_invariant(scope: Scope, loop: While) -> None:
         scope.facts.assume(condition(scope, expr))
 
 
-def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave: Callable[[], None]) -> None:
+def _rounds(walk: _Walk, loop: For | While, enter: Callable[[int], None], leave: Callable[[], None], count: Linear = ZERO) -> None:
     dropped = walk.dropped.get(id(loop))
     if dropped is None:
         said, measure = (loop.invariant, loop.measure) if isinstance(loop, While) else ((), None)
-        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals)
-    walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave), dropped)
+        dropped = walk.dropped[id(loop)] = set() if walk.tries_all else needless(loop.body, said, measure, walk.scope.locals, walk.reads)
+    variable = loop.variable if isinstance(loop, For) else ""
+    walk_rounds(walk.scope, Loop(loop.body, enter, partial(_block, walk, loop.body), leave, variable, count), dropped)

@@ -25,6 +25,8 @@ from rosetta_jit.model.types import Array, Bytes, Map, Optional, Struct, Union
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosetta_jit.diagnostics import Diagnostic
     from rosetta_jit.language.check.tiling import Run
     from rosetta_jit.language.resolve.rules import TypedRules
@@ -61,11 +63,19 @@ def _check_way(way: tuple[Rule, ...], rules: TypedRules, target: Message, missin
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """How a missing rule is reported: the side that it would set, where its type is named, and the block in which to write it."""
+    """How a missing rule is reported: the side that it would set, where its type is named, and the block in which to write it.
+
+    ``wires`` are where the types of several wires are named.
+    """
 
     side: Side
     span: Span | None
     block: words.Block
+    wires: Mapping[str, Span | None] | None = None
+
+    def place(self, fields: tuple[str, ...]) -> Span | None:
+        """Where a field is to be reported."""
+        return (self.wires or {}).get(fields[0], self.span)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +140,9 @@ class _Checker:
             type_ = self.target.value_type(field.type)
             kind = "value" if not isinstance(type_, Array) else "array" if type_.length is None else "fixed"
             missing = self.missing
-            self.problems.append(words.never_set(missing.span, missing.side, where.text, field.span, kind=kind, block=missing.block))
+            self.problems.append(
+                words.never_set(missing.place(where.fields), missing.side, where.text, field.span, kind=kind, block=missing.block)
+            )
 
     def constant(self, where: _Where, constant: object, writes: list[Write]) -> None:
         known = constant.value if isinstance(constant, Literal) else None

@@ -72,6 +72,8 @@ def _unions(struct: Struct, touched: Field, message: Message, names: Names, name
 
 def discriminator_of(place: Place, steps: int) -> Names | None:
     """The name of the discriminator, if so many steps lead to a union that has one."""
+    if not steps:
+        return None  # the whole message, of one of several wires
     last = place.steps[steps - 1]
     if not (isinstance(last, FieldStep) and isinstance(last.field.type, Union) and last.field.type.discriminator):
         return None

@@ -23,7 +23,7 @@ QUALIFIED = re.compile(r"[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z][A-Za-z0-9_]*)+")
 def misnamed(mapping: Mapping, schema: Schema) -> Iterator[Diagnostic]:
     """A warning where the name of the file is, or has in it, the name of a type that is neither side's."""
     stem = PurePath(mapping.source.name).name.removesuffix(".mapping")[:MAX_NAME]
-    mine = [name_parts(mapping.holder_type), name_parts(mapping.wire_type)]
+    mine = [name_parts(each) for each in (mapping.holder_type, mapping.wire_type, *(wire.type for wire in mapping.wires))]
     for qualified in QUALIFIED.findall(stem):
         parts = name_parts(qualified)
         if not any(_plain(parts) == _plain(own[-len(parts) :]) for own in mine):

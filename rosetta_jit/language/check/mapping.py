@@ -20,6 +20,7 @@ from rosetta_jit.language.check.left_out import left_out
 from rosetta_jit.language.check.rounding import rounded
 from rosetta_jit.language.check.state import idle, set_again
 from rosetta_jit.language.check.unequal_lengths import other_lengths
+from rosetta_jit.language.check.wires import message_of_wires, wrong_wires
 from rosetta_jit.language.imports.declarations import Imports, merge, reached, read_imports
 from rosetta_jit.language.imports.mappings import read_others
 from rosetta_jit.language.imports.search import Reading
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from rosetta_jit.language.imports.declarations import Imported
     from rosetta_jit.language.imports.search import SearchPath
     from rosetta_jit.language.parameters.state import Declared
+    from rosetta_jit.language.resolve.rules import TypedRules
     from rosetta_jit.language.scope import Message
     from rosetta_jit.language.typed import Rule, StateVariable
     from rosetta_jit.language.uses import Others, Signature, Use
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from rosetta_jit.model.mapping import Mapping
     from rosetta_jit.model.types import Schema
     from rosetta_jit.parsing.idl import FrontEnds
+    from rosetta_jit.source import Span
 
 
 SIDES: tuple[Side, ...] = ("holder", "wire")
@@ -140,7 +143,7 @@ def _read(mapping: Mapping, imports: Imports, parameters: Dictionary[str, object
     read = read_others(written, imports.search, imports.reading, problems, handed_on(written, parameters))
     imported = read_imports(written, imports, problems)
     theirs = [each for other in read.mappings() for each in read_imports(other, replace(imports, importer=other.source), problems)]
-    merged = merge([*imported, *theirs], problems)
+    merged = message_of_wires(mapping, merge([*imported, *theirs], problems))
     derived_mapping = derived(written, merged, read, underived)
     others = read.changed(lambda other: derived(other, merged, read, problems))
     complete = not _errors(problems)
@@ -159,7 +162,14 @@ def _wrong(texts: _Texts, resolved: Resolved) -> list[Diagnostic]:
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in wrong_factors(block.rules)]
     problems += [*_unused(texts.imported, resolved), *misnamed(mapping, texts.schema)]
     problems += [found for block in (resolved.unpack, resolved.pack) if block for found in set_again(block.rules)]
+    problems += _of_wires(resolved) if mapping.wires else ()
     return problems + [in_used(other.state[0].span, other.source.name) for other in texts.others.mappings() if other.state]
+
+
+def _of_wires(resolved: Resolved) -> list[Diagnostic]:
+    """What is wrong with the rules of several wires."""
+    blocks: tuple[tuple[Side, TypedRules | None], ...] = (("holder", resolved.unpack), ("wire", resolved.pack))
+    return [found for target, block in blocks if block for found in wrong_wires(block.rules, target, resolved.holder)]
 
 
 def _error(problems: Sequence[Diagnostic]) -> MappingError:
@@ -170,6 +180,7 @@ def _error(problems: Sequence[Diagnostic]) -> MappingError:
 def _with_import(problem: Diagnostic, mapping: Mapping, imports: Imports) -> Diagnostic:
     """The report of a type that no import declares, with the import that would."""
     named = {mapping.holder_span: mapping.holder_type, mapping.wire_span: mapping.wire_type}
+    named |= {each.span: each.type for each in mapping.wires}
     home = imports.home(named[problem.span]) if problem.code == "unknown-type" and problem.span in named else None
     return problem if home is None else replace(problem, help=f'import the file that declares it: `import "{home}"`')
 
@@ -204,12 +215,16 @@ def _directions(mapping: Mapping, resolved: Resolved, blocks: tuple[Block, Block
     if mapping.unpack_rules and resolved.unpack is not None:
         problems += check_complete(resolved.unpack, holder, Missing("holder", mapping.holder_span, blocks[0]))
     if packs and mapping.pack_rules and resolved.pack is not None:
-        problems += check_complete(resolved.pack, wire, Missing("wire", mapping.wire_span, blocks[1]))
+        problems += check_complete(resolved.pack, wire, Missing("wire", mapping.wire_span, blocks[1], _wire_spans(mapping)))
     for block, target in ((resolved.unpack, holder), (resolved.pack, wire)):
         if block is not None:
             problems += defaulted_counts(block.rules, target)
             _check_order(block.rules, target, problems)
     return problems
+
+
+def _wire_spans(mapping: Mapping) -> dict[str, Span | None]:
+    return {each.name: each.span for each in mapping.wires}
 
 
 def _check_order(rules: tuple[Rule, ...], target: Message, problems: list[Diagnostic]) -> None:
@@ -224,12 +239,13 @@ def _check_order(rules: tuple[Rule, ...], target: Message, problems: list[Diagno
 def _silent_losses(mapping: Mapping, resolved: Resolved, blocks: tuple[Block, Block]) -> list[Diagnostic]:
     """What rules without errors leave out."""
     warnings: list[Diagnostic] = []
+    spans = _wire_spans(mapping)
     holder, wire = (resolved.holder, mapping.holder_span), (resolved.wire, mapping.wire_span)
     unpack: tuple[Side, Block] = ("holder", blocks[0])
     pack: tuple[Side, Block] = ("wire", blocks[1])
     for block, (source, read_at), (target, set_at), where in ((resolved.unpack, wire, holder, unpack), (resolved.pack, holder, wire, pack)):
         if block is not None and block.rules:
-            warnings += left_out(block.rules, source, target, (read_at, set_at), where)
+            warnings += left_out(block.rules, source, target, (read_at, set_at), where, spans)
             warnings += [*other_lengths(block.rules), *([] if mapping.rounds else rounded(block.rules))]
     return warnings
 

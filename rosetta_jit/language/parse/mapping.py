@@ -14,6 +14,7 @@ from rosetta_jit.errors import MappingError
 from rosetta_jit.language.limits import MAX_CHARACTERS, MAX_IMPORTS, MAX_LIMIT, MAX_LIMIT_DIGITS, MAX_NESTING, MAX_TOKENS
 from rosetta_jit.language.parse.rules import Context, read_parameter, read_rule, read_state, read_string
 from rosetta_jit.language.parse.templates import grammar
+from rosetta_jit.language.parse.wires import message_of, read_type_name, read_wires
 from rosetta_jit.model.mapping import Function, Import, Mapping, TypeName
 from rosetta_jit.parsing.lalr import Token, Tree
 from rosetta_jit.parsing.syntax import Recovery, parse_tokens
@@ -135,7 +136,8 @@ class _Reader:
         self._bound_depth(tree)
         statements = [child for child in tree.children if isinstance(child, Tree)]
         holder, holder_span = self._type_name(statements, "data_holder", "data-holder")
-        wire, wire_span = self._type_name(statements, "wire_schema", "wire-schema")
+        wires = read_wires([child for child in statements if child.data == "wire_schema"], self.source, self.problems)
+        wire, wire_span = (message_of(wires), wires[0].span) if wires else self._type_name(statements, "wire_schema", "wire-schema")
         is_old = self._is_old(statements)
         mapping = Mapping(
             self.source,
@@ -153,6 +155,7 @@ class _Reader:
             self._rounds(statements) or is_old,
             tuple(read_state(child, self.writing) for child in statements if child.data == "state"),
             is_old,
+            wires,
         )
         if self.problems:
             raise MappingError(tuple(sorted(self.problems, key=lambda problem: problem.span.start if problem.span else 0)))
@@ -188,11 +191,7 @@ class _Reader:
         if found is None:
             self.problems.append(words.missing_statement(Span(self.source, 0, 0), keyword))
             return "", None
-        _, *tokens = (child for child in found.children if isinstance(child, Token))
-        span = Span(self.source, tokens[0].start_pos, tokens[-1].end_pos)
-        if tokens[0].type == "STRING":
-            return read_string(tokens[0], self.source, self.problems), span
-        return "".join(tokens), span
+        return read_type_name(found, self.source, self.problems)
 
     def _limit(self, statements: list[Tree]) -> int | None:
         found = self._only(statements, "limit", "limit")

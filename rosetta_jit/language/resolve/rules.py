@@ -104,6 +104,9 @@ def resolve(
     """
     problems: list[Diagnostic] = []
     holder_type = checked_message(holder, mapping.holder_type, mapping.holder_span, problems)
+    unknown = [each for each in mapping.wires if checked_message(wire, each.type, each.span, problems) is None]
+    if unknown:
+        return tuple(problems)
     wire_type = checked_message(wire, mapping.wire_type, mapping.wire_span, problems)
     if holder_type is None or wire_type is None:
         return tuple(problems)

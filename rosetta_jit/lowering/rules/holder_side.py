@@ -9,14 +9,14 @@ from contextlib import contextmanager
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField
+from rosetta_jit.kernel.ir import Address, Binary, Compare, Const, Expr, Get, If, Place, Select, SetField, Used
 from rosetta_jit.kernel.terms import add, index
 from rosetta_jit.language import typed
 from rosetta_jit.language.check.discriminators import discriminator_of
 from rosetta_jit.language.places import field_names
 from rosetta_jit.language.typed import FieldStep, IndexStep
 from rosetta_jit.lowering.arithmetic import inside
-from rosetta_jit.lowering.codec.fields import OTHER_CASE, has_gaps, member_of, presence_bit, scalar_name
+from rosetta_jit.lowering.codec.fields import OTHER_CASE, has_gaps, member_of, negated, presence_bit, scalar_name
 from rosetta_jit.lowering.rules.discriminators import chosen_case
 from rosetta_jit.lowering.rules.initial_values import bear, bear_each
 from rosetta_jit.lowering.writer import block
@@ -45,13 +45,14 @@ class HolderSide:
     """A message in lanes: the holder, or a wire's message that is staged.
 
     Arrays whose length was set, or that were looked at, are known by their place. Where rules fill it, elements are born with what
-    ``births`` says, but for what lies in ``opened`` lanes.
+    ``births`` says, but for what lies in ``opened`` lanes. ``joined`` are arrays of which other messages set elements, too.
     """
 
     root: HolderFields
     births: Births | None = None
     opened: frozenset[int] = frozenset()
     unions: Mapping[tuple[str, ...], Discriminator] = field(default_factory=dict[tuple[str, ...], "Discriminator"])
+    joined: frozenset[tuple[str, ...]] = frozenset()
     arrays: dict[Key, tuple[HolderElements, Expr]] = field(default_factory=dict["Key", "tuple[HolderElements, Expr]"])
 
     @property
@@ -225,6 +226,9 @@ class HolderSide:
         fields, path, _ = self.descend(place, values)
         where = fields.shown(path)
         self.writer.expect(Compare("ge", count, index(0)), "count", where, "a length must not be negative", line=values.line)
+        if field_names(place) in self.joined:
+            self.keep_length(fields, path, count)
+            return
         elements = fields.open(path, count)
         self.arrays[_key(place)] = elements, count
         lane = self.root.layout.lanes[elements.lane]
@@ -233,6 +237,22 @@ class HolderSide:
             self.root.clear(elements.lane, elements.start, count)
         if isinstance(place.type, Array) and self.births is not None:
             bear_each(fields, self.births.of_elements(place.type.element, elements.lane), elements.start, count, self.opened)
+
+    def keep_length(self, fields: HolderFields, path: Path, count: Expr) -> None:
+        """Take room for numbers, unless the array has this length already: then they stay.
+
+        A message that failed behind this may have left a length without the room for it, which is taken then.
+        """
+        cell = fields.find(path)
+        assert isinstance(cell.slot, Span)
+        start, size = (self.writer.let("kept", Get("i64", cell.place(cell.slot.offset + word))) for word in (0, 8))
+        with self.writer.nested() as new:
+            elements = fields.open(path, count)
+            fields.clear(elements.lane, elements.start, count)
+        used = Used(cell.slot.lane)
+        begins = Binary("and", Compare("ge", start, index(0)), Compare("ge", used, count))
+        has_room = Binary("and", begins, Compare("le", start, Binary("sub", used, count)))
+        self.writer.emit(If(negated(Binary("and", Compare("eq", size, count), has_room)), block(new)))
 
     @property
     def borrows(self) -> bool:

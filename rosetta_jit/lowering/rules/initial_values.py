@@ -63,7 +63,7 @@ def opened_lanes(rules: tuple[typed.Rule, ...], layout: Layout, root: Slot, side
                 slot = _slot_at(place, layout, root)
                 found.update([slot.lane] if isinstance(slot, Span) else [])
             case typed.Assign(place) if place.side == side:
-                found.update(_lanes_below(_slot_at(place, layout, root), layout))
+                found.update(lanes_below(_slot_at(place, layout, root), layout))
             case _:
                 pass
     return frozenset(found)
@@ -89,13 +89,16 @@ def _slot_at(place: typed.Place, layout: Layout, root: Slot) -> Slot:
     return slot
 
 
-def _lanes_below(slot: Slot, layout: Layout, outer: frozenset[int] = frozenset()) -> set[int]:
+def lanes_below(slot: Slot, layout: Layout, outer: frozenset[int] = frozenset()) -> set[int]:
+    """The lanes that what lies at a slot has rows in."""
     match slot:
         case Number():
             return set()
         case Span(_, lane):
-            return {lane} if lane in outer else {lane} | _lanes_below(layout.lanes[lane].element, layout, outer | {lane})
+            return {lane} if lane in outer else {lane} | lanes_below(layout.lanes[lane].element, layout, outer | {lane})
         case Row(members=members) | Variant(members=members):
-            return set[int]().union(*(_lanes_below(member.slot, layout, outer) for member in members))
+            unknown = slot.unknown if isinstance(slot, Row) else None
+            inner = (*(() if unknown is None else (unknown,)), *(member.slot for member in members))
+            return set[int]().union(*(lanes_below(each, layout, outer) for each in inner))
         case _:
             assert_never(slot)

@@ -120,3 +120,58 @@ refuse:
   call void @PyErr_SetString(ptr %error, ptr @none.taken)
   ret ptr null
 }
+
+; cls.from_dict(dict) -> a new holder with all its values. In the method: 24 the holder class, 40 the address of a table (`taking.ll`), if its steps set
+; all that a holder has: then it does not matter how the holder begins.
+define ptr @method_build(ptr %method, ptr %arguments, i64 %nargsf, ptr %names) {
+  %common = call i1 @is_common(ptr %method, i64 %nargsf, ptr %names, i64 1)
+  br i1 %common, label %look, label %python, !prof !0
+look:
+  %class = call ptr @pointer(ptr %method, i64 24)
+  %recipe = call ptr @pointer(ptr %class, i64 $HEAP_TYPE_BYTES)
+  %known = icmp ne ptr %recipe, null
+  br i1 %known, label %make, label %python, !prof !0
+make:
+  %holder = call ptr @spawned(ptr %class, ptr %recipe)
+  %made = icmp ne ptr %holder, null
+  br i1 %made, label %fill, label %failed, !prof !0
+fill:
+  %dict = load ptr, ptr %arguments
+  %number = call ptr @pointer(ptr %method, i64 40)
+  %converted = call { i64, i1 } @unbox_signed(ptr %number)
+  %address = extractvalue { i64, i1 } %converted, 0
+  %table = inttoptr i64 %address to ptr
+  %taken = call i1 @taken(ptr %holder, ptr %dict, ptr %table)
+  br i1 %taken, label %done, label %leave, !prof !0
+done:
+  ret ptr %holder
+leave:
+  call void @Py_DecRef(ptr %holder)
+  %own = call i1 @is_of_values()
+  br i1 %own, label %python, label %failed
+failed:
+  ret ptr null
+python:
+  %answer = call ptr @leave_to_python(ptr %method, ptr %arguments, i64 %nargsf, ptr %names)
+  ret ptr %answer
+}
+
+; Whether there is no error but one that Python's own way, which is tried next, says better; there is none then.
+define internal i1 @is_of_values() {
+  %error = call ptr @PyErr_Occurred()
+  %is.error = icmp ne ptr %error, null
+  br i1 %is.error, label %look, label %yes
+look:
+  %any = load ptr, ptr @PyExc_Exception
+  %matches = call i32 @PyErr_ExceptionMatches(ptr %any)
+  %is = icmp ne i32 %matches, 0
+  br i1 %is, label %clear, label %no
+clear:
+  call void @PyErr_Clear()
+  br label %yes
+yes:
+  ret i1 true
+no:
+  ret i1 false
+}
+@PyExc_Exception = external global ptr

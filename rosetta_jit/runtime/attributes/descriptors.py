@@ -79,7 +79,7 @@ def describe(made: type, entries: Mapping[str, Entry], shown: Sequence[str], kep
     for definition, name in zip(slots, members, strict=True):
         definition.name, definition.type, definition.offset, definition.flags = _c_name(name), OBJECT, kept.offsets[name], READONLY
     for definition, name in zip(table, others, strict=True):
-        get, set_ = _accessors(entries[name], plain_arrays=plain_arrays)
+        get, set_ = accessors(entries[name], plain_arrays=plain_arrays)
         definition.name, definition.get, definition.set = _c_name(name), code[get], code[set_]
         definition.closure = PLACE_BYTES * numbers[name]
     made._attributes = slots, table  # noqa: SLF001 # pyright: ignore[reportAttributeAccessIssue] - the class is ours; they live as long as it
@@ -93,7 +93,7 @@ def _c_name(name: str) -> bytes:
     return name.encode(errors="backslashreplace")
 
 
-def _accessors(entry: Entry, *, plain_arrays: bool) -> tuple[str, str]:
+def accessors(entry: Entry, *, plain_arrays: bool) -> tuple[str, str]:
     """The symbols of what reads and writes a field."""
     match entry.node:
         case Scalar(cell):

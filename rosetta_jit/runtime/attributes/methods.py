@@ -30,9 +30,11 @@ from rosetta_jit.runtime.specs import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Kind = Literal["encode", "write", "decode", "parse", "make"]
-"""``x.encode()``, ``x.serialize(file)``, ``x.deserialize(message)``, ``x.ParseFromString(message)``, ``cls.FromString(message)``."""
+Kind = Literal["encode", "write", "decode", "parse", "make", "build"]
+"""``x.encode()``, ``x.serialize(file)``, ``x.deserialize(message)``, ``x.ParseFromString(message)``, ``cls.FromString(message)``,
+``cls.from_dict(plain)``."""
 
+OF_CLASSES = ("make", "build")
 ENTRY, METHOD_BYTES = 56, 64
 
 
@@ -55,12 +57,17 @@ class _Method:
 
     @property
     def __wrapped__(self) -> Any:
-        """The function that says which arguments there are."""
-        return self.function
+        """What says which arguments there are."""
+        return MethodType(self.function, self.holder_type)
 
 
 class _BoundMethod(_Method):  # one that is called on an object
     __slots__ = ()
+
+    @property
+    def __wrapped__(self) -> Any:
+        """The function that says which arguments there are."""
+        return self.function
 
     def __get__(self, instance: object, owner: type | None = None) -> Any:
         return self if instance is None else MethodType(cast("Any", self), instance)
@@ -69,12 +76,13 @@ class _BoundMethod(_Method):  # one that is called on an object
 @cache
 def _class_of(kind: Kind) -> type:
     """The class of methods of a kind."""
-    base = _Method if kind == "make" else _BoundMethod
-    flags = DEFAULT | VECTORCALL | (0 if kind == "make" else METHOD_DESCRIPTOR)
+    base = _Method if kind in OF_CLASSES else _BoundMethod
+    flags = DEFAULT | VECTORCALL | (0 if kind in OF_CLASSES else METHOD_DESCRIPTOR)
     members = (Member * 2)(Member(b"__vectorcalloffset__", SSIZE_T, ENTRY, READONLY, None))
     slots = ((TP_MEMBERS, ctypes.addressof(members)), (TP_CALL, address_of("PyVectorcall_Call")))
     created = from_spec("Method", base, METHOD_BYTES, flags, slots)
-    return with_attributes(created, {"__module__": __name__, "_members": members, "_code": library()})
+    doc = property(lambda method: method.function.__doc__)
+    return with_attributes(created, {"__module__": __name__, "__doc__": doc, "_members": members, "_code": library()})
 
 
 def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
@@ -95,7 +103,7 @@ def method(kind: Kind, function: Any, bind: Callable[[Any], None]) -> Any:
     made.function = function
 
     def slow(*arguments: Any, **named: Any) -> Any:
-        given = (made.holder_type, *arguments) if kind == "make" else arguments
+        given = (made.holder_type, *arguments) if kind in OF_CLASSES else arguments
         answer = function(*given, **named)
         bind(made)
         return answer

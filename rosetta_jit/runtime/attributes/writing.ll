@@ -6,6 +6,7 @@
 
 @PyUnicode_Type = external global i8
 @PyList_Type = external global i8
+@PyTuple_Type = external global i8
 declare ptr @PyUnicode_AsUTF8AndSize(ptr, ptr)
 declare void @PyErr_Clear()
 declare void @llvm.memmove.p0.p0.i64(ptr, ptr, i64, i1)
@@ -257,10 +258,12 @@ define i32 @set_numbers(ptr %self, ptr %value, ptr %field) {
   br i1 %given, label %sort, label %python
 sort:
   %is.list = call i1 @is_exactly(ptr %value, ptr @PyList_Type)
-  br i1 %is.list, label %list, label %other
+  %is.tuple = call i1 @is_exactly(ptr %value, ptr @PyTuple_Type)
+  %is.either = or i1 %is.list, %is.tuple
+  br i1 %is.either, label %list, label %other
 list:
   %count = call i64 @word(ptr %value, i64 16)
-  %items = call ptr @pointer(ptr %value, i64 24)
+  %items = call ptr @items_of(ptr %value, i1 %is.list)
   %kind = call i64 @word(ptr %place, i64 184)
   %good = call i1 @store_all(ptr null, ptr %items, i64 %count, i64 %kind)
   br i1 %good, label %make, label %python
@@ -271,7 +274,7 @@ make:
 look.again:
   ; making room may have run other code
   %now = call i64 @word(ptr %value, i64 16)
-  %now.items = call ptr @pointer(ptr %value, i64 24)
+  %now.items = call ptr @items_of(ptr %value, i1 %is.list)
   %same.count = icmp eq i64 %now, %count
   br i1 %same.count, label %store, label %python
 store:
@@ -305,20 +308,28 @@ look:
   %dimensions.at = getelementptr i8, ptr %view, i64 36
   %dimensions = load i32, ptr %dimensions.at
   %flat = icmp eq i32 %dimensions, 1
-  %format = call ptr @pointer(ptr %view, i64 40)
+  %said = call ptr @pointer(ptr %view, i64 40)
+  %first = load i8, ptr %said
+  ; of an array that is not aligned: the byte order is the machine's
+  %is.order = icmp eq i8 %first, 61
+  %shift = zext i1 %is.order to i64
+  %format = getelementptr i8, ptr %said, i64 %shift
   %letters = load i16, ptr %format, align 1
+  %size = call i64 @word(ptr %view, i64 24)
+  %item = call i64 @word(ptr %place, i64 208)
+  %is.size = icmp eq i64 %size, %item
   %wanted = call i64 @word(ptr %place, i64 200)
   %one = trunc i64 %wanted to i16
   %shifted = lshr i64 %wanted, 16
   %other = trunc i64 %shifted to i16
   %is.one = icmp eq i16 %letters, %one
   %is.other = icmp eq i16 %letters, %other
-  %is.type = or i1 %is.one, %is.other
+  %is.letter = or i1 %is.one, %is.other
+  %is.type = and i1 %is.letter, %is.size
   %same = and i1 %flat, %is.type
   br i1 %same, label %make, label %release
 make:
   %bytes = call i64 @word(ptr %view, i64 16)
-  %size = call i64 @word(ptr %view, i64 24)
   %count = udiv i64 %bytes, %size
   %target = call ptr @room(ptr %self, ptr %place, i64 %count)
   %is.made = icmp ne ptr %target, null
@@ -335,11 +346,71 @@ release:
 declare i32 @PyObject_GetBuffer(ptr, ptr, i32)
 declare void @PyBuffer_Release(ptr)
 
-; Store numbers as cells of a kind, or, without a target, see whether all can be.
-define internal i1 @store_all(ptr %target, ptr %items, i64 %count, i64 %kind) {
+; Where the items of a list, or of a tuple, stand.
+define internal ptr @items_of(ptr %value, i1 %is.list) alwaysinline {
+  %within = getelementptr i8, ptr %value, i64 24
+  br i1 %is.list, label %list, label %tuple
+list:
+  %elsewhere = load ptr, ptr %within
+  ret ptr %elsewhere
+tuple:
+  ret ptr %within
+}
+
+; The same of floats that become float64, which are most.
+define internal i1 @are_floats(ptr %items, i64 %count) {
   br label %head
 head:
-  %index = phi i64 [ 0, %0 ], [ %next, %again ]
+  %index = phi i64 [ 0, %0 ], [ %next, %each ]
+  %more = icmp slt i64 %index, %count
+  br i1 %more, label %each, label %yes
+each:
+  %next = add i64 %index, 1
+  %item.at = getelementptr ptr, ptr %items, i64 %index
+  %item = load ptr, ptr %item.at
+  %is = call i1 @is_exactly(ptr %item, ptr @PyFloat_Type)
+  br i1 %is, label %head, label %no
+yes:
+  ret i1 true
+no:
+  ret i1 false
+}
+
+define internal void @store_floats(ptr %target, ptr %items, i64 %count) {
+  br label %head
+head:
+  %index = phi i64 [ 0, %0 ], [ %next, %each ]
+  %more = icmp slt i64 %index, %count
+  br i1 %more, label %each, label %done
+each:
+  %next = add i64 %index, 1
+  %item.at = getelementptr ptr, ptr %items, i64 %index
+  %item = load ptr, ptr %item.at
+  %value = call i64 @word(ptr %item, i64 16)
+  %at = getelementptr i64, ptr %target, i64 %index
+  store i64 %value, ptr %at
+  br label %head
+done:
+  ret void
+}
+
+; Store numbers as cells of a kind, or, without a target, see whether all can be.
+define internal i1 @store_all(ptr %target, ptr %items, i64 %count, i64 %kind) {
+  %is.common = icmp eq i64 %kind, 10
+  br i1 %is.common, label %look, label %slowly
+look:
+  %all = call i1 @are_floats(ptr %items, i64 %count)
+  br i1 %all, label %quickly, label %slowly
+quickly:
+  %is.to.be.stored = icmp ne ptr %target, null
+  br i1 %is.to.be.stored, label %copy, label %done
+copy:
+  call void @store_floats(ptr %target, ptr %items, i64 %count)
+  br label %done
+slowly:
+  br label %head
+head:
+  %index = phi i64 [ 0, %slowly ], [ %next, %again ]
   %more = icmp slt i64 %index, %count
   br i1 %more, label %each, label %done
 each:

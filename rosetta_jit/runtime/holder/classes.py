@@ -254,8 +254,10 @@ def settle_lanes(holder: Holder) -> None:
 
 def _contents(holder: Holder) -> tuple[int, int, list[bytes]]:
     """Two words of the state, and the bytes of each lane."""
+    from rosetta_jit.runtime.contents import contents_of  # only pickles need it
+
     lanes, _ = place(holder)
-    return lanes.words[VALID], lanes.words[WASTED], lanes.contents()
+    return lanes.words[VALID], lanes.words[WASTED], contents_of(lanes)
 
 
 def _copied(holder: Holder) -> Lanes:

@@ -24,7 +24,7 @@ from rosetta_jit.runtime.holder.classes import Holder, HolderClass
 from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
 from rosetta_jit.runtime.holder.objects.foreign import ORDINARY, Foreign, Wholes
 from rosetta_jit.runtime.holder.sequence import OF_SEQUENCES, Dictionary, Sequence
-from rosetta_jit.runtime.holder.serialising import serialising_methods
+from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
 from rosetta_jit.runtime.limits import MAX_RECIPES
@@ -158,6 +158,8 @@ class Family:
         members = {"family_": self, "__slots__": (self._mark, *slots), **self.described}
         base = self.manners.base if code is None else descriptors.assignable(self.manners.base)
         methods = {} if code is None else serialising_methods(self)
+        if code is not None and self.manners.base.from_dict.__func__ is Holder.from_dict.__func__:
+            methods["from_dict"] = building_method(self)
         made = _class(self.struct.name, (base,), {**methods, **self.manners.members(self), **properties, **members})
         for each in methods.values():
             each.holder_type = made
@@ -381,6 +383,8 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     ValueError
         If another version of rosetta_jit has written this, whose lanes are others.
     """
+    from rosetta_jit.runtime.contents import fill  # only pickles need it
+
     family = _MARKED.get(mark)
     if family is None:
         family = family_of(text, manners_at(manners) if isinstance(manners, str) else manners)
@@ -389,5 +393,5 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
     holder = family.new(family.plan)
     with holder.lanes_ as lanes:
         lanes.words[VALID], lanes.words[WASTED], content = contents
-        lanes.take_contents(content)
+        fill(lanes, content)
     return holder

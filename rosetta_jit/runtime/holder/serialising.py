@@ -64,6 +64,18 @@ def serialising_methods(family: Family) -> dict[str, Any]:
     return {name: _method(family, name, kind) for name, kind in family.manners.methods(family).items()}
 
 
+def building_method(family: Family) -> Any:
+    """The method of a holder class that makes a holder of plain values, of which compiled code does those that are a dict of all fields."""
+    found = getattr_static(family.manners.base, "from_dict")
+
+    def bind(made: Any) -> None:
+        steps = family.takers.steps_of(dict)
+        if steps is not None and steps.covers:
+            made.program = steps.table
+
+    return method("build", found.__func__, bind)
+
+
 def _method(family: Family, name: str, kind: Kind) -> Any:
     found = getattr_static(family.manners.base, name)
     direction = "encode" if kind in ("encode", "write") else "decode"

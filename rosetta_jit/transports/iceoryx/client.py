@@ -83,6 +83,7 @@ class IceoryxSink(Sink):
     def __init__(self, address: Address, options: Mapping[str, Any], lost: Lost | None) -> None:
         super().__init__(str(address), lost)
         self._most: int = options["max_message"]
+        self._frombuffer = import_module("numpy").frombuffer
         self._service: Service | None = Service(address, options)
         iox = self._service.iox
         builder = self._service.messages.publisher_builder().initial_max_slice_len(max(options["first"], 1))
@@ -97,7 +98,8 @@ class IceoryxSink(Sink):
         self.check_size(size, self._most)
         sample = self._publisher.loan_slice_uninit(size)
         if size:
-            ctypes.memmove(sample.payload().as_ptr(), bytes(data), size)
+            there = data if isinstance(data, bytes) else self._frombuffer(data, "u1").ctypes.data
+            ctypes.memmove(sample.payload().as_ptr(), there, size)
         self.connections = sample.assume_init().send()
         self._notifier.notify()
         self.passed(size)

@@ -42,18 +42,19 @@ def framed(frame: str, data: Bytes, most: int, address: str) -> tuple[Bytes, ...
     """
     if len(data) > most:
         raise TransportError("too large", address, f"{len(data)} bytes are more than max_message={most}")
+    length = LENGTHS.get(frame)
+    if length is not None:
+        try:
+            return length.pack(len(data)), data
+        except struct.error:
+            raise TransportError("too large", address, f"{len(data)} bytes are more than a length of `{frame}` can say") from None
     if frame == "none":
         return (data,)
     if frame == "varint":
         return varint(len(data)), data
-    if frame == "line":
-        if b"\n" in bytes(data):
-            raise TransportError("protocol", address, "a message that is a line has no newline within")
-        return data, b"\n"
-    try:
-        return LENGTHS[frame].pack(len(data)), data
-    except struct.error:
-        raise TransportError("too large", address, f"{len(data)} bytes are more than a length of `{frame}` can say") from None
+    if b"\n" in bytes(data):
+        raise TransportError("protocol", address, "a message that is a line has no newline within")
+    return data, b"\n"
 
 
 def varint(number: int) -> bytes:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rosetta_jit.kernel.ir import (
     Advance,
     Binary,
@@ -172,6 +174,13 @@ CASES.add("a negative stride", "a lane whose rows have less than no bytes", (), 
 CASES.accept("a negative stride", (), strides=(8, 0))
 CASES.refused["more hidden lanes than lanes"] = "2 of 1 lanes are hidden", Kernel("test", "decode", (8,), ((DONE,),), SITES, (), 2)
 CASES.accepted["more hidden lanes than lanes"] = Kernel("test", "decode", (8,), ((DONE,),), SITES, (), 1)
+
+KEPT = "it keeps lanes that it cannot keep"
+KEEPS = Kernel("test", "decode", (8, 8), ((DONE,),), SITES, kept=(0, 1))
+CASES.accepted["a lane kept"] = KEEPS
+CASES.refused["a lane kept that is not there"] = KEPT, replace(KEEPS, kept=(0, 2))
+CASES.refused["a lane kept without the first"] = KEPT, replace(KEEPS, kept=(1,))
+CASES.refused["a lane kept when encoding"] = KEPT, replace(KEEPS, direction="encode")
 
 # --- registers ---------------------------------------------------------------------------------------------------------
 

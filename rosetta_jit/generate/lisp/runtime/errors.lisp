@@ -5,7 +5,7 @@
 
 (defpackage #:$package
   (:use #:common-lisp)
-  (:export #:decode #:encode #:encode-into #:message-size #:codec #:make-codec #:*now* #:refused #:octets #:with-floats
+  (:export #:decode #:encode #:encode-into #:message-size #:codec #:make-codec #:reset #:*now* #:refused #:octets #:with-floats
            #:message-error #:decode-error #:encode-error #:message-error-kind #:message-error-path
            #:message-error-detail #:message-error-line #:message-error-offset))
 
@@ -74,8 +74,14 @@
 (defun no-octets ()
   (make-array 0 :element-type 'u8))
 
+(deftype registers () '(simple-array i64 (*)))
+
+(defun registers (&rest words)
+  "What state variables hold: integers as they are, floats by their bits."
+  (make-array (length words) :element-type 'i64 :initial-contents words))
+
 (defstruct (codec-state (:copier nil) (:predicate nil))
-  "What all codecs have: the last failure and the farthest one, what the mapping asks of its host, and results of routines."
+  "What all codecs have: the last failure and the farthest one, what the mapping asks of its host, its state, and results of routines."
   (failure (make-failure) :type failure)
   (farthest (make-failure) :type failure)
   (most 0 :type i64)
@@ -83,6 +89,9 @@
   (kept-f32 0f0 :type f32)
   (now 0 :type i64)
   (number 0 :type i64)
+  (first-registers (registers) :type registers)
+  (unpack-registers (registers) :type registers)
+  (pack-registers (registers) :type registers)
   (u64-result-1 0 :type u64)
   (u64-result-2 0 :type u64)
   (u64-result-3 0 :type u64)
@@ -93,6 +102,12 @@
   (i64-result-4 0 :type i64)
   (i64-result-5 0 :type i64)
   (i64-result-6 0 :type i64))
+
+(defun reset (codec)
+  "Forget all messages: the mapping's state becomes what it is at first."
+  (replace (codec-state-unpack-registers codec) (codec-state-first-registers codec))
+  (replace (codec-state-pack-registers codec) (codec-state-first-registers codec))
+  codec)
 
 (defun fail (codec site at &optional (index-1 0) (index-2 0) (index-3 0) (index-4 0) (index-5 0) (index-6 0))
   "Note a failure; gives what a kernel returns then."

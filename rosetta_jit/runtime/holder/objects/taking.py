@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.errors import RosettaError
 from rosetta_jit.model.types import Enum
 from rosetta_jit.runtime.holder import arena, coerce, values
 from rosetta_jit.runtime.holder.access import assigner, raw
@@ -17,7 +16,9 @@ from rosetta_jit.runtime.holder.classes import plain
 from rosetta_jit.runtime.holder.message import Message, make_present, writable
 from rosetta_jit.runtime.holder.objects import reading, shapes, unions
 from rosetta_jit.runtime.holder.objects.source import ByClass, Source, assignment, attribute
+from rosetta_jit.runtime.holder.objects.steps import LEFT, Steps, Ways
 from rosetta_jit.runtime.holder.record import Blob, Items, Numbers, Record, Scalar, Text
+from rosetta_jit.runtime.limits import MAX_CLASSES
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
@@ -30,8 +31,7 @@ Take = Callable[[Any, Any], None]
 INLINED = 3
 """How deep messages lie in others whose fields one function sets."""
 
-LEFT = (AttributeError, LookupError, TypeError, ValueError, OverflowError, RosettaError)
-"""What makes a quick way leave an object to the slow one. Errors of another kind are those of the object's own code."""
+_UNKNOWN: Any = object()
 
 
 class Takers:
@@ -40,6 +40,7 @@ class Takers:
     def __init__(self, family: Family) -> None:
         self._family = family
         self._of_records: dict[int, ByClass] = {}
+        self._steps: dict[type, Steps | None] = {}
 
     def take(self, holder: Any, value: object) -> None:
         """Give an empty holder the values of an object, or of a mapping.
@@ -56,18 +57,64 @@ class Takers:
             whole.take(holder, value)
             return
         try:
-            self._of_root[type(value)](holder, value)
+            steps = self.steps(value)
+            if steps is None or not steps.take(holder, value):
+                self.is_stale(type(value))
+                self._of_root[type(value)](holder, value)
         except LEFT:
             self._take_slowly(holder, value)
+
+    def steps_of(self, object_type: type) -> Steps | None:
+        """How compiled code takes objects of a class; None if it cannot, or none has come."""
+        return self._steps.get(object_type)
+
+    @cached_property
+    def _ways(self) -> Ways:
+        family = self._family
+        return Ways(
+            family.manners.foreign.names,
+            lambda record: reading.without_meaning(record, family),
+            lambda record, object_type: family.of_struct(record.struct).family_.wholes[object_type] is not None,
+            {Scalar: reading.number, Blob: reading.octets, Numbers: reading.numbers, Items: reading.listed},
+        )
+
+    def is_stale(self, object_type: type) -> bool:
+        """Whether compiled code knew how to take objects of a class, which has changed since; then it is to learn it anew."""
+        steps = self._steps.get(object_type)
+        is_stale = steps is not None and steps.is_stale()
+        if is_stale:
+            self._steps.pop(object_type, None)
+        return is_stale
+
+    def steps(self, value: object) -> Steps | None:
+        """How compiled code takes objects like one; None if it cannot."""
+        object_type = type(value)
+        found = self._steps.get(object_type, _UNKNOWN)
+        if found is _UNKNOWN:
+            try:
+                found = Steps(self._family, self._ways, self._family.tree.root, value)
+            except LEFT:
+                found = None
+            if len(self._steps) < MAX_CLASSES:
+                self._steps[object_type] = found
+        return found
 
     def take_plain(self, holder: Any, plain: Any) -> None:
         """The same of plain values, as `Holder.from_dict` is given them."""
         try:
-            self._of_dict(holder, plain)
+            steps = self._steps.get(dict) if type(plain) is dict else None
+            if steps is None or not steps.take(holder, plain):
+                self._take_dict(holder, plain)
         except LEFT:
             with holder.lanes_ as lanes:
                 lanes.reset()
                 values.write_record(self._family.tree.root, lanes, 0, raw(plain))
+
+    def _take_dict(self, holder: Any, plain: Any) -> None:
+        """The same of a dict for which compiled code knows no steps; the first that names all fields tells them."""
+        if type(cast("object", plain)) is dict and dict not in self._steps and plain.keys() == self._family.tree.root.entries.keys():
+            self.steps(plain)
+        self._of_dict(holder, plain)
 
     def take_message(self, holder: Any, message: Message) -> None:
         """The same of a holder of another family, or of a part of one; nothing that another thread changes meanwhile is mixed."""

@@ -1,0 +1,103 @@
+"""What can be wrong with the wires of a mapping that has several."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosetta_jit.catalogue.mapping import error, shorten
+from rosetta_jit.catalogue.resolve import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosetta_jit.diagnostics import Diagnostic
+    from rosetta_jit.source import Span
+
+
+def nameless(span: Span | None) -> Diagnostic:
+    """A wire without a name beside those that have one."""
+    help_ = "give each wire a name: `wire-schema velocity: geometry_msgs/Twist`"
+    return error("wire-name", "of several wires each has a name", span, "no name", help_=help_)
+
+
+def unfit(span: Span | None, name: str) -> Diagnostic:
+    """A name that no path can begin with."""
+    help_ = "paths begin with it: use letters, digits and underscores, and no digit first"
+    return error("wire-name", f"`{shorten(name)}` cannot be the name of a wire", span, help_=help_)
+
+
+def repeated(span: Span | None, name: str) -> Diagnostic:
+    """Two wires of one name."""
+    return error("wire-name", f"there is a wire `{shorten(name)}` already", span, "again here", help_="choose another name")
+
+
+def many(span: Span | None, most: int) -> Diagnostic:
+    """More wires than a mapping may have."""
+    return error(
+        "wire-name", f"a mapping has at most {most} wires", span, "one too many", help_="join some of them by a mapping of their own"
+    )
+
+
+def alone(span: Span | None, name: str) -> Diagnostic:
+    """One wire that has a name."""
+    help_ = f"write `wire-schema:`, and paths without `.{shorten(name)}`; or name the other wires, too"
+    return error("wire-name", "a single wire has no name", span, help_=help_)
+
+
+def apart(span: Span | None, names: Sequence[str]) -> Diagnostic:
+    """A rule that needs messages of several wires at once."""
+    title = f"this needs messages of {_listed(names)} at once, and each of them comes alone"
+    help_ = f"keep what is needed of `{names[0]}`: declare `state last: float64 = 0.0`, and set it by a rule that reads `{names[0]}` alone"
+    return error("wires-apart", title, span, "here", help_=help_)
+
+
+def set_by_several(span: Span | None, path: str, names: Sequence[str], first: Span | None) -> Diagnostic:
+    """A field that messages of several wires set, though they cannot leave each other's part alone."""
+    where = "" if first is None else f"{first.source.name}:{first.source.line_column(first.start)[0]}"
+    notes = (f"`{names[0]}` sets it at {where}",) if where else ()
+    help_ = (
+        "let one wire set it. Only an array of numbers can have elements of several wires: one of fixed length, "
+        f"or with a length that no wire tells, as `len({path}) = 14`"
+    )
+    return error("wires-overlap", f"`{path}` is set by messages of {_listed(names)}", span, "and here", notes=notes, help_=help_)
+
+
+def unsaid(span: Span | None, names: Sequence[str]) -> Diagnostic:
+    """A program of one wire is wanted, and the mapping has several."""
+    help_ = f'`rj.Decoders(...)` and `rj.Encoders(...)` make programs of all wires; `wire="{names[0]}"`, `--wire {names[0]}` that of one'
+    title = f"the mapping has several wires, {_listed(names)}: it is not said which one is meant"
+    return error("wire-unsaid", title, span, help_=help_)
+
+
+def single(span: Span | None) -> Diagnostic:
+    """Programs for all wires of a mapping that has one."""
+    help_ = "make it by `rj.Decoder` or `rj.Encoder`"
+    return error("wire-single", "the mapping has one wire, which has no name", span, help_=help_)
+
+
+def unknown(span: Span | None, name: str, names: Sequence[str]) -> Diagnostic:
+    """A wire that the mapping does not have."""
+    if not names:
+        title = f"there is no wire `{shorten(name)}`: there is one, which has no name"
+        return error("unknown-wire", title, span, help_="leave the name out")
+    found = nearest(name, names)
+    help_ = f"did you mean `{found}`?" if found else f"name {_listed(names, 'or')}"
+    return error("unknown-wire", f"the mapping has no wire `{shorten(name)}`", span, notes=(f"wires: {', '.join(names)}",), help_=help_)
+
+
+def cannot_borrow(span: Span | None) -> Diagnostic:
+    """Bytes left in the message of one wire, though the next message is another wire's."""
+    help_ = "leave `borrow` out: bytes are copied into the holder then"
+    title = "a holder that messages of several wires fill cannot borrow bytes from one of them"
+    return error("wires-borrow", title, span, help_=help_)
+
+
+def not_here(span: Span | None, what: str) -> Diagnostic:
+    """Something that works on whole messages."""
+    help_ = "use a mapping of one wire there, or `rj.Decoders` in Python"
+    return error("wires-here", f"{what} cannot join messages of several wires", span, help_=help_)
+
+
+def _listed(names: Sequence[str], word: str = "and") -> str:
+    shown = [f"`{shorten(each)}`" for each in names]
+    return f"{', '.join(shown[:-1])} {word} {shown[-1]}" if len(shown) > 1 else "".join(shown)

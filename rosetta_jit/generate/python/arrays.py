@@ -1,0 +1,54 @@
+"""What generated modules have besides `runtime` where arrays of numbers are numpy's."""
+
+# pyright: reportUnusedImport=false, reportUnusedFunction=false, reportUnusedClass=false, reportUnknownArgumentType=false
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+class _Comparable:
+    """Objects are equal if their attributes are; arrays are if their elements are."""
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        names: tuple[str, ...] = getattr(self, "__match_args__", ())
+        return all(_are_same(getattr(self, name), getattr(other, name)) for name in names)
+
+    def __hash__(self) -> int:
+        raise TypeError(f"unhashable type: {type(self).__name__!r}")
+
+
+def _are_same(left: Any, right: Any) -> bool:
+    if type(left) is np.ndarray or type(right) is np.ndarray:
+        return np.array_equal(left, right)
+    if type(left) is list and type(right) is list:
+        return len(left) == len(right) and all(map(_are_same, left, right))
+    return bool(left == right)
+
+
+def _array(dtype: "np.dtype[Any]", data: Any, count: int, at: int, copy: bool) -> "npt.NDArray[Any]":
+    """Numbers that lie in bytes, as this machine has them: a copy, or a view that cannot be written to where that can be."""
+    found: npt.NDArray[Any] = np.ndarray(count, dtype, data, at)
+    return found.astype(dtype.type) if copy or not dtype.isnative else found
+
+
+def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
+    """The bytes of numbers; raises `ValueError` where they are not of one dimension, or cannot be what the field has."""
+    found: npt.NDArray[Any] = np.asarray(numbers, np.bool_ if is_bool else None)
+    if found.ndim != 1:
+        raise ValueError(f"an array of {found.ndim} dimensions in place of one")
+    if not found.size or np.can_cast(found.dtype, dtype):
+        return found.astype(dtype, copy=False).tobytes()
+    if found.dtype.kind not in ("biuf" if dtype.kind == "f" else "biu"):
+        raise ValueError(f"an array of {found.dtype} in place of {dtype.type.__name__}")
+    with np.errstate(over="ignore"):
+        converted = found.astype(dtype)
+    fit = np.isinf(converted) == np.isinf(found) if dtype.kind == "f" else converted == found
+    if not fit.all():
+        raise ValueError(f"a number that does not fit {dtype.type.__name__}")
+    return converted.tobytes()
